@@ -61,10 +61,10 @@ FRAME_NAMES = ("smallest_three", "octahedral_angle", "hexadecachoral", "qtangent
 
 
 def _load(kind: Kind, names: tuple[str, ...]) -> Mapping[str, Any]:
-    return MappingProxyType({name: _loaded(kind, name) for name in names})
+    return MappingProxyType({name: _loaded_encoding(kind, name) for name in names})
 
 
-def _loaded(kind: Kind, name: str) -> Any:
+def _loaded_encoding(kind: Kind, name: str) -> Any:
     place = f"encodings/{kind.folder}/{name}.py"
     try:
         encoding = import_module(f".{kind.folder}.{name}", __package__).ENCODING
@@ -77,13 +77,13 @@ def _loaded(kind: Kind, name: str) -> Any:
     return encoding
 
 
-def _precise(name: str, encoding: Encoding) -> Encoding:
+def _precise_encoding(name: str, encoding: Encoding) -> Encoding:
     title, citation = f"{encoding.title}, precise", f"{encoding.citation}; rounding: Z. Cigolle et al., JCGT 3(2), 2014"
     return replace(encoding, name=name, title=title, citation=citation, is_precise=True, functions=encoding.prefix)
 
 
 def _with_precise(pairs: Mapping[str, Encoding]) -> Mapping[str, Encoding]:
-    return MappingProxyType({**pairs, **{name: _precise(name, pairs[pair]) for name, pair in PRECISE.items()}})
+    return MappingProxyType({**pairs, **{name: _precise_encoding(name, pairs[pair]) for name, pair in PRECISE.items()}})
 
 
 ENCODINGS: Mapping[str, Encoding] = _with_precise(_load(NORMAL, PAIRS))

@@ -16,7 +16,7 @@ from .frame.contract import Pass, Pipeline, Run
 from .frame.frame import Frame
 from .frame.plan import Plan
 from .frame.resource import Resource
-from .frame.resources import FINAL, GBUFFER
+from .frame.resources import FINAL, GBUFFER, TERMS
 from .gl.device import Device, read_pixels
 from .layouts.words import LayoutError
 from .readback.resolve import RESOLVE, RESOLVED
@@ -159,15 +159,17 @@ def rendering(device: Device, pipeline: Pipeline, scene: Scene, plan: Plan) -> I
         FormatError: the device cannot render to a format.
         ShaderError: an encoding does not compile.
     """
-    check(device, pipeline, plan)
+    check(device, pipeline, plan, scene.is_metal_rough)
     with Frame(device, scene, pipeline, plan) as frame:
         yield Rendering(frame, {stage.name: built(frame, stage) for stage in pipeline.stages})
 
 
-def check(device: Device, pipeline: Pipeline, plan: Plan) -> None:
-    """Raises LayoutError where a plan does not suit a pipeline or the device; one line."""
+def check(device: Device, pipeline: Pipeline, plan: Plan, is_metal_rough: bool = False) -> None:
+    """Raises LayoutError where a plan does not suit a pipeline, the scene's materials or the device; one line."""
     layout, light = plan.layout, plan.light_buffer
-    missing = sorted(pipeline.needs - layout.components)
+    if is_metal_rough:
+        check_metal_rough(pipeline)
+    missing = sorted(pipeline.needs - (layout.metal_rough_components if is_metal_rough else layout.components))
     if missing:
         raise LayoutError(f"{pipeline.name} needs {', '.join(missing)}, which layout {layout.name} does not keep")
     if not pipeline.has_gbuffer:
@@ -182,6 +184,15 @@ def check(device: Device, pipeline: Pipeline, plan: Plan) -> None:
         more = ", and a light buffer comes on top" if beside else ""
         raise LayoutError(
             f"layout {layout.name} has {len(layout.targets)} targets{more}; {device.renderer} has {device.max_targets}"
+        )
+
+
+def check_metal_rough(pipeline: Pipeline) -> None:
+    """Raises LayoutError where a pipeline cannot carry metal/rough materials; one line."""
+    if pipeline.told.get("LIGHT_HOLDS") == TERMS:
+        raise LayoutError(
+            f"{pipeline.name} cannot carry metal/rough materials: its light buffer keeps no light by Fresnel's term; "
+            "forward, forward_multipass, deferred and hybrid can"
         )
 
 

@@ -30,6 +30,7 @@ from normalbench.encodings.storages.depth_storage import DEPTH_STORAGES
 from normalbench.encodings.storages.storage import FORMATS, FRAME_STORAGES, LIGHT_STORAGES, MOTION_STORAGES, STORAGES
 from normalbench.gbuffer.defines.packings import PACKINGS
 from normalbench.gbuffer.effects.catalogue import EFFECTS
+from normalbench.gbuffer.environment.catalogue import ENVIRONMENTS
 from normalbench.gbuffer.layouts.presets import LAYOUTS
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.scenes.catalogue import SCENES
@@ -121,7 +122,7 @@ def test_the_package_list_is_the_folders():
 def test_the_version_is_the_same_wherever_it_stands():
     version = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
     assert re.search(r"^version: (\S+)$", (ROOT / "CITATION.cff").read_text(), re.M)[1] == version
-    assert re.search(r"^## (\S+)", (ROOT / "CHANGELOG.md").read_text(), re.M)[1] == version
+    assert re.search(r"^## (\d\S*)", (ROOT / "CHANGELOG.md").read_text(), re.M)[1] == version
 
 
 def test_python_starts_with_the_checkout_on_its_path():
@@ -148,6 +149,7 @@ CATALOGUES = {
     "LAYOUTS": LAYOUTS,
     "PIPELINES": PIPELINES,
     "SCENES": SCENES,
+    "ENVIRONMENTS": ENVIRONMENTS,
     "NORMAL_SETS": normal_sets.NORMAL_SETS,
     "FRAME_SETS": frame_sets.FRAME_SETS,
     "PACKINGS": PACKINGS,
@@ -188,7 +190,16 @@ def test_no_number_is_typed_in_both_languages():
 def test_the_list_command_knows_everything_there_is():
     assert set(listing.NORMAL_SETS) == set(normal_sets.NORMAL_SETS)
     listed = {row["name"] for row in listing.listing("all")}
-    there = {*ENCODINGS, *STORAGES, *normal_sets.NORMAL_SETS, *LAYOUTS, *PIPELINES, *SCENES, *LIGHT_BUFFERS}
+    there = {
+        *ENCODINGS,
+        *STORAGES,
+        *normal_sets.NORMAL_SETS,
+        *LAYOUTS,
+        *PIPELINES,
+        *SCENES,
+        *ENVIRONMENTS,
+        *LIGHT_BUFFERS,
+    }
     there |= {*FRAME_ENCODINGS, *FRAME_STORAGES, *frame_sets.FRAME_SETS, *EFFECTS}
     there |= {*MOTION_ENCODINGS, *MOTION_STORAGES}
     assert listed == there | {*DEPTH_ENCODINGS, *DEPTH_STORAGES}
@@ -275,6 +286,18 @@ def test_a_table_imports_no_other_ones_work_or_pictures():
     assert not wrong, wrong
 
 
+def test_what_rows_are_shown_as_is_said_once():
+    """Tables make the very values that the page shows: nothing is copied field by field."""
+    names = ("Column", "Role", "Section", "Sheet")
+    made = [
+        (node.name, path.relative_to(ROOT).as_posix())
+        for path in SOURCES
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.ClassDef) and node.name in names
+    ]
+    assert sorted(made) == [(name, "reports/sheets.py") for name in names], made
+
+
 # Who asks a table of one name: a code's figures, what `doctor` measures, devices added to a run, and their site.
 ASKING = {
     "bench/door/cli/device_commands.py",
@@ -295,6 +318,35 @@ def test_no_table_is_known_outside_the_folder_of_tables():
         if module.startswith("bench.tables.") and module.split(".")[2] in folders
     }
     assert found == ASKING
+
+
+def _text_of(node: ast.expr, constants: dict[str, ast.expr]) -> object:
+    """What an expression is, where it is a text, or a name that one is given to."""
+    node = constants.get(node.id, node) if isinstance(node, ast.Name) else node
+    return node.value if isinstance(node, ast.Constant) else None
+
+
+def _tables_asked(path: Path) -> set[object]:
+    """By which texts the tables of a run, or those there are, are asked for: `tables[...]` and `tables.get(...)`."""
+    tree = ast.parse(path.read_text())
+    constants = {
+        node.targets[0].id: node.value
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name)
+    }
+    asked = [(node.value, node.slice) for node in ast.walk(tree) if isinstance(node, ast.Subscript)]
+    asked += [
+        (node.func.value, node.args[0])
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "get" and node.args
+    ]
+    return {_text_of(name, constants) for where, name in asked if ast.unparse(where).lower().endswith("tables")}
+
+
+def test_no_table_of_a_run_is_asked_for_by_a_literal_name():
+    others = (path for path in SOURCES if BENCH / "tables" not in path.parents)
+    wrong = [(path.name, name) for path in others for name in _tables_asked(path) if name in TABLES]
+    assert not wrong, wrong
 
 
 def _is_anothers(module: list[str], own: str) -> bool:

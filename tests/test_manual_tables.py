@@ -63,6 +63,15 @@ def test_the_bounds_are_those_that_are_computed():
     assert f"{least.mean_deg:.3f}°" in PAGES[README] and f"{least.max_deg:.3f}°" in PAGES[README]
 
 
+def test_the_text_says_from_which_roughness_on_codes_carry_reflections():
+    kept = {line[0]: line[2] for line in TABLES["normalbench roughness"].read().lines}
+    said = ", ".join(
+        f"{kept[storage]:.2f}{' on' * (storage == 'rg8')} in {bits}"
+        for storage, bits in (("rg8", "8:8"), ("rgb10a2", "10:10"), ("rgb8_12_12", "12:12"))
+    )
+    assert f"from roughness {said}:" in PAGES[README], said
+
+
 def test_the_text_names_the_compilers_that_counted():
     assert {*re.findall(r"Mesa [\d.]+\d", PAGES[README])} == {*TABLES["headline"].read().drivers}
     (named,) = re.findall(r"^These are of (NVRTC [\d.]+) and (Mesa [\d.]+)\.", VENDORS, re.M)

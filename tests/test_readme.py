@@ -22,11 +22,10 @@ from contributing import a_copy_of_the_rooms, normalbench_in
 from manual import PAGES, README, ROOT
 from written import as_document, packed, planes_of, png_bytes, some_normals, write_exr
 
-from normalbench.bench.door import code_command, examine, run
+from normalbench.bench.door import code_command, examine, run, table_command
 from normalbench.bench.door.cli import app as cli
 from normalbench.bench.keep import machine
 from normalbench.bench.run import measuring
-from normalbench.bench.run.workers import places
 from normalbench.bench.show import report
 from normalbench.bench.tables.registry import TABLES
 from normalbench.gbuffer.scenes.mesh import sphere
@@ -154,7 +153,8 @@ def test_every_long_command_is_taken_as_written(command, monkeypatch):
     monkeypatch.setattr(typer.main, "get_command", parser_of)
     monkeypatch.setattr(run, "facts_of", lambda _: {})
     monkeypatch.setattr(run, "second_process", nullcontext)
-    monkeypatch.setattr(places, "_local", lambda _: nullcontext(measuring.HERE))
+    for module in (run, table_command):
+        monkeypatch.setattr(module, "place", lambda _: nullcontext(measuring.HERE))
     words = shlex.split(command)
     monkeypatch.setattr(sys, "argv", words)
     if words[0] == "python":

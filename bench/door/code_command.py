@@ -6,7 +6,7 @@ import re
 import shlex
 import tempfile
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
@@ -24,6 +24,7 @@ from ..shaders.code.emit import LANGUAGES
 from ..shaders.code.files import Code, code_of, file_name
 from ..shaders.code.run import runner
 from ..shaders.code.verify import Agreement, agreement, is_catalogues
+from ..shaders.languages.source_options import in_names
 from ..subjects.codecs.names import codecs_named, fitting
 from .code_figures import figures, head
 
@@ -42,6 +43,7 @@ def code_command(options: CodeOptions, format: str, output: Path | None) -> int:
         UsageError: a name is not known, nothing fits, or something cannot be written.
     """
     _check_prefix(options.prefix)
+    options = replace(options, **in_names(asdict(options)))
     languages = choose("language", options.to, {name: name for name in LANGUAGES})
     codecs = _codecs(options)
     if options.prefix and len(codecs) > 1 and not options.check:

@@ -7,18 +7,22 @@ import textwrap
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
 from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.codec import Codec
+from ...encodings.codecs.variants import in_half
 from ...encodings.storages.storage import STORAGES, Storage
 from ...reports import tables
 from ...reports.charts.sphere_chart import sphere_chart
 from ..ground.choose import choose_one
 from ..ground.output.errors import UsageError, tell
 from ..ground.output.writing import check_plot, save_plot, write, write_text
+from ..shaders.languages.source_options import in_names
+from ..shaders.languages.words import file_of
 from ..subjects.codecs.names import storages_named
 from ..subjects.codecs.user_encodings import ANY, Examined, examined
 from ..subjects.normals.normal_sets import NORMAL_SETS
@@ -42,12 +46,14 @@ def examine_encoding(
     output: Path | None,
     storage: str | None = None,
     domain: str | None = None,
+    sources: Mapping[str, str | None] = MappingProxyType({}),
 ) -> int:
     """Write a verdict, findings and notes, and the picture if one is asked for.
 
     Args:
         storage: the name of the one that it is measured in; None for STORAGE.
         domain: one of DOMAINS, that it is meant for; None to find out.
+        sources: how it is read, by options of `Sources`.
 
     Returns:
         the exit status: 1 where something is likely wrong.
@@ -57,6 +63,7 @@ def examine_encoding(
     """
     if file is None:
         raise UsageError("doctor examines a file with --plot, --storage and --domain: name it")
+    file = Path(in_names({"encoding": str(file), **sources})["encoding"])
     check_plot(plot)
     kept = _storage(storage or STORAGE)
     found = examined(file, choose_one("domain", domain, DOMAINS) if domain else ANY)
@@ -66,10 +73,17 @@ def examine_encoding(
     worse = _compared(found, codec) if found.is_measurable and not codec.misfit else []
     rounded = _rounded_for(found, codec) if worse else ""
     worse = [f"{line}; {rounded}" if rounded else line for line in worse]
+    halves = _half_note(codec) if found.is_measurable and not codec.misfit else []
     # What is wasted is meant where the domain is, or where another storage is; it is said all the same.
     is_meant = bool(domain or rounded)
     wrong, notes = ([*found.wrong], [*worse, *found.notes]) if is_meant else ([*found.wrong, *worse], found.notes)
-    about = {"file": file.name, "encoding": found.encoding.name, "domain": _domain(found), "functions": found.functions}
+    notes = [*notes, *halves]
+    about = {
+        "file": file_of(file).name,
+        "encoding": found.encoding.name,
+        "domain": _domain(found),
+        "functions": found.functions,
+    }
     said = [*_lines("finding", wrong), *([] if wrong else [(RIGHT, "verdict")]), *_lines("note", notes)]
     if format in FOR_PEOPLE:
         write_text(lambda: _text(about, wrong, notes, format), output)
@@ -129,6 +143,21 @@ def _compared(found: Examined, codec: Codec) -> list[str]:
     return [f"in {codec.storage.name} this is {found.like}, {100 * (own[0] / its[0] - 1):.0f} % worse: {how}"]
 
 
+def _half_note(codec: Codec) -> list[str]:
+    """What half arithmetic makes of a code whose file declares it; nothing of others."""
+    if not codec.encoding.is_also_half:
+        return []
+    half = Codec(in_half(codec.encoding), codec.storage)
+    if half.misfit:
+        return [f"it declares numbers of 16 bits, but {half.misfit}"]
+    row, own = _row(half), _means(codec)
+    if row["skipped"]:
+        return [f"it declares numbers of 16 bits, and is computed in 32: {row['skipped']}"]
+    said = f"{row['angle_mean_deg']:.3g} degrees on average and {row['angle_max_deg']:.3g} at most"
+    said += f"; in 32 bits {own[0]:.3g} and {own[1]:.3g}"
+    return [f"in the half arithmetic that it declares, {codec.storage.name} has {said}"]
+
+
 def _rounded_for(found: Examined, codec: Codec) -> str:
     """To which steps the encoder rounds by itself, where the storage has others; else empty."""
     lattice, size = found.lattice, codec.encoding.components
@@ -141,9 +170,14 @@ def _rounded_for(found: Examined, codec: Codec) -> str:
 
 def _means(codec: Codec) -> tuple[float, float]:
     """The mean and the largest angle that were met of a codec, in degrees."""
-    chosen = NORMAL_SETS["sphere" if codec.encoding.domain == "sphere" else "hemisphere"](COUNT, 0)
-    row = measure(Case(codec, chosen, "glsl"))
+    row = _row(codec)
     return row["angle_mean_deg"], row["angle_max_deg"]
+
+
+def _row(codec: Codec) -> dict[str, Any]:
+    """A row of the quality table."""
+    chosen = NORMAL_SETS["sphere" if codec.encoding.domain == "sphere" else "hemisphere"](COUNT, 0)
+    return measure(Case(codec, chosen, "glsl"))
 
 
 def _picture(codec: Codec, found: Examined) -> Any:

@@ -15,22 +15,24 @@ from typing import Any
 from ..ground.choose import choose
 from ..ground.machine.memory import give_back_what_a_table_needed, have_few_heaps, keep_what_is_imported
 from ..ground.options.option import fields_of
-from ..ground.output.errors import MissingError, UsageError, leave_out, noting_what_is_left_out, tell
+from ..ground.output.errors import MissingError, UsageError, leave_out, noting_what_is_left_out, tell, told
 from ..ground.output.progress import progress_of_all
 from ..ground.output.writing import say
 from ..keep.runs import Row, Run, facts_of, opened, read_run, unfinished
 from ..keep.table_files import write_tables
-from ..run.measuring import Asked, Place, asked, measured, with_parts
+from ..run.measuring import Asked, Place, asked_together, measured, with_parts
 from ..run.second import Second, is_worth_it, second_process
 from ..run.workers.places import place
+from ..shaders.languages.source_options import in_names, names_files
+from ..shaders.languages.words import SETTINGS
 from ..show.showing import say_lines, say_skipped, show_summary
 from ..tables.registry import TABLES
 from ..tables.table import Measured, Table
+from . import beside
 from .table_command import in_folder
 
 RESULTS = Path("results")
 PAGE = "report.html"
-SECOND = "normalbench.bench.door.second_child"
 
 
 def chosen_tables(names: str, said: Mapping[str, Any]) -> list[Table]:
@@ -56,7 +58,12 @@ def options_of(table: Table, said: Mapping[str, Any]) -> list[Any]:
     unusual = {"encoding"} if is_as_it_is else set()
     chosen = ({name: value for name, value in usual.items() if name not in unusual} for usual in table.usual)
     replaced = {key: value for name in own for key, value in table.usual_where_said.get(name, {}).items()}
-    return [table.options(**usual | replaced | own) for usual in chosen]
+    return [table.options(**_read_so(usual | replaced | own)) for usual in chosen]
+
+
+def _read_so(values: dict[str, Any]) -> dict[str, Any]:
+    """Options, less how users' files are read where none is named."""
+    return values if names_files(values) else {name: one for name, one in values.items() if name not in SETTINGS}
 
 
 def asked_of(request: Any, folder: Path) -> list[Asked]:
@@ -85,7 +92,8 @@ def asked_of(request: Any, folder: Path) -> list[Asked]:
 
 
 def _check_taken(chosen: Iterable[Table], said: Mapping[str, Any]) -> None:
-    """Raises UsageError for an option that none of the tables takes."""
+    """Raises UsageError for an option that none of the tables takes, or that nothing is there for."""
+    in_names(said)
     for name in said:
         takers = [table for table in TABLES.values() if _takes(table, name)]
         if not set(takers) & set(chosen):
@@ -103,10 +111,7 @@ def _asked(table: Table, said: Mapping[str, Any], folder: Path) -> Asked:
     """What is asked of one table, each step once."""
     if missing := table.work.missing():
         raise MissingError(missing)
-    outputs = in_folder(table, table.outputs(), folder)
-    asks = [asked(table, options, outputs) for options in options_of(table, said)]
-    steps = {repr(step.key): step for ask in asks for step in ask.steps}
-    return replace(asks[0], steps=list(steps.values()), others=[ask.options for ask in asks[1:]])
+    return asked_together(table, options_of(table, said), in_folder(table, table.outputs(), folder))
 
 
 def run_command(request: Any, output: Path | None, on: str | None = None) -> int:
@@ -132,25 +137,23 @@ def run_command(request: Any, output: Path | None, on: str | None = None) -> int
         facts |= {"left_out": left_out}
         keep_what_is_imported()
         with place(on) as where, opened(folder, facts) as run:
-            shown = _measured_and_shown(run, asks, given(request), where, second)
+            shown = _measured_and_shown(run, asks, where, second)
     return int(shown.failed)
 
 
 def _second(request: Any, on: str | None) -> AbstractContextManager[Second | None]:
     """The second process, where there is something for it to do."""
     is_wanted = not on and is_worth_it(chosen_tables(request.tables, given(request)))
-    return second_process(SECOND) if is_wanted else nullcontext()
+    return second_process(beside.prepare) if is_wanted else nullcontext()
 
 
-def _measured_and_shown(
-    run: Run, asks: Sequence[Asked], said: Mapping[str, Any], where: Place, second: Second | None
-) -> Shown:
+def _measured_and_shown(run: Run, asks: Sequence[Asked], where: Place, second: Second | None) -> Shown:
     total = sum(1 for ask in asks for _ in with_parts(ask.steps))
     if run.kept:
         tell(f"{run.folder} goes on: {_there(run, asks)} of {total} steps are there")
     try:
         with progress_of_all(sum(step.ticks for ask in asks for step in ask.steps), len(asks)):
-            shown = _measure_all(run, asks, said, where, second)
+            shown = _measure_all(run, asks, where, second)
         shown.written |= second.written if second else set()
         run.arrange((ask.table.name, step) for ask in asks for step in ask.steps)
         _complete(run, shown, second.drawn if second else {})
@@ -170,21 +173,20 @@ def _new_folder() -> Path:
     return next(folder for folder in itertools.chain([named], others) if not folder.exists())
 
 
-def _measure_all(
-    run: Run, asks: Sequence[Asked], said: Mapping[str, Any], where: Place, second: Second | None
-) -> Shown:
+def _measure_all(run: Run, asks: Sequence[Asked], where: Place, second: Second | None) -> Shown:
     """Every table measured and shown."""
     # The answer first: this process measures nothing else while people wait for it.
     first, rest = ([ask for ask in asks if ask.table.section.leads is leads] for leads in (True, False))
     shown = Shown([*first, *rest])
-    beside = [ask for ask in rest if ask.table.is_measured_beside]
+    others = [ask for ask in rest if ask.table.is_measured_beside]
     helping = second if is_worth_it(ask.table for ask in rest) else None
     if helping:
-        helping.measure(run, {"measure": (beside, _taken(said, beside)), "write": (first, _taken(said, first))})
+        own, firsts = ([beside.Asking.of(ask) for ask in asks] for asks in (others, first))
+        helping.measure(run, others, beside.measure, run.folder, own, firsts, frozenset(told))
     for ask in first:
         shown.add(ask, measured(ask, run, where))
     if helping:
-        _measure_others(run, [ask for ask in rest if ask not in beside], beside, shown, helping)
+        _measure_others(run, [ask for ask in rest if ask not in others], others, shown, helping)
     # All that the second process did not get to, because something killed it or there is none.
     for ask in rest:
         if ask.table.name not in shown.done:
@@ -192,16 +194,16 @@ def _measure_all(
     return shown
 
 
-def _measure_others(run: Run, asks: Iterable[Asked], beside: Sequence[Asked], shown: Shown, second: Second) -> None:
-    """The tables that the second process does not measure; those that it measures `beside` are shown once it has."""
+def _measure_others(run: Run, asks: Iterable[Asked], others: Sequence[Asked], shown: Shown, second: Second) -> None:
+    """The tables that the second process does not measure; the `others`, which it measures, are shown once it has."""
     # What takes times is measured when nothing else runs.
     for ask in sorted(asks, key=_takes_times):
         if _takes_times(ask):
             second.wait()
         shown.add(ask, measured(ask, run))
-        _add_written(run, beside, shown, second)
+        _add_written(run, others, shown, second)
     second.wait()
-    _add_written(run, beside, shown, second)
+    _add_written(run, others, shown, second)
 
 
 def _add_written(run: Run, asks: Iterable[Asked], shown: Shown, second: Second) -> None:
@@ -210,11 +212,6 @@ def _add_written(run: Run, asks: Iterable[Asked], shown: Shown, second: Second) 
         if ask.table.name in second.written - shown.written:
             shown.written.add(ask.table.name)
             shown.add(ask, measured(ask, run))
-
-
-def _taken(said: Mapping[str, Any], asks: Sequence[Asked]) -> dict[str, Any]:
-    """What was said of some tables."""
-    return {name: value for name, value in said.items() if any(_takes(ask.table, name) for ask in asks)}
 
 
 def _takes_times(ask: Asked) -> bool:
@@ -259,13 +256,13 @@ def _complete(run: Run, shown: Shown, drawn: Mapping[str, str]) -> None:
     """Tables for others, the pictures and the page; then the run is finished. `drawn` are charts that are there."""
     from ..show.report import write_report
 
-    write_tables(run.folder, read_run(run.folder).tables)
+    done = replace(read_run(run.folder), facts=run.facts | {"finished": True})
+    write_tables(run.folder, done, done.tables)
     for ask in shown.asks:
         if ask.table.name not in shown.written:
             ask.table.work.write(shown.done[ask.table.name], lambda _: None)
     say(f"\nEvery figure, the pictures and the machine they come from: {run.folder}\n")
-    whole = replace(read_run(run.folder), facts=run.facts | {"finished": True})
-    page = write_report(run.folder, whole, run.folder / PAGE, drawn=drawn)
+    page = write_report(run.folder, done, run.folder / PAGE, drawn=drawn)
     run.finish()
     answers = (line for ask in shown.asks if ask.table.section.leads for line in in_short(ask.table, shown.done))
     say("".join(f"{line}\n" for line in answers) + f"All of it on one page: {page}\n")

@@ -19,7 +19,7 @@ def _shared() -> dict[str, Field]:
     return found
 
 
-def _made() -> type:
+def _options_class() -> type:
     others = ", ".join(name for name, table in TABLES.items() if not table.in_all)
     said = f"{', '.join(TABLES)}; comma-separated, or all, which is all but {others}."
     tables = Annotated[str, Option("--tables", said)]
@@ -29,4 +29,4 @@ def _made() -> type:
     return make_dataclass("RunOptions", typed, frozen=True, kw_only=True)
 
 
-RunOptions = _made()
+RunOptions = _options_class()

@@ -20,6 +20,7 @@ from ..keep.plain import plain
 from ..keep.runs import Done, facts_of
 from ..run.measuring import Asked, Beside, Nothing, Place, asked, beside, measured, with_parts
 from ..run.workers.places import place
+from ..shaders.languages.words import file_of, split_names
 from ..show.showing import say_lines, say_skipped, show
 from ..tables.table import Measured, Row, Table
 
@@ -70,8 +71,8 @@ def _check_not_read(path: Path, options: Any) -> None:
     for name, field in fields_of(type(options)).items():
         if not field.option.files:
             continue
-        for word in str(getattr(options, name) or "").split(","):
-            read = Path(word.strip())
+        for word in split_names(str(getattr(options, name) or "")):
+            read = file_of(word)
             for one in (read, read.with_suffix(".py")) if read.suffix else ():
                 if one.exists() and path.exists() and path.samefile(one):
                     raise UsageError(f"{path} is one of the files that are measured; name another file")
@@ -153,4 +154,5 @@ def _write_page(table: Table, done: Measured, folder: Path, target: Path) -> Non
     facts = facts_of(sys.argv[1:]) | {"time": time.strftime("%Y-%m-%dT%H:%M:%S%z"), "finished": True}
     facts |= {"request": {"tables": table.name}}
     steps = [{"table": table.name, "key": {}, "rows": rows}]
-    say(f"\nThe page: {write_report(folder, Done(facts, steps), target, charts=None)}\n")
+    shown = Done(facts, steps, whole={table.name: rows})
+    say(f"\nThe page: {write_report(folder, shown, target, charts=None)}\n")

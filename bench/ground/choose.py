@@ -11,6 +11,8 @@ from .output.errors import UsageError
 from .spelling import meant, spelled
 
 T = TypeVar("T")
+# In the name of a file.
+MOST_COMMAS = 4
 
 
 def choose(what: str, names: str, known: Mapping[str, T]) -> list[T]:
@@ -25,7 +27,7 @@ def choose(what: str, names: str, known: Mapping[str, T]) -> list[T]:
     found = {name: spelled(what, name, known) for name in asked if name != "all"}
     unknown = [name for name, key in found.items() if key is None]
     if unknown:
-        raise _unknown(what, unknown, known, f"all, {', '.join(known)}")
+        raise unknown_name(what, unknown, known, f"all, {', '.join(known)}")
     chosen = known if "all" in asked else dict.fromkeys(key for key in found.values() if key is not None)
     return [known[name] for name in chosen]
 
@@ -36,11 +38,17 @@ def choose_one(what: str, name: str, known: Collection[str]) -> str:
     if key is None and "," in name:
         raise UsageError(f"one {what} at a time, not {name}; known: {', '.join(known)}")
     if key is None:
-        raise _unknown(what, [name], known, ", ".join(known))
+        raise unknown_name(what, [name], known)
     return key
 
 
-def _unknown(what: str, names: list[str], known: Iterable[str], listed: str) -> UsageError:
+def unknown_name(what: str, names: Iterable[str], known: Collection[str], listed: str = "") -> UsageError:
+    """What is said of names that nothing has, with what may have been meant.
+
+    Args:
+        listed: what is known, where that is more than the names.
+    """
+    listed = listed or ", ".join(known)
     guess = "".join(f" {said}" for name in names if (said := meant(name, known, what)))
     return UsageError(f"unknown {what} {quoted(names)};{guess} known: {listed}")
 
@@ -53,8 +61,7 @@ def choose_or_read(
     Raises:
         UsageError: an unknown name, or two files of one name, which rows could not tell apart; and what `read` raises.
     """
-    check_comma(names)
-    words = list(dict.fromkeys(name.strip() for name in names.split(",") if name.strip()))
+    words = [name for name in file_names(names) if name]
     files = [Path(word) for word in words if Path(word).suffix.lower() in endings]
     called = [file.name for file in files]
     twice = [name for name in called if called.count(name) > 1]
@@ -68,10 +75,24 @@ def choose_or_read(
     return chosen + [read(file) for file in files]
 
 
-def check_comma(names: str) -> None:
-    """Raises UsageError where a file is named whose name has a comma."""
-    if "," in names and names_a_file(names):
-        raise UsageError(f"{names}: a comma in a file's name separates two names; rename the file")
+def split(names: str, is_whole: Callable[[str], bool]) -> list[str]:
+    """Comma-separated names, each once.
+
+    Args:
+        is_whole: whether several that commas separate are one name, such as that of a file.
+    """
+    parts, found = names.split(","), []
+    while parts:
+        several = (size for size in range(min(len(parts), MOST_COMMAS + 1), 1, -1))
+        size = next((size for size in several if is_whole(",".join(parts[:size]).strip())), 1)
+        found.append(",".join(parts[:size]).strip())
+        parts = parts[size:]
+    return list(dict.fromkeys(found))
+
+
+def file_names(names: str) -> list[str]:
+    """Comma-separated names, each once; a comma in a file's name is a part of it."""
+    return split(names, names_a_file)
 
 
 def names_a_file(word: str) -> bool:

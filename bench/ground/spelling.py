@@ -11,16 +11,6 @@ OTHER_WORDS: Mapping[str, Mapping[str, str]] = MappingProxyType(
     {
         "language": {"metal": "msl"},
         "encoding": {"oct": "octahedral", "hemioct": "hemi_octahedral"},
-        "storage": {
-            "r8g8": "rg8",
-            "r8g8b8a8": "rgba8",
-            "r10g10b10a2": "rgb10a2",
-            "a2r10g10b10": "rgb10a2",
-            "a2b10g10r10": "rgb10a2",
-            "r16g16": "rg16",
-            "r16g16f": "rg16f",
-            "r16g16float": "rg16f",
-        },
         "family": {
             "gcn4": "polaris10",
             "gcn5": "vega10",
@@ -46,6 +36,13 @@ OTHER_WORDS: Mapping[str, Mapping[str, str]] = MappingProxyType(
 )
 
 
+# What APIs and engines write before and behind the channels of a format: DXGI_FORMAT_R16G16_FLOAT, PF_G16R16F.
+_API = re.compile(r"^(?:dxgi_?format|vk_?format|gl|mtlpixelformat|textureformat|graphicsformat|pf)[_.]?|_?pack\d+$")
+_FORMAT = re.compile(r"((?:[rgba]+\d+f?_?)+?)_?(unorm|snorm|[us]?float|f)?")
+_CHANNELS = re.compile(r"([rgba]+)(\d+)")
+_KINDS: Mapping[str, str] = MappingProxyType({"unorm": "", "float": "f", "ufloat": "f", "sfloat": "f"})
+
+
 # How alike a word must be to a name that it may have been meant for; of one with few letters one may be another.
 ALIKE, SHORT, SHORT_ALIKE = 0.75, 4, 0.65
 
@@ -62,7 +59,19 @@ def spelled(what: str, word: str, known: Iterable[str]) -> str | None:
         return word
     wanted = OTHER_WORDS.get(what, {}).get(plain(word), word)
     found = [name for name in known if plain(name) == plain(wanted)]
+    if not found and what.endswith("storage") and (channels := _channels(word)):
+        found = [name for name in known if _channels(name) == channels]
     return found[0] if len(found) == 1 else None
+
+
+def _channels(word: str) -> tuple[str, ...]:
+    """The channels of a format with their bits, red first, and how they hold numbers; none of another word."""
+    match = _FORMAT.fullmatch(_API.sub("", word.lower()))
+    if not match:
+        return ()
+    bits = [f"{letter}{count}" for letters, count in _CHANNELS.findall(match[1]) for letter in letters]
+    kind = match[2] or ("f" if "f" in match[1] else "")
+    return (*sorted(bits, key=lambda channel: "rgba".index(channel[0])), _KINDS.get(kind, kind))
 
 
 def meant(word: str, known: Iterable[str], what: str = "") -> str:

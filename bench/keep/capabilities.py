@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from importlib.util import find_spec
 from types import MappingProxyType
 
 from ...reports import tables
@@ -11,7 +12,8 @@ from ..ground.output import cache
 from ..ground.output.errors import MissingError
 from ..measures.metrics.images import require_flip
 from ..measures.metrics.visibility import require_rays
-from ..shaders.code.run import c, msl, slang, wgsl
+from ..shaders.code.run import c, msl, wgsl
+from ..shaders.languages import tools
 from ..shaders.languages.language import require_language
 from ..subjects.codecs.half.compute import half_device
 from .machine import require_intel, require_mobile, require_nvidia, require_radeons, require_terascale
@@ -20,6 +22,12 @@ from .machine import require_intel, require_mobile, require_nvidia, require_rade
 def _require_parquet() -> None:
     if not tables.has_parquet():
         raise MissingError("pip install pyarrow")
+
+
+def _require_unpackers() -> None:
+    missing = [name for name in ("DracoPy", "meshoptimizer") if find_spec(name) is None]
+    if missing:
+        raise MissingError(f"no {' and no '.join(missing)}; pip install normalbench[compressed]")
 
 
 # What there is to do, and what raises MissingError where something is missing for it.
@@ -32,12 +40,13 @@ CAPABILITIES: Mapping[str, Callable[[], object]] = MappingProxyType(
         "instructions on NVIDIA (cost --isa --family nvidia)": require_nvidia,
         "instructions on the article's Radeons (cost --isa --family terascale)": require_terascale,
         "instructions on phones' GPUs (cost --isa --family mobile)": require_mobile,
-        "render --flip": require_flip,
+        "render --flip, roughness": require_flip,
+        "glTF files that Draco or meshoptimizer packed": _require_unpackers,
         "quality --arithmetic half by GLSL": half_device,
         "quality by WGSL (wgpu and a Vulkan driver)": wgsl.device,
         "code in C, and fast rows of 2^26 normals and more (cc)": c.compiler,
         "code in Metal (clang++)": msl.compiler,
-        "code in Slang (slangc)": slang.compiler,
+        "code in Slang (slangc)": lambda: tools.path_of(tools.SLANG),
         "rays (method_rms of effects)": require_rays,
         "encoders in HLSL": lambda: require_language("HLSL"),
         "encoders in Slang": lambda: require_language("Slang"),
@@ -49,10 +58,10 @@ CAPABILITIES: Mapping[str, Callable[[], object]] = MappingProxyType(
 
 def capabilities() -> dict[str, str]:
     """ "yes" for each of CAPABILITIES, or "no" with what to install."""
-    return {name: _answer(require) for name, require in CAPABILITIES.items()}
+    return {name: _yes_or_why(require) for name, require in CAPABILITIES.items()}
 
 
-def _answer(require: Callable[[], object]) -> str:
+def _yes_or_why(require: Callable[[], object]) -> str:
     try:
         require()
     except MissingError as error:

@@ -31,7 +31,7 @@ SUBJECTS = ("encoding", "depth", "light_buffer")
 # What is said of a row, the first that holds: of its figures, or of the row itself. "changed" is neither.
 SLIGHTLY = {"worse": "slightly worse", "better": "slightly better"}
 VERDICTS = ("worse", GONE, "better", NEW, *SLIGHTLY.values(), "changed")
-# How figures are written in a sentence, by their units.
+# The units whose figures are quoted in sentences: those of errors.
 UNITS = ("degrees", "dB")
 
 
@@ -50,11 +50,11 @@ def what_matters(before: Done, after: Done, changes: Sequence[Row]) -> list[str]
 
 
 def _share_a_row(before: Done, after: Done) -> bool:
-    ours, theirs = _names(before), _names(after)
+    ours, theirs = _row_names(before), _row_names(after)
     return not ours or not theirs or bool(ours & theirs)
 
 
-def _names(done: Done) -> set[tuple]:
+def _row_names(done: Done) -> set[tuple]:
     return {(name, *key) for name, rows in done.tables.items() for key in named_rows(TABLES[name], rows)}
 
 
@@ -77,13 +77,16 @@ def _subject(table: str, keys: Mapping[str, object]) -> str:
 def _sentence(name: str, count: int, changes: Sequence[Row]) -> str:
     """In how many of `count` rows an encoding changed, and the figures of its worst row."""
     rows = rows_of(changes)
-    verdicts = Counter(map(_verdict, rows))
+    verdicts = Counter(map(_verdict_word, rows))
     first, *others = (verdict for verdict in VERDICTS if verdicts[verdict])
-    said = [f"{first} in {_of(verdicts[first], count)}", *(f"{verdict} in {verdicts[verdict]}" for verdict in others)]
+    said = [
+        f"{first} in {_share_text(verdicts[first], count)}",
+        *(f"{verdict} in {verdicts[verdict]}" for verdict in others),
+    ]
     return f"{name}: {', '.join(said)}{_figures_said(rows[0], name)}"
 
 
-def _of(some: int, count: int) -> str:
+def _share_text(some: int, count: int) -> str:
     every = "its only row" if count == 1 else f"all {count} rows"
     return every if some == count else f"{some} of {count} rows"
 
@@ -91,12 +94,12 @@ def _of(some: int, count: int) -> str:
 def _figures_said(row: Sequence[Row], name: str) -> str:
     """Where a row is, and its figures in degrees and in decibels before and after; empty where none changed."""
     where = " ".join(row[0]["row"].replace(name, " ", 1).split())
-    known = (f"{change['column']} {_both(change)}" for change in known_figures(row, UNITS))
+    known = (f"{change['column']} {_before_and_after(change)}" for change in known_figures(row, UNITS))
     said = ", ".join(known)
     return f"; most in {row[0]['table']} {where}: {said}" if said else ""
 
 
-def _both(change: Row) -> str:
+def _before_and_after(change: Row) -> str:
     before, after = (text_of(change[when]) or "nothing" for when in ("before", "after"))
     return f"from {before} to {after} {change['unit']}"
 
@@ -105,17 +108,17 @@ def in_short(changes: Sequence[Row], most: int = LINES) -> list[Row]:
     """Changes for people, the worst first: a line for each row, or for rows that changed together; where these are more
     than `most`, a line for several rows that share an encoding, or a table."""
     grouped: list[list[Row]] = []
-    for by in (_together(changes), _by_subject, _by_table):
+    for by in (_together_key(changes), _subject_key, _table_key):
         groups: dict[tuple, list[Row]] = {}
         for change in changes:
             groups.setdefault(by(change), []).append(change)
         grouped = list(groups.values())
         if len(grouped) <= most:
             break
-    return [_line(group) for group in grouped]
+    return [_worst_row(group) for group in grouped]
 
 
-def _together(changes: Sequence[Row]) -> Callable[[Row], tuple]:
+def _together_key(changes: Sequence[Row]) -> Callable[[Row], tuple]:
     """What tells rows apart that did not change together: rows of a table whose figures all went from the same to the
     same."""
     rows: dict[tuple, list[tuple]] = {}
@@ -124,15 +127,15 @@ def _together(changes: Sequence[Row]) -> Callable[[Row], tuple]:
     return lambda change: (change["table"], presence(change), *rows[by_row(change)])
 
 
-def _by_subject(change: Row) -> tuple:
+def _subject_key(change: Row) -> tuple:
     return change["table"], _subject("", change["keys"]), presence(change)
 
 
-def _by_table(change: Row) -> tuple:
+def _table_key(change: Row) -> tuple:
     return change["table"], presence(change)
 
 
-def _line(group: Sequence[Row]) -> Row:
+def _worst_row(group: Sequence[Row]) -> Row:
     """Of several changes the worst row, named by what they have in common, with the figure of it that people know."""
     rows = rows_of(group)
     worst = headline(rows[0])
@@ -141,30 +144,30 @@ def _line(group: Sequence[Row]) -> Row:
     name = worst["row"] if len(names) == 1 else " ".join(map(str, shared)) or "several"
     kept = {column: worst[column] for column in ("column", "before", "after", "change")}
     verdict = {"verdict": SLIGHTLY[worst["verdict"]] if is_small(worst) else worst["verdict"]}
-    return {"table": worst["table"], "row": name, "rows": len(names), "figures": _figures(group)} | kept | verdict
+    return {"table": worst["table"], "row": name, "rows": len(names), "figures": _figure_count(group)} | kept | verdict
 
 
 def total(changes: Sequence[Row]) -> str:
     """How many rows and figures changed, and how many of the rows are worse, better, gone and so on."""
     rows = rows_of(changes)
-    counts = Counter(map(_verdict, rows))
-    said = ", ".join(f"{_several(counts[verdict], 'row')} {verdict}" for verdict in VERDICTS if counts[verdict])
+    counts = Counter(map(_verdict_word, rows))
+    said = ", ".join(f"{_count_text(counts[verdict], 'row')} {verdict}" for verdict in VERDICTS if counts[verdict])
     is_any_small = any(counts[verdict] for verdict in SLIGHTLY.values())
     note = f" (slightly: by less than {LITTLE})" if is_any_small else ""
-    return f"{_several(len(rows), 'row')}, {_several(_figures(changes), 'figure')}: {said}{note}"
+    return f"{_count_text(len(rows), 'row')}, {_count_text(_figure_count(changes), 'figure')}: {said}{note}"
 
 
-def _verdict(row: Sequence[Row]) -> str:
+def _verdict_word(row: Sequence[Row]) -> str:
     """One of VERDICTS of all that changed in a row."""
     found = {SLIGHTLY[change["verdict"]] if is_small(change) else change["verdict"] for change in row}
     found |= {NEW for change in row if presence(change) == ONLY[False]}
     return next((verdict for verdict in VERDICTS if verdict in found), VERDICTS[-1])
 
 
-def _several(count: int, what: str) -> str:
+def _count_text(count: int, what: str) -> str:
     return f"{count} {what}" + "s" * (count != 1)
 
 
-def _figures(changes: Sequence[Row]) -> int:
+def _figure_count(changes: Sequence[Row]) -> int:
     """How many figures changed; a row that only one of the runs has is of no column."""
     return sum(bool(change["column"]) for change in changes)

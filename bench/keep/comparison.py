@@ -40,22 +40,22 @@ NOT_MEASURED, NEW = "not measured", "new"
 def compared(before: Done, after: Done) -> list[Row]:
     """A row for each figure that differs, and for each row that only one of the runs has; the worst first."""
     same_machine = before.facts.get("machine") == after.facts.get("machine")
+    return in_order([row for tables in _tables_and_rows(before, after) for row in _row_changes(*tables, same_machine)])
+
+
+def _tables_and_rows(before: Done, after: Done) -> Iterator[tuple[Table, Mapping[Any, Row], Mapping[Any, Row]]]:
+    """Each table that either run has, and its rows in both by what they are called."""
     ours, theirs = before.tables, after.tables
-    found: list[Row] = []
     for name in dict.fromkeys([*ours, *theirs]):
         before_rows, after_rows = (named_rows(TABLES[name], rows.get(name, [])) for rows in (ours, theirs))
-        found += _between(TABLES[name], before_rows, after_rows, same_machine)
-    return in_order(found)
+        yield TABLES[name], before_rows, after_rows
 
 
 def measured_otherwise(before: Done, after: Done) -> list[str]:
     """The conditions under which rows of both runs were measured otherwise, in words; those of most rows first."""
     found: Counter[tuple[str, Any, Any]] = Counter()
-    for name, ours in before.tables.items():
-        table = TABLES[name]
-        theirs = named_rows(table, after.tables.get(name, []))
-        for key, row in named_rows(table, ours).items():
-            other = theirs.get(key, {})
+    for _, ours, theirs in _tables_and_rows(before, after):
+        for row, other in ((row, theirs[key]) for key, row in ours.items() if key in theirs):
             known = [column for column in CONDITIONS if None not in (row.get(column), other.get(column))]
             found.update((column, row[column], other[column]) for column in known if row[column] != other[column])
     return [
@@ -70,8 +70,8 @@ def in_order(changes: Sequence[Row]) -> list[Row]:
     A row that lost a figure comes first, then grown errors, the largest first, other figures that are worse, rows that
     are gone, what is better, what is new, and last what changed by little.
     """
-    ranked = sorted(rows_of(changes), key=lambda row: _rank(headline(row)))
-    return [change for row in ranked for change in sorted(row, key=_rank)]
+    ranked = sorted(rows_of(changes), key=lambda row: _rank_key(headline(row)))
+    return [change for row in ranked for change in sorted(row, key=_rank_key)]
 
 
 def rows_of(changes: Sequence[Row]) -> list[list[Row]]:
@@ -95,14 +95,14 @@ def presence(change: Row) -> str:
 def headline(row: Sequence[Row]) -> Row:
     """Of the changes of one row the first in decibels, else in degrees, that says what the worst says; else the
     worst."""
-    worst = min(row, key=_rank)
+    worst = min(row, key=_rank_key)
     return next(known_figures(row, ERRORS), worst)
 
 
 def known_figures(row: Sequence[Row], units: Sequence[str]) -> Iterator[Row]:
     """Of the changes of one row that say what its worst says, the first in each of some units."""
-    group = min(map(_group, row))
-    alike = _by_column([change for change in row if _group(change) == group])
+    group = min(map(_group_index, row))
+    alike = _by_column([change for change in row if _group_index(change) == group])
     for unit in units:
         yield from [change for change in alike if change["unit"] == unit][:1]
 
@@ -113,12 +113,12 @@ def _by_column(row: Sequence[Row]) -> list[Row]:
     return sorted(row, key=lambda change: names.index(change["column"]) if change["column"] in names else len(names))
 
 
-def _rank(change: Row) -> tuple[int, float]:
+def _rank_key(change: Row) -> tuple[int, float]:
     """The key that sorts changes: their group, then the largest first."""
-    return _group(change), -abs(change["severity"])
+    return _group_index(change), -abs(change["severity"])
 
 
-def _group(change: Row) -> int:
+def _group_index(change: Row) -> int:
     """The place of a kind of change among the others."""
     severity = change["severity"]
     if severity == math.inf:
@@ -146,18 +146,20 @@ def named_rows(table: Table, rows: Sequence[Row]) -> dict[tuple[str, int], Row]:
     return found
 
 
-def _between(table: Table, ours: Mapping[Any, Row], theirs: Mapping[Any, Row], same_machine: bool) -> Iterator[Row]:
+def _row_changes(table: Table, ours: Mapping[Any, Row], theirs: Mapping[Any, Row], same_machine: bool) -> Iterator[Row]:
     """What differs between the rows of one table."""
     for key in dict.fromkeys([*ours, *theirs]):
         if key in ours and key in theirs:
-            yield from _changes(table, key[0], ours[key], theirs[key], same_machine)
+            yield from _column_changes(table, key[0], ours[key], theirs[key], same_machine)
         else:
             row = ours.get(key) or theirs[key]
-            change = _change(table, row, key[0], "", key in ours, key in theirs) | {"change": ONLY[key in ours]}
+            change = _change_row(table, row, key[0], "", key in ours, key in theirs) | {"change": ONLY[key in ours]}
             yield change | ({"verdict": GONE} if key in ours else {})
 
 
-def _change(table: Table, row: Row, called: str, column: str, before: Any, after: Any, severity: float = 0.0) -> Row:
+def _change_row(
+    table: Table, row: Row, called: str, column: str, before: Any, after: Any, severity: float = 0.0
+) -> Row:
     """A line; `severity` is above 0 where it is worse, and the larger the worse."""
     verdict = "worse" if severity > 0 else "better" if severity < 0 else ""
     keys = {c.name: row.get(c.name) for c in table.of_role(Role.KEY)}
@@ -167,20 +169,20 @@ def _change(table: Table, row: Row, called: str, column: str, before: Any, after
     return made | {"unit": known.unit if known else ""}
 
 
-def _changes(table: Table, called: str, one: Row, other: Row, same_machine: bool) -> Iterator[Row]:
+def _column_changes(table: Table, called: str, one: Row, other: Row, same_machine: bool) -> Iterator[Row]:
     has_reason = gives_reason(table, one) or gives_reason(table, other)
     for column in dict.fromkeys([*one, *other]):
         known = table.column(column)
         before, after = one.get(column), other.get(column)
         if known and known.role in (Role.FIGURE, Role.REASON) and not same(before, after):
             severity = severity_of(known, before, after, has_reason)
-            yield _change(table, one, called, column, before, after, severity)
+            yield _change_row(table, one, called, column, before, after, severity)
     if same_machine and one.get(EACH) and other.get(EACH):
         times = [[float(word) for word in row[EACH].split()] for row in (one, other)]
         effect = one[FRAME] and other[FRAME] / one[FRAME] - 1
         if abs(effect) >= LEAST_EFFECT and mann_whitney(*times) <= CHANCE:
             severity = 20 * math.log10(1 + effect)
-            change = _change(table, one, called, FRAME, one[FRAME], other[FRAME], severity)
+            change = _change_row(table, one, called, FRAME, one[FRAME], other[FRAME], severity)
             yield change | {"change": f"{100 * effect:+.1f} %"}
 
 

@@ -14,6 +14,7 @@ from typing import Any
 from ...encodings.codecs.files import file_bytes
 from ..ground.machine.posix.locks import lock
 from ..ground.output.errors import UsageError
+from ..ground.output.writing import clear_away, partial_of
 
 Line = dict[str, Any]
 # Of a journal, in bytes; the largest runs have some megabytes.
@@ -34,7 +35,7 @@ class Journal:
         content = file.read()
         # A line that was cut off in the middle would swallow the next one.
         file.truncate(content.rfind(b"\n") + 1)
-        self.lines = _read(path, content)
+        self.lines = _whole_lines(path, content)
 
     def add(self, line: Line) -> None:
         """Keep a line for good: at once, so that it is whole or cut off at its end, and on the disk.
@@ -58,9 +59,9 @@ class Journal:
     def replace(self, lines: Sequence[Line]) -> None:
         """Put other lines in place of all there are, at once or not at all. Raises UsageError."""
         data = data_of(lines)
-        partial = self.path.with_name(f".{self.path.name}.{os.getpid()}.partial")
-        file = None
+        partial, file = partial_of(self.path), None
         try:
+            clear_away(self.path)
             file = partial.open("w+b", buffering=0)
             # Another process must not take the new file for one that nobody writes.
             lock(file)
@@ -117,17 +118,17 @@ def read_lines(path: Path) -> list[Line]:
         content = file_bytes(path, MOST) if path.exists() else b""
     except OSError as error:
         raise UsageError(f"{path} cannot be read: {error}") from error
-    return _read(path, content)
+    return _whole_lines(path, content)
 
 
-def _read(path: Path, content: bytes) -> list[Line]:
+def _whole_lines(path: Path, content: bytes) -> list[Line]:
     """The lines that have their end: what was being written when the process was killed has none."""
     whole = content[: content.rfind(b"\n") + 1].split(b"\n")[:-1]
     # An editor may leave an empty line.
-    return [_parsed(f"{path}, line {at}", line) for at, line in enumerate(whole, 1) if line.strip()]
+    return [_parsed_line(f"{path}, line {at}", line) for at, line in enumerate(whole, 1) if line.strip()]
 
 
-def _parsed(place: str, line: bytes) -> Line:
+def _parsed_line(place: str, line: bytes) -> Line:
     try:
         found = json.loads(line)
     except (ValueError, RecursionError):

@@ -41,10 +41,10 @@ def machine() -> dict[str, str]:
         **{package: version(package) for package in PACKAGES},
         "jax devices": ", ".join(f"{d.platform} {d.device_kind}" for d in jax.devices()),
     }
-    return facts | {f"setting {name}": value for name, value in settings().items()} | _gl() | compilers()
+    return facts | {f"setting {name}": value for name, value in settings().items()} | _gl_facts() | compilers()
 
 
-def _gl() -> dict[str, str]:
+def _gl_facts() -> dict[str, str]:
     try:
         gl = device()
     except NoDeviceError as error:
@@ -63,10 +63,10 @@ def _gl() -> dict[str, str]:
 
 def compilers() -> dict[str, str]:
     """The compilers of GPU drivers, and those of shaders; of one that is missing, what to install."""
-    return isa.driver_versions() | _compilers()
+    return isa.driver_versions() | _compiler_facts()
 
 
-def _compilers() -> dict[str, str]:
+def _compiler_facts() -> dict[str, str]:
     """The compilers of shaders; of one that is missing, what to install."""
     glslang, optimiser = spirv.version(spirv.COMPILER), spirv.version(spirv.OPTIMISER)
     return {
@@ -79,7 +79,7 @@ def _compilers() -> dict[str, str]:
 
 def require_compilers() -> None:
     """Raises MissingError where a compiler of shaders is missing."""
-    missing = [said for said in _compilers().values() if said in (spirv.NO_COMPILER, spirv.NO_OPTIMISER)]
+    missing = [said for said in _compiler_facts().values() if said in (spirv.NO_COMPILER, spirv.NO_OPTIMISER)]
     if missing:
         raise MissingError("; ".join(missing))
 

@@ -10,7 +10,8 @@ import hashlib
 import json
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from threading import Lock
 
@@ -37,16 +38,19 @@ class Done:
         steps: the finished steps in their order, each `table`, `key` and `rows`.
         damage: what happened to the rows since the run finished; empty where nothing did.
         parts: the finished parts of steps that are not finished, in the same form.
+        whole: by table its finished rows, where they are known; `finished_rows` adds to them.
     """
 
     facts: Row
     steps: list[Row]
     damage: str = ""
     parts: Sequence[Row] = ()
+    whole: dict[str, list[Row]] = field(default_factory=dict)
 
-    @property
+    @cached_property
     def tables(self) -> dict[str, list[Row]]:
-        """The rows of each table that this version has. A row that was measured again replaces the older one."""
+        """The rows of each table that this version has, as they were measured. A row that was measured again replaces
+        the older one."""
         found: dict[str, list[Row]] = {}
         last: dict[tuple[str, str], int] = {}
         made: list[tuple[int, str, str, Row]] = []
@@ -63,6 +67,17 @@ class Done:
             if last[name, identity] == at:
                 found[name].append(row)
         return found
+
+    def finished_rows(self, name: str) -> list[Row]:
+        """The finished rows of a table, which this is the one place to finish; those that are asked for, once.
+
+        Raises:
+            one of UNEXPECTED: the rows are not what this version writes.
+        """
+        if name not in self.whole:
+            rows = self.tables.get(name)
+            self.whole[name] = TABLES[name].work.finish(rows) if rows else []
+        return self.whole[name]
 
     @property
     def left_out(self) -> str:
@@ -102,7 +117,7 @@ def read_run(folder: Path) -> Done:
     facts, lines = _facts(folder), read_lines(folder / ROWS)
     _check_steps(folder, lines)
     whole = [line for line in lines if PART not in line["key"]]
-    return Done(facts, whole, _damage(folder, facts), [line for line in lines if PART in line["key"]])
+    return Done(facts, whole, _damage_text(folder, facts), [line for line in lines if PART in line["key"]])
 
 
 def read_to_show(folder: Path) -> Done:
@@ -128,17 +143,17 @@ def _check_steps(folder: Path, lines: Sequence[Row]) -> None:
             raise UsageError(f"{error}; mend the line, or take it out, which measures it again") from None
 
 
-def _seal(data: bytes) -> Row:
+def _seal_columns(data: bytes) -> Row:
     """What a finished run remembers of its rows."""
     return {"lines": data.count(b"\n"), "digest": hashlib.sha256(data).hexdigest()}
 
 
-def _damage(folder: Path, facts: Row) -> str:
+def _damage_text(folder: Path, facts: Row) -> str:
     if not facts.get("finished"):
         return ""
     if not {"lines", "digest"} <= facts.keys():
         return f"{folder / RUN} does not say how many rows the run had when it finished: some may be missing"
-    now = _seal((folder / ROWS).read_bytes())
+    now = _seal_columns((folder / ROWS).read_bytes())
     if now["digest"] in (facts["digest"], facts.get("next", {}).get("digest")):
         return ""
     if now["lines"] != facts["lines"]:
@@ -191,7 +206,7 @@ class Run:
         """Put the rows in the order of a request's steps, each with its table: workers bring them in any. Rows of
         earlier requests stay in front; those of parts go once their step is whole. Raises UsageError."""
         place = {key_text(table, step.key): at for at, (table, step) in enumerate(steps)}
-        # Read again: whoever finished the rows may have written into those that were kept.
+        # As they lie in the file, with those that were kept since it was opened.
         before = read_lines(self.folder / ROWS)
         whole = {key_text(line["table"], line["key"]) for line in before}
         kept = (line for line in before if PART not in line["key"] or _step_of(line) not in whole)
@@ -201,7 +216,7 @@ class Run:
 
     def finish(self) -> None:
         """Write that every step has its rows."""
-        self.facts |= {"finished": True, **_seal((self.folder / ROWS).read_bytes())}
+        self.facts |= {"finished": True, **_seal_columns((self.folder / ROWS).read_bytes())}
         _write_facts(self.folder, self.facts)
 
 
@@ -231,14 +246,14 @@ class Amended:
 
     def replace(self, lines: Sequence[Row]) -> None:
         """Put other steps in place of all there are, at once or not at all. Raises UsageError."""
-        seal = _seal(data_of(lines)) if self._facts.get("finished") else {}
+        seal = _seal_columns(data_of(lines)) if self._facts.get("finished") else {}
         # Whoever is killed between two of these leaves a run that is whole: its rows are the old or the next ones.
         if seal:
             _write_facts(self._folder, self._facts | {"next": seal})
         self._journal.replace(lines)
         self.lines = lines
         if seal:
-            self._facts = {name: value for name, value in self._facts.items() if name != "next"} | seal
+            self._facts |= seal
             _write_facts(self._folder, self._facts)
 
 
@@ -254,9 +269,19 @@ def amended(folder: Path) -> Iterator[Amended]:
     check_folder(folder)
     with journal(folder / ROWS) as kept:
         facts = _facts(folder)
-        if damage := _damage(folder, facts):
+        if damage := _damage_text(folder, facts):
             raise UsageError(f"{damage}; nothing is added to it")
-        yield Amended(folder, facts, kept)
+        yield Amended(folder, _settled(folder, facts), kept)
+
+
+def _settled(folder: Path, facts: Row) -> Row:
+    """Facts of the rows that are there, also where somebody was killed who was about to put others in their place."""
+    if "next" in facts:
+        facts = {name: value for name, value in facts.items() if name != "next"} | _seal_columns(
+            (folder / ROWS).read_bytes()
+        )
+        _write_facts(folder, facts)
+    return facts
 
 
 def same_work(facts: Row, others: Row) -> bool:
@@ -267,25 +292,29 @@ def same_work(facts: Row, others: Row) -> bool:
 def _other_place(facts: Row, others: Row) -> str:
     """What sets a run apart from one that is to be added to it: sources, or facts of the machine with both values;
     empty where nothing does."""
-    found = [f"of other sources ({_both(facts, others, 'sources')})"] if _differ(facts, others, "sources") else []
+    found = (
+        [f"of other sources ({_there_and_here(facts, others, 'sources')})"]
+        if _is_different(facts, others, "sources")
+        else []
+    )
     there, here = (one.get("machine") or {} for one in (facts, others))
-    names = [name for name in {**there, **here} if _differ(there, here, name)]
-    said = [f"{name} ({_both(there, here, name)})" for name in names[:MOST_FACTS]]
+    names = [name for name in {**there, **here} if _is_different(there, here, name)]
+    said = [f"{name} ({_there_and_here(there, here, name)})" for name in names[:MOST_FACTS]]
     more = [f"{len(names) - MOST_FACTS} more"] if len(names) > MOST_FACTS else []
     found += [f"of another machine: {', '.join([*said, *more])}"] if names else []
     return " and ".join(found)
 
 
-def _differ(facts: Row, others: Row, name: str) -> bool:
+def _is_different(facts: Row, others: Row, name: str) -> bool:
     return facts.get(name) != others.get(name)
 
 
-def _both(facts: Row, others: Row, name: str) -> str:
+def _there_and_here(facts: Row, others: Row, name: str) -> str:
     there, here = (str(one.get(name, "nothing")) for one in (facts, others))
-    return f"{_short(there, here)} there, {_short(here, there)} here"
+    return f"{_short_text(there, here)} there, {_short_text(here, there)} here"
 
 
-def _short(text: str, other: str) -> str:
+def _short_text(text: str, other: str) -> str:
     """A text, where it is long a part of it: where it begins to be another than the other text."""
     differing = (at for at, (one, another) in enumerate(zip(text, other, strict=False)) if one != another)
     apart = next(differing, min(len(text), len(other)))
@@ -331,10 +360,10 @@ def opened(folder: Path, facts: Row) -> Iterator[Run]:
         raise UsageError(f"{folder} exists already and holds no run; name a folder that does not")
     check_folder(folder)
     with journal(folder / ROWS) as kept:
-        yield Run(folder, _begun(folder, facts), kept)
+        yield Run(folder, _begun_facts(folder, facts), kept)
 
 
-def _begun(folder: Path, facts: Row) -> Row:
+def _begun_facts(folder: Path, facts: Row) -> Row:
     """The facts of a folder, written if it is new. Raises UsageError where it holds other work."""
     if not (folder / RUN).exists():
         _write_facts(folder, facts)
@@ -342,12 +371,12 @@ def _begun(folder: Path, facts: Row) -> Row:
     kept = _facts(folder)
     if apart := _other_place(kept, facts):
         raise UsageError(f"{folder} holds a run {apart}; name another folder")
-    if damage := _damage(folder, kept):
+    if damage := _damage_text(folder, kept):
         raise UsageError(f"{damage}; name another folder")
-    return kept if same_work(kept, facts) else _extended(folder, kept, facts)
+    return kept if same_work(kept, facts) else _extended_facts(folder, kept, facts)
 
 
-def _extended(folder: Path, kept: Row, facts: Row) -> Row:
+def _extended_facts(folder: Path, kept: Row, facts: Row) -> Row:
     """The facts of a run that goes on with another request: what was asked before is remembered."""
     before = [*kept.get("before", ()), {name: kept.get(name) for name in ("request", "command", "time", "finished")}]
     made = facts | {"before": before, "finished": False}

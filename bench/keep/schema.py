@@ -17,7 +17,7 @@ from ..tables.table import Role, Row, Table
 LARGEST = 2**1000
 
 
-def _scalar(value: Any) -> Any:
+def _checked_scalar(value: Any) -> Any:
     if isinstance(value, list | dict):
         raise ValueError("is neither text nor a number")
     if isinstance(value, int) and not -LARGEST <= value < LARGEST:
@@ -25,14 +25,14 @@ def _scalar(value: Any) -> Any:
     return value
 
 
-def _number(value: Any) -> Any:
+def _checked_number(value: Any) -> Any:
     if isinstance(value, str):
         raise ValueError("is not a number")
-    return _scalar(value)
+    return _checked_scalar(value)
 
 
-Scalar = Annotated[Any, AfterValidator(_scalar)]
-Number = Annotated[Any, AfterValidator(_number)]
+Scalar = Annotated[Any, AfterValidator(_checked_scalar)]
+Number = Annotated[Any, AfterValidator(_checked_number)]
 STRICT = ConfigDict(strict=True)
 
 
@@ -121,7 +121,7 @@ def _check_keys(name: str, row: Row, place: str, keys: Keys) -> None:
         is_text, where = keys.setdefault((name, column.name), (isinstance(value, str), place)) if value else (False, "")
         if value and is_text != isinstance(value, str):
             kinds = ("text", "a number") if is_text else ("a number", "text")
-            raise UsageError(f"{place}, {column.name}: {_short(value)} is {kinds[1]}; in {where} it is {kinds[0]}")
+            raise UsageError(f"{place}, {column.name}: {_short_text(value)} is {kinds[1]}; in {where} it is {kinds[0]}")
 
 
 def check_kept(line: Any, place: str) -> None:
@@ -162,10 +162,10 @@ def _check(adapter: TypeAdapter[Any], value: Any, place: Sequence[str]) -> None:
     if first["type"] == "missing":
         raise UsageError(f"{where} is missing")
     wrong = first.get("ctx", {}).get("error") or WRONG.get(first["type"]) or first["msg"]
-    raise UsageError(f"{where}: {_short(first['input'])} {wrong}")
+    raise UsageError(f"{where}: {_short_text(first['input'])} {wrong}")
 
 
-def _short(value: Any) -> str:
+def _short_text(value: Any) -> str:
     """The beginning of a value's text; a number may have more digits than Python prints."""
     try:
         text = repr(value)

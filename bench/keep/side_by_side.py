@@ -6,9 +6,9 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from ...reports.page.sections import Sheet
 from ...reports.page.several import Figures
 from ...reports.page.verdict import is_number
+from ...reports.sheets import Sheet
 from ..tables.registry import TABLES
 from ..tables.table import Role, Row, Table
 from .change_lines import in_short, what_matters
@@ -17,8 +17,6 @@ from .runs import Done
 
 # How many differing figures a page holds.
 MOST = 500
-# By which GLSL is compared with JAX.
-PARITY = ("psnr_db", "angle_mean_deg", "angle_max_deg")
 # Facts that a machine is known by come first; the others follow.
 FIRST = ("processor", "GL", "GL version", "RADV", "jax", "python")
 
@@ -31,16 +29,17 @@ def sheets(runs: Mapping[str, Done]) -> Iterator[Sheet]:
         title = f"From {first} to {other}, the worst first"
         rows = in_short(changes) or [{"table": "all", "change": "no figure differs"}]
         yield Sheet(title, rows, said=tuple(what_matters(runs[first], runs[other], changes)))
-    different = list(_different(runs))
+    different = list(_different_rows(runs))
     if different:
         more = f", the first {MOST} of {len(different)}" if len(different) > MOST else ""
         yield Sheet(f"Every figure that differs{more}", different[:MOST], folded=True)
-    yield Sheet("The machines", _facts(runs))
-    if parity := [row for name, done in runs.items() for row in _parity(name, done)]:
+    yield Sheet("The machines", _fact_rows(runs))
+    each = ((table, name, done) for table in _tables(runs) for name, done in runs.items())
+    if parity := [row for one in each for row in _parity_rows(*one)]:
         yield Sheet("JAX and GLSL, device by device: the largest difference", parity)
 
 
-def _different(runs: Mapping[str, Done]) -> Iterator[Row]:
+def _different_rows(runs: Mapping[str, Done]) -> Iterator[Row]:
     """A row for each figure that is not the same in every run."""
     for table in _tables(runs):
         for name, column, values in _values(runs, table):
@@ -76,7 +75,7 @@ def figures(runs: Mapping[str, Done]) -> Iterator[Figures]:
             yield Figures(table.name, table.section.title, list(runs), columns, better)
 
 
-def _facts(runs: Mapping[str, Done]) -> list[Row]:
+def _fact_rows(runs: Mapping[str, Done]) -> list[Row]:
     """A row for each fact, those that differ first."""
     machines = [dict(done.facts.get("machine") or {}) for done in runs.values()]
     about = [{name: str(done.facts.get(name) or "") for name in ("time", "sources")} for done in runs.values()]
@@ -87,16 +86,18 @@ def _facts(runs: Mapping[str, Done]) -> list[Row]:
     return sorted(known, key=lambda row: len({str(row[run]) for run in runs}) == 1)
 
 
-def _parity(name: str, done: Done) -> Iterator[Row]:
-    """How far the two back ends are apart on a run's device, by figure."""
+def _parity_rows(table: Table, name: str, done: Done) -> Iterator[Row]:
+    """A row for each figure: how far the two back ends are apart at most on a run's device, and where."""
     pairs: dict[tuple[Any, ...], dict[str, Row]] = {}
-    for row in done.tables.get("quality", []):
+    for row in done.tables.get(table.name, []) if table.parity else ():
         key = tuple(row.get(column) for column in ("encoding", "storage", "rounding", "normals"))
         pairs.setdefault(key, {})[str(row.get("backend"))] = row
     both = [(key, two["jax"], two["glsl"]) for key, two in pairs.items() if {"jax", "glsl"} <= set(two)]
-    for column in PARITY:
+    for column in table.parity:
         apart = [
-            (abs(one[column] - other[column]), key, other) for key, one, other in both if _both(one, other, column)
+            (abs(one[column] - other[column]), key, other)
+            for key, one, other in both
+            if _has_both_numbers(one, other, column)
         ]
         if apart:
             most, key, row = max(apart, key=lambda found: found[0])
@@ -104,7 +105,7 @@ def _parity(name: str, done: Done) -> Iterator[Row]:
             yield about | {"largest": most, "where": " ".join(str(word) for word in key if word != "nearest")}
 
 
-def _both(one: Row, other: Row, column: str) -> bool:
+def _has_both_numbers(one: Row, other: Row, column: str) -> bool:
     return all(is_number(row.get(column)) and math.isfinite(row[column]) for row in (one, other))
 
 

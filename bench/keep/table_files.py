@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable
 from pathlib import Path
 
 from ...reports import tables
 from ..ground.output.writing import whole_file
-from ..tables.registry import TABLES
-from .runs import Row
+from .runs import Done, Row
 
 
-def write_tables(folder: Path, found: Mapping[str, list[Row]]) -> None:
-    """The rows of tables, by name, as files for others. Raises UsageError."""
-    for name, rows in found.items():
-        _write_table(folder / name, TABLES[name].work.finish(rows))
+def write_tables(folder: Path, done: Done, names: Iterable[str]) -> None:
+    """The rows of a run's tables as files for others. Raises UsageError."""
+    for name in names:
+        _write_table(folder / name, done.finished_rows(name))
 
 
 def _write_table(path: Path, rows: list[Row]) -> None:

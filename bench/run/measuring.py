@@ -20,7 +20,7 @@ from ..ground.output.writing import is_special, target_of
 from ..keep.journal import Journal, journal
 from ..keep.plain import key_text, plain
 from ..shaders.languages.source import Source
-from ..shaders.languages.words import files_in, names_an_encoder, twin_of
+from ..shaders.languages.words import file_of, names_an_encoder, parts_of, split_names, twin_of
 from ..tables.table import Measured, Row, Step, Table, Tick
 
 # Beside a file of one of these, files that it refers to are read too.
@@ -120,18 +120,25 @@ def asked(table: Table, options: Any, outputs: Any = None) -> Asked:
     return Asked(table, options, outputs, [_with_files(step, found) for step in steps])
 
 
+def asked_together(table: Table, several: Sequence[Any], outputs: Any) -> Asked:
+    """What several sets of a table's options ask for, each step once. Raises UsageError and MissingError."""
+    asks = [asked(table, options, outputs) for options in several]
+    steps = {repr(step.key): step for ask in asks for step in ask.steps}
+    return replace(asks[0], steps=list(steps.values()), others=[ask.options for ask in asks[1:]])
+
+
 def _with_files(step: Step, found: Row) -> Step:
     return replace(step, key=step.key | found, parts=[_with_files(part, found) for part in step.parts])
 
 
 def measured(ask: Asked, kept: Kept, place: Place = HERE) -> Measured:
     """The finished rows: those that are kept, and the others measured now and kept as they come."""
-    rows = [row for rows in measured_steps(ask, kept, place) for row in rows]
-    lacks = place.lacking(ask.table.name)
-    return Measured(ask.options, ask.outputs, ask.steps, ask.table.work.finish(rows), lacks)
+    found = _measured_steps(ask, kept, place)
+    rows = ask.table.work.finish([row for rows in found for row in rows])
+    return Measured(ask.options, ask.outputs, ask.steps, rows, place.lacking(ask.table.name), found)
 
 
-def measured_steps(ask: Asked, kept: Kept, place: Place = HERE) -> list[list[Row]]:
+def _measured_steps(ask: Asked, kept: Kept, place: Place) -> list[list[Row]]:
     """The rows of each step, not finished yet."""
     name = ask.table.name
     found = {id(step): kept.find(name, step) for step in ask.steps}
@@ -166,7 +173,7 @@ def with_parts(steps: Iterable[Step]) -> Iterator[Step]:
 def files_of(options: Any) -> Row:
     """A fingerprint of every file that options name, and of those read beside it: {"files": {...}}; {} for none."""
     words = [word for words in words_of(options).values() for word in words]
-    digests = {word: "".join(_fingerprint(Path(file)) for file in files_in(word)) for word in words}
+    digests = {word: "".join(map(_fingerprint, parts_of(word))) for word in words}
     found = {word: digest for word, digest in digests.items() if digest}
     return {"files": found} if found else {}
 
@@ -174,50 +181,55 @@ def files_of(options: Any) -> Row:
 def words_of(options: Any) -> dict[str, list[str]]:
     """By option the words that may name files."""
     return {
-        field.name: [word.strip() for word in str(getattr(options, field.name) or "").split(",")]
+        field.name: split_names(str(getattr(options, field.name) or ""))
         for field in fields(options)
         if fields_of(type(options))[field.name].option.files
     }
 
 
-def _fingerprint(path: Path) -> str:
+def _fingerprint(word: str) -> str:
     """Of a file and its companions. Empty for no file."""
+    path = file_of(word)
     try:
         if not path.is_file():
             return ""
-        digests = [file_digest(one) for one in (path, *companions(path))]
+        # In an order that does not depend on where they lie.
+        digests = [file_digest(path), *sorted(map(file_digest, companions(word)))]
         return hashlib.sha256(b"".join(digests)).hexdigest()[:16]
     except (OSError, ValueError):
         return ""
 
 
-def companions(path: Path) -> list[Path]:
-    """The files that are read with a file: those of the same stem, and those that its kind refers to."""
+def companions(word: str | Path) -> list[Path]:
+    """The files that are read with the one that a word names: those of the same stem, and those that its kind refers
+    to."""
+    path = file_of(word)
     patterns = COMPANIONS.get(path.suffix.lower(), ())
     beside = {other for pattern in patterns for other in path.parent.glob(pattern)}
     if path.suffix.lower() == ".gltf":
-        beside |= set(_buffers(path))
+        beside |= set(_parts_of_gltf(path))
     if path.suffix.lower() == ".toml":
-        beside |= set(_of_layout(path))
-    if names_an_encoder(str(path)):
-        beside |= {other for other in (twin_of(path), *_included(path)) if other.is_file()}
+        beside |= set(_files_of_layout(path))
+    if names_an_encoder(str(word)):
+        beside |= {other for other in (twin_of(word), *_included(word)) if other.is_file()}
     return sorted(beside)
 
 
-def _buffers(path: Path) -> list[Path]:
-    """The files that a glTF file's buffers are in; none of a file that cannot be read."""
+def _parts_of_gltf(path: Path) -> list[Path]:
+    """The files that a glTF file's buffers and pictures are in; none of a file that cannot be read."""
     # It imports NumPy, which start-up does without.
     from ...gbuffer.scenes.files.source import SceneFileError, checked_address
 
     try:
-        found = [buffer["uri"] for buffer in json.loads(path.read_bytes()).get("buffers", ()) if "uri" in buffer]
-        named = [checked_address(path, address, "buffers") for address in found]
+        document = json.loads(path.read_bytes())
+        parts = [part for key in ("buffers", "images") for part in document.get(key, ())]
+        named = [checked_address(path, part["uri"], "its parts") for part in parts if "uri" in part]
     except (ValueError, TypeError, AttributeError, KeyError, RecursionError, SceneFileError):
         return []
     return [path.parent / os.path.relpath(one, path.parent.resolve()) for one in named if one and one.is_file()]
 
 
-def _of_layout(path: Path) -> list[Path]:
+def _files_of_layout(path: Path) -> list[Path]:
     """The encoder or the table that a layout names, and what is read with it."""
     # It imports JAX, which start-up does without.
     from ..subjects.codecs.layout_names import files_of_layout
@@ -225,10 +237,10 @@ def _of_layout(path: Path) -> list[Path]:
     return [one for file in files_of_layout(path) for one in (file, *companions(file))]
 
 
-def _included(path: Path) -> list[Path]:
+def _included(word: str | Path) -> list[Path]:
     """The files that a user's encoder includes; none of one that cannot be read."""
     try:
-        return list(Source(path).files.values())
+        return list(Source(word).files.values())
     except UsageError:
         return []
 

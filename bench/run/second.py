@@ -1,29 +1,45 @@
 """The second process of a run, which measures tables while the first one renders others.
 
 One process renders, and llvmpipe leaves much of the second core idle; JAX and compilers need no more than one. A run
-starts it with `second_process`, and names the program that it runs. What it measured it draws, too.
+starts it with `second_process`, and says what it calls. What it measured it draws, too.
 """
 
 from __future__ import annotations
 
-import json
-import subprocess
-import tempfile
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
-from threading import Event, Thread
-from typing import IO, Any
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
 
-from ..ground.machine.children import environment, python
 from ..ground.machine.cores import cores
-from ..ground.machine.posix.processes import OWN_GROUP, end_group
-from ..ground.output.errors import MissingError, UsageError, tell, told
+from ..ground.output.errors import MissingError, UsageError, tell
 from ..keep.plain import key_text
 from ..keep.runs import Run
-from ..tables.table import Step, Table
+from ..tables.table import Row, Step, Table
 from .measuring import Asked, with_parts
+from .piped import Piped, Send
 
-ERRORS: Mapping[int, type[Exception]] = {error.exit_code: error for error in (UsageError, MissingError)}
+
+@dataclass(frozen=True)
+class Kept:
+    """The rows of a step, by the text of its key."""
+
+    step: str
+    rows: list[Row]
+
+
+@dataclass(frozen=True)
+class Written:
+    """A table whose steps are all measured and whose files are written."""
+
+    table: str
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """All is done: the charts that are drawn, by name what each shows."""
+
+    charts: Mapping[str, str]
 
 
 def is_worth_it(tables: Iterable[Table]) -> bool:
@@ -39,37 +55,19 @@ class Second:
         drawn: the charts that it drew: by name, what each shows.
     """
 
-    def __init__(self, process: subprocess.Popen[str]):
+    def __init__(self, first: Callable[[Send], None]):
         self.written: set[str] = set()
-        self.drawn: dict[str, str] = {}
-        self._process, self._error = process, None
+        self.drawn: Mapping[str, str] = {}
         self._run: Run | None = None
         self._steps: dict[str, tuple[str, Step]] = {}
-        self._ended = Event()
-        self._reader = Thread(target=self._read, daemon=True)
+        self._error: Exception | None = None
+        self._process = Piped(first, self._take)
 
-    def measure(self, run: Run, what: Mapping[str, tuple[Sequence[Asked], Mapping[str, Any]]]) -> None:
-        """Have it measure tables into a run.
-
-        Args:
-            what: tables and the options that were given: those to "measure", and those that this process measures, of
-                which it is to "write" the files.
-        """
-        self._run = run
-        steps = ((ask.table.name, step) for ask in what["measure"][0] for step in with_parts(ask.steps))
-        self._steps = {key_text(name, step.key): (name, step) for name, step in steps}
-        self._reader.start()
-        orders = {do: {"tables": [ask.table.name for ask in asks], "said": said} for do, (asks, said) in what.items()}
-        given = {"folder": str(run.folder), "told": sorted(told), **orders}
-        pipe = self._process.stdin
-        assert pipe
-        # What ends early says why in another way; a pipe that closes tries again to write what it holds.
-        try:
-            pipe.write(json.dumps(given) + "\n")
-            pipe.flush()
-        except BrokenPipeError:
-            with suppress(BrokenPipeError):
-                pipe.close()
+    def measure(self, run: Run, asks: Iterable[Asked], function: Callable[..., None], *arguments: Any) -> None:
+        """Have it call a function that measures tables, whose rows are kept in a run."""
+        steps = ((ask.table.name, step) for ask in asks for step in with_parts(ask.steps))
+        self._run, self._steps = run, {key_text(name, step.key): (name, step) for name, step in steps}
+        self._process.call(function, *arguments)
 
     def wait(self) -> None:
         """Until its tables are measured and written; rows are missing where something killed it.
@@ -77,65 +75,49 @@ class Second:
         Raises:
             UsageError, MissingError: what was wrong there.
         """
-        self._ended.wait()
+        self._process.ended.wait()
         if self._error:
             raise self._error
 
     def end(self) -> None:
-        """End the process, and what it started; rows that it has sent are kept."""
-        end_group(self._process.pid)
-        if self._run:
-            self._reader.join()
+        """End the process, and what it started; rows that it has sent are kept. What it said is told."""
+        for line in self._process.wait():
+            tell(line.removeprefix("normalbench: "))
 
-    def _read(self) -> None:
+    def _take(self, value: Kept | Written | Drawn | Exception) -> None:
         try:
-            for line in self._process.stdout or ():
-                # A line without an end is of a process that was killed meanwhile.
-                if line.endswith("\n"):
-                    self._take(json.loads(line))
-        except Exception as error:  # raised again where somebody waits
+            self._keep(value)
+        except (UsageError, MissingError) as error:
             self._error = error
-        finally:
-            self._ended.set()
+            self._process.end()
 
-    def _take(self, line: Mapping[str, Any]) -> None:
-        assert self._run
-        if "rows" in line:
-            self._run.keep(*self._steps[line["step"]], line["rows"])
-        elif "written" in line:
-            self.written.add(line["written"])
-        elif "drawn" in line:
-            self.drawn = line["drawn"]
-        else:
-            raise ERRORS[line["status"]](line["error"])
+    def _keep(self, value: Kept | Written | Drawn | Exception) -> None:
+        match value:
+            case Kept():
+                assert self._run
+                self._run.keep(*self._steps[value.step], value.rows)
+            case Written():
+                self.written.add(value.table)
+            case Drawn():
+                self.drawn = value.charts
+                # It is done: what it holds in memory is the first process's now.
+                self._process.end()
+            case UsageError() | MissingError():
+                raise value
+            case _:
+                tell(str(value))
+                self._process.end()
 
 
 @contextmanager
-def second_process(program: str) -> Iterator[Second]:
-    """A process that imports what it will need, and waits for what to measure; ended with the block.
+def second_process(first: Callable[[Send], None]) -> Iterator[Second]:
+    """A process that waits for what to measure; ended with the block.
 
     Args:
-        program: the module that it runs.
+        first: what it calls at once: it imports what it will need.
     """
-    command = python(program)
-    with (
-        tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as errors,
-        _started(command, errors) as process,
-    ):
-        second = Second(process)
-        try:
-            yield second
-        finally:
-            second.end()
-            _tell_all(errors)
-
-
-def _started(command: list[str], errors: IO[str]) -> subprocess.Popen[str]:
-    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": errors}
-    return subprocess.Popen(command, text=True, env=environment(), **OWN_GROUP, **pipes)
-
-
-def _tell_all(errors: IO[str]) -> None:
-    errors.seek(0)
-    for line in errors:
-        tell(line.removeprefix("normalbench: "))
+    second = Second(first)
+    try:
+        yield second
+    finally:
+        second.end()

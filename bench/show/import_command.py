@@ -38,7 +38,8 @@ def import_command(files: Sequence[Path], folder: Path | None) -> int:
         if new:
             run.replace(_with(run.lines, new))
         # Also where nothing is new: an earlier import may have been ended before it wrote them.
-        write_tables(folder, {name: rows for name, rows in read_run(folder).tables.items() if name == TABLE.name})
+        done = read_run(folder)
+        write_tables(folder, done, [TABLE.name] if TABLE.name in done.tables else [])
     names = told_apart([*(str(renderer) for renderer, _ in there), *(one.file.renderer for one in found)])
     for one in found:
         called = replace(one, name=names[one.file.renderer]).called

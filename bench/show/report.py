@@ -6,7 +6,7 @@ import json
 import pickle
 import shlex
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext, suppress
 from dataclasses import replace
@@ -20,8 +20,9 @@ from ...reports.page import embedded, markdown, page, several
 from ...reports.page.found import Found, plain_text
 from ...reports.page.live import Live
 from ...reports.page.pixels import Subject, film_uri
-from ...reports.page.sections import Section, Sheet, answered_first, whole
+from ...reports.page.sections import TableSection, answered_first, whole
 from ...reports.page.verdict import is_count
+from ...reports.sheets import Sheet
 from ...reports.tables import LARGEST_WHOLE
 from ..ground.output import cache
 from ..ground.output.errors import UsageError
@@ -34,7 +35,8 @@ from ..measures.live.kept import read_live
 from ..measures.live.programs import helpers, storage_functions
 from ..measures.live.scenes import read_scenes, unpacking
 from ..tables.registry import TABLES
-from ..tables.table import UNEXPECTED, Role, Table
+from ..tables.shared_columns import ENCODING
+from ..tables.table import UNEXPECTED, Table
 
 SEVERAL = "runs.html"
 PAGE, CHARTS, PICTURES = "report.html", "charts", "pictures"
@@ -90,7 +92,8 @@ def _report_several(
 def _cleaned(done: Done) -> Done:
     """A run of plain text and numbers, whatever its files hold."""
     steps = [{"table": plain_text(step["table"]), "key": {}, "rows": _clean(step["rows"])} for step in done.steps]
-    return Done(plain_text(done.facts), steps, done.damage)
+    whole = {name: _clean(rows) for name, rows in done.whole.items()}
+    return Done(plain_text(done.facts), steps, done.damage, whole=whole)
 
 
 def write_report(
@@ -194,10 +197,10 @@ def _write_chart(drawing: drawings.Drawing, folder: Path) -> None:
 
 def gathered(folder: Path, done: Done) -> Found:
     """Everything that a page shows of a run; nothing is measured."""
-    measured = done.tables
+    done = _cleaned(done)
     # In the order of the page, whichever was measured first.
-    tables = {name: _clean(measured[name]) for name in TABLES if name in measured}
-    facts = plain_text(done.facts)
+    tables = {name: done.tables[name] for name in TABLES if name in done.tables}
+    facts = done.facts
     remarks = [f"{plain_text(said)}." for said in (done.damage, done.left_out) if said]
     if facts.get("sources") != sources():
         remarks.append(f"Another version of the program measured this run; measure it again: {_command(facts)}.")
@@ -208,69 +211,66 @@ def gathered(folder: Path, done: Done) -> Found:
         steps=len(done.steps),
         finished=done.finished,
         domains={name: encoding.domain for name, encoding in ENCODINGS.items()},
-        subjects=list(_subjects(folder, tables, remarks)),
+        others=_others(tables),
+        subjects=list(_subjects(folder, done, tables, remarks)),
         extras=_extras(folder, tables, remarks),
         live=_live(folder / LIVE),
         remarks=remarks,
     )
     asked = _asked(facts)
     shown = [table for table in TABLES.values() if table.name in tables or table.name in asked]
-    sections = [_section(folder, found, table, table.name in asked, remarks) for table in shown]
+    sections = [_section(folder, found, done, table, remarks) for table in shown]
     return replace(found, sections=answered_first(sections))
 
 
-def _section(folder: Path, found: Found, table: Table, asked: bool, remarks: list[str]) -> Section:
+def _others(tables: Mapping[str, Sequence[Row]]) -> frozenset[str]:
+    """The encodings of normals in a run's rows that are not the catalogue's: those of users' files."""
+    of_normals = (rows for name, rows in tables.items() if ENCODING in TABLES[name].columns)
+    names = {str(row["encoding"]) for rows in of_normals for row in rows if row.get("encoding")}
+    return frozenset(names - ENCODINGS.keys())
+
+
+def _section(folder: Path, found: Found, done: Done, table: Table, remarks: list[str]) -> TableSection:
     """A table as the page shows it."""
-    said, rows = table.section, found.tables.get(table.name, ())
-    return Section(
+    rows = found.tables.get(table.name, ())
+    return TableSection(
         key=table.name,
-        title=said.title,
-        short=said.short,
-        intro=said.intro,
-        method=said.method,
-        parts=said.parts,
-        extras=said.extras,
+        about=table.section,
+        columns=table.columns,
+        also=table.also,
         rows=rows,
-        summary=_summary(table, rows, remarks),
-        conditions=tuple(column.name for column in table.of_role(Role.KEY, Role.HOW)),
-        not_shown=tuple(column.name for column in table.of_role(Role.RAW)),
-        says=lambda name: _definition(table, name),
-        better=lambda name: column.better if (column := table.column(name)) else "",
-        drawings=_drawings(found, table, rows, remarks),
-        asked=asked,
-        leads=said.leads,
+        summary=_summary(done, table, remarks),
+        drawings=_drawings(found, done, table, remarks),
+        asked=table.name in _asked(done.facts),
         films=_films(folder, table, rows, remarks),
     )
 
 
-def _definition(table: Table, name: str) -> str:
-    column = table.column(name)
-    return column.definition if column else ""
-
-
-def _summary(table: Table, rows: Sequence[Row], remarks: list[str]) -> list[Sheet]:
+def _summary(done: Done, table: Table, remarks: list[str]) -> list[Sheet]:
     """A table in short; nothing where its rows are not what this version writes."""
     try:
-        finished = table.work.finish([dict(row) for row in rows]) if rows else []
-        return [
-            Sheet(one.title, one.rows, said=one.said, aside=one.aside, keys=dict(one.keys))
-            for one in table.work.summary(finished)
-            if one.rows
-        ]
+        return [sheet for sheet in table.work.summary(done.finished_rows(table.name)) if sheet.rows]
     except UNEXPECTED:
         again = f"measure them again: normalbench run --tables {table.name}"
         remarks.append(f"The rows of {table.name} are not those of this version, and shown as they are; {again}.")
         return []
 
 
-def _drawings(found: Found, table: Table, rows: Sequence[Row], remarks: list[str]) -> list[drawings.Drawing]:
+def _drawings(found: Found, done: Done, table: Table, remarks: list[str]) -> list[drawings.Drawing]:
     try:
-        kept = whole(rows)
-        charts = [*table.work.charts(kept), *table.work.joined(found)]
+        charts = [*table.work.charts(whole(_finished(done, table))), *table.work.joined(found)]
         return list(map(drawings.of, charts))
     except UNEXPECTED as error:
         remarks.append(f"The charts of {table.name} cannot be drawn from these rows: {type(error).__name__}.")
         return []
+
+
+def _finished(done: Done, table: Table) -> Sequence[Row]:
+    """The finished rows of a table; as they are where they are not those of this version, which its summary says."""
+    try:
+        return done.finished_rows(table.name)
+    except UNEXPECTED:
+        return done.tables[table.name]
 
 
 def _films(folder: Path, table: Table, rows: Sequence[Row], remarks: list[str]) -> list[tuple[str, str]]:
@@ -312,13 +312,13 @@ def _asked(facts: Row) -> set[str]:
     return found
 
 
-def _subjects(folder: Path, tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Iterator[Subject]:
+def _subjects(folder: Path, done: Done, names: Iterable[str], remarks: list[str]) -> Iterator[Subject]:
     """What the run has pictures of."""
-    for name, rows in tables.items():
+    for name in names:
         if "images" in TABLES[name].files:
             try:
-                finished = TABLES[name].work.finish([dict(row) for row in rows])
-                yield from TABLES[name].work.subjects(folder / TABLES[name].files["images"], finished)
+                pictures = folder / TABLES[name].files["images"]
+                yield from TABLES[name].work.subjects(pictures, done.finished_rows(name))
             except UNEXPECTED as error:
                 remarks.append(f"The pictures of {name} cannot be found from these rows: {type(error).__name__}.")
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from ...reports import tables
-from ..ground.output.errors import NO_TWIN, UsageError, tell
+from ..ground.output.errors import UsageError, lacks_twin, tell
 from ..ground.output.writing import check_writable, say, whole_file
 from ..tables.table import Measured, Role, Row, Sheet, Table
 
@@ -122,7 +122,7 @@ def _kind_of_skip(table: Table, rows: Sequence[Row], reason: str) -> str:
     """What a reason has kept from some rows; that an encoding without a twin is measured otherwise is not a failure."""
     skipped = [row for row in rows if row.get("skipped") == reason]
     measured = {row.get("encoding") for row in rows if not row.get("skipped")}
-    if NO_TWIN in reason and all(row.get("encoding") in measured for row in skipped):
+    if lacks_twin(reason) and all(row.get("encoding") in measured for row in skipped):
         return "measured by OpenGL alone"
     return (
         "rows without some of their figures"

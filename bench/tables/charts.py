@@ -8,6 +8,7 @@ from typing import Any
 
 from ...reports.page.codec_key import CodecKey
 from ...reports.page.verdict import BACKENDS, is_number
+from ..ground.options import backends
 from .table import Row
 
 # A histogram's least angle: nothing of 32 bits and less is finer, and what is 0 has no logarithm.
@@ -33,14 +34,21 @@ def one_backend(rows: Sequence[Row]) -> list[Row]:
     for backend in dict.fromkeys([*BACKENDS, *(str(row.get("backend")) for row in rows)]):
         for row in rows:
             if str(row.get("backend")) == backend:
-                chosen.setdefault(_code(row), backend)
-    return [row for row in rows if str(row.get("backend")) == chosen[_code(row)]]
+                chosen.setdefault(_code_name(row), backend)
+    return [row for row in rows if str(row.get("backend")) == chosen[_code_name(row)]]
 
 
-def _code(row: Row) -> Any:
+def _code_name(row: Row) -> Any:
     return row.get("encoding") or row.get("depth")
 
 
 def backends_of(rows: Sequence[Row]) -> str:
-    """By which back ends rows are, as a title says it."""
-    return " or ".join(dict.fromkeys(str(row.get("backend")) for row in rows))
+    """By which back ends rows are, as a title says it, whatever the order of the rows."""
+    names = dict.fromkeys(str(row.get("backend")) for row in rows)
+    return " or ".join(sorted(names, key=_place))
+
+
+def _place(backend: str) -> int:
+    """Its place among the back ends; the last for another name."""
+    known = backends.BACKENDS
+    return known.index(backend) if backend in known else len(known)

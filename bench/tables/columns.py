@@ -9,10 +9,10 @@ from .table import Column, Row, Table
 
 def columns(names: str) -> list[Row]:
     """A row for each column of the tables that comma-separated names stand for. Raises UsageError."""
-    return [_row(table, column) for table in choose("table", names, TABLES) for column in table.columns]
+    return [_column_row(table, column) for table in choose("table", names, TABLES) for column in table.columns]
 
 
-def _row(table: Table, column: Column) -> Row:
+def _column_row(table: Table, column: Column) -> Row:
     return {
         "table": table.name,
         "column": column.name,

@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from ...encodings.catalogue import LIGHT_BUFFERS
 from ...encodings.codecs.codec import Codec
-from ...gbuffer.frame.plan import Plan
+from ...gbuffer.frame.plan import LEAST_ROUGHNESS, Plan
 from ...gbuffer.gl.device import Device
 from ...gbuffer.layouts.layout import Layout
 from ...gbuffer.layouts.presets import LAYOUTS
@@ -33,18 +33,26 @@ def with_codecs(chosen: Iterable[Layout], codecs: Sequence[Codec], complaints: l
     return made
 
 
-def suited(device: Device, pipeline: Pipeline, plans: list[Plan], complaints: list[str]) -> list[Plan]:
-    """The plans that make a difference to a pipeline and suit it; why others do not is appended to `complaints`."""
+def suited(
+    device: Device, pipeline: Pipeline, plans: list[Plan], complaints: list[str], is_metal_rough: bool = False
+) -> list[Plan]:
+    """The plans that make a difference to a pipeline and suit it; why others do not is appended to `complaints`.
+
+    Args:
+        is_metal_rough: whether the scene's materials are.
+    """
     made: dict[Plan, None] = {}
     for plan in plans:
         own = replace(plan, scale=plan.scale if pipeline.scaled else 1.0)
+        if not is_metal_rough:
+            own = replace(own, antialiased=True, least_roughness=LEAST_ROUGHNESS)
         if not pipeline.has_gbuffer:
             # Neither layouts nor light buffers reach it: one row for all of them.
             own = replace(own, layout=LAYOUTS["fp32"], light_buffer=LIGHT_BUFFERS["rgba32f"], light_targets=1)
         elif len(pipeline.light_targets) == 1:
             own = replace(own, light_targets=pipeline.light_targets[0])
         try:
-            check(device, pipeline, own)
+            check(device, pipeline, own, is_metal_rough)
         except LayoutError as error:
             complaints.append(str(error))
         else:

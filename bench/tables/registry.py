@@ -12,6 +12,7 @@ FOLDERS = (
     "pick",
     "quality",
     "render",
+    "roughness",
     "mix",
     "maps",
     "cost",

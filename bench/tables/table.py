@@ -11,13 +11,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from fnmatch import fnmatchcase
 from importlib import import_module
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-Row = dict[str, Any]
+from ...reports.sheets import Column, Role, Row, Section, Sheet, column_called
+
 # What a step may be measured with, besides JAX: see `Work.needs`.
 GL, VULKAN, COMPILERS, C_COMPILER = "GL device", "Vulkan device", "compilers", "C compiler"
 # By the back end of a step. Codes in half precision are computed on a Vulkan device in place of GL.
@@ -32,17 +32,6 @@ PART = "part"
 UNEXPECTED = (KeyError, TypeError, ValueError, IndexError, AttributeError)
 
 
-class Role(StrEnum):
-    """What a column is for."""
-
-    KEY = "key"  # names the row
-    FIGURE = "figure"  # what was measured; gates and comparisons hold these
-    TIME = "time"  # what a clock says, which two runs never agree on
-    HOW = "how"  # under what conditions it was measured
-    RAW = "raw"  # what only a program reads
-    REASON = "reason"  # why there are no figures
-
-
 class Group(StrEnum):
     """What a command is for, as the program's help groups them; in its order."""
 
@@ -51,65 +40,6 @@ class Group(StrEnum):
     OWN = "Your own"
     KEEP = "Keep and compare"
     MACHINE = "This program and this machine"
-
-
-@dataclass(frozen=True)
-class Column:
-    """A column of a table.
-
-    Attributes:
-        name: what rows call it; `*` stands for a name that is only known when it is measured.
-        says: its definition, in one sentence, for the page, the manual and `normalbench columns`.
-        role: what it is for.
-        unit: of its values; empty for none.
-        better: "more" or "less"; empty where neither is better.
-        drops: in which order a narrow terminal leaves it out, from 1; 0 where it stays.
-        option: the option without which it is not measured.
-        shown: whether tables for people have it.
-        is_histogram: whether its values are bins, `from:count` and spaces between; CSV leaves it out.
-    """
-
-    name: str
-    says: str
-    role: Role = Role.FIGURE
-    unit: str = ""
-    better: str = ""
-    drops: int = 0
-    option: str = ""
-    shown: bool = True
-    is_histogram: bool = False
-
-    @property
-    def definition(self) -> str:
-        """What it says, with its unit."""
-        return f"{self.says} Unit: {self.unit}." if self.unit else self.says
-
-    def is_called(self, name: str) -> bool:
-        """Whether a row's column is this one."""
-        return fnmatchcase(name, self.name)
-
-
-@dataclass(frozen=True)
-class Section:
-    """A table's part of the page.
-
-    Attributes:
-        title: its heading.
-        short: what the navigation calls it.
-        intro: the question that it answers.
-        method: how it is measured, in sentences.
-        parts: a column; rows that differ in it are shown as tables of their own.
-        extras: what the page's template shows beside the tables.
-        leads: whether it is the page's first screen.
-    """
-
-    title: str
-    short: str
-    intro: str
-    method: str
-    parts: str = ""
-    extras: tuple[str, ...] = ()
-    leads: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -137,29 +67,6 @@ class Step:
 
 
 @dataclass(frozen=True)
-class Sheet:
-    """Rows for people to read, all with the same columns.
-
-    Attributes:
-        title: empty where the rows need none.
-        rows: the lines.
-        drops: the columns that a narrow terminal leaves out, the first first.
-        notes: lines below them.
-        said: paragraphs above them, the first of which is the answer.
-        aside: paragraphs after those that say what is not part of the answer; a page folds them.
-        keys: what the title says of every row, by column.
-    """
-
-    title: str
-    rows: Sequence[Row]
-    drops: tuple[str, ...] = ()
-    notes: tuple[str, ...] = ()
-    said: tuple[str, ...] = ()
-    aside: tuple[str, ...] = ()
-    keys: Mapping[str, Any] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
 class Measured:
     """A table as it was measured.
 
@@ -168,6 +75,7 @@ class Measured:
         steps: what was measured.
         rows: the finished rows.
         lacks: what workers turned out to lack.
+        kept: the rows of each step, as they were measured.
     """
 
     options: Any
@@ -175,17 +83,18 @@ class Measured:
     steps: Sequence[Step]
     rows: Sequence[Row]
     lacks: Sequence[str] = ()
+    kept: Sequence[Sequence[Row]] = ()
 
 
-def _same(rows: Sequence[Row]) -> list[Row]:
+def _all_rows(rows: Sequence[Row]) -> list[Row]:
     return list(rows)
 
 
-def _last(_: Step, rows: Sequence[Row]) -> list[Row]:
+def _last_row(_: Step, rows: Sequence[Row]) -> list[Row]:
     return list(rows[-1:])
 
 
-def _nothing(*_: Any) -> Iterator[Any]:
+def _no_items(*_: Any) -> Iterator[Any]:
     yield from ()
 
 
@@ -202,7 +111,7 @@ def _no_extras(folder: Path, tables: Mapping[str, Sequence[Row]], remarks: list[
     return {}
 
 
-def _by_repeats(step: Step) -> bool:
+def _has_repeats(step: Step) -> bool:
     return bool(step.key.get("repeats"))
 
 
@@ -215,7 +124,8 @@ class Work:
         check: what of the outputs that a user asked for cannot be. Raises UsageError before anything is measured.
         measure: the rows of each step, in the order of the steps.
         merge: the rows of a step that is measured in parts, of all rows of its parts in their order.
-        finish: rows with what needs all of them: their order, their ranks.
+        finish: new rows with what needs all of them: their order, their ranks. It is called where rows are measured,
+            and where a run is read; all others receive finished rows.
         shown: finished rows for people; None where they are shown as they are.
         summary: what people look at first.
         warnings: a line for each row that is measured but odd.
@@ -241,31 +151,31 @@ class Work:
     steps: Callable[[Any, Any], Sequence[Step]]
     measure: Callable[[Sequence[Step], Tick], Iterator[list[Row]]]
     check: Callable[[Any, Sequence[Step]], None] = _none
-    merge: Callable[[Step, Sequence[Row]], list[Row]] = _last
-    finish: Callable[[Sequence[Row]], list[Row]] = _same
+    merge: Callable[[Step, Sequence[Row]], list[Row]] = _last_row
+    finish: Callable[[Sequence[Row]], list[Row]] = _all_rows
     shown: Callable[[Measured], Iterable[Sheet]] | None = None
-    summary: Callable[[Sequence[Row]], Iterator[Sheet]] = _nothing
-    warnings: Callable[[Sequence[Row]], Iterable[str]] = _nothing
-    failures: Callable[[Sequence[Row]], Iterable[str]] = _nothing
+    summary: Callable[[Sequence[Row]], Iterator[Sheet]] = _no_items
+    warnings: Callable[[Sequence[Row]], Iterable[str]] = _no_items
+    failures: Callable[[Sequence[Row]], Iterable[str]] = _no_items
     write: Callable[[Measured, Tick], Iterable[str] | None] = _none
-    charts: Callable[[Sequence[Row]], Iterable[Any]] = _nothing
+    charts: Callable[[Sequence[Row]], Iterable[Any]] = _no_items
     plotted: Callable[[Measured], Iterable[Any]] | None = None
     extras: Callable[[Path, Mapping[str, Sequence[Row]], list[str]], Mapping[str, Any]] = _no_extras
-    joined: Callable[[Any], Iterable[Any]] = _nothing
-    subjects: Callable[[Path, Sequence[Row]], Iterator[Any]] = _nothing
-    films: Callable[[Path, Sequence[Row]], Iterator[Any]] = _nothing
+    joined: Callable[[Any], Iterable[Any]] = _no_items
+    subjects: Callable[[Path, Sequence[Row]], Iterator[Any]] = _no_items
+    films: Callable[[Path, Sequence[Row]], Iterator[Any]] = _no_items
     worst: Callable[[Step], Any] = _none
     listing: Callable[[Step, Row], str | None] = _none
-    lacking: Callable[[Measured], Iterable[str]] = _nothing
+    lacking: Callable[[Measured], Iterable[str]] = _no_items
     missing: Callable[[], str] = str
     needs: Callable[[Step], frozenset[str]] = _by_backend
-    is_timed: Callable[[Step], bool] = _by_repeats
+    is_timed: Callable[[Step], bool] = _has_repeats
     stays: bool = False
 
     @property
     def has_charts(self) -> bool:
         """Whether its charts are values."""
-        return self.charts is not _nothing or self.plotted is not None
+        return self.charts is not _no_items or self.plotted is not None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -293,6 +203,8 @@ class Table:
         asked_by: an option; where it is given, `run` measures the table without being asked to.
         is_measured_beside: whether `run` measures it in its second process: what takes longer in JAX or compilers than
             on the GL device.
+        parity: figures by which a page of several runs compares GLSL with JAX, on each run's device.
+        is_usual: whether a gate or a test that names no table means this one.
         compilers: columns that name the compilers of a row's figures; figures of two versions are not compared.
     """
 
@@ -315,6 +227,8 @@ class Table:
     in_all: bool = True
     asked_by: str = ""
     is_measured_beside: bool = False
+    parity: tuple[str, ...] = ()
+    is_usual: bool = False
     compilers: tuple[str, ...] = ()
 
     def is_in_all(self, said: Mapping[str, Any]) -> bool:
@@ -333,9 +247,7 @@ class Table:
 
     def column(self, name: str) -> Column | None:
         """The column that a row or a summary calls so; None where there is none."""
-        found = [column for column in (*self.columns, *self.also) if column.is_called(name)]
-        # `ms_frame` is itself and not one of `ms_*`.
-        return max(found, key=lambda column: len(column.name), default=None)
+        return column_called(name, (*self.columns, *self.also))
 
     def of_role(self, *roles: Role) -> list[Column]:
         """The columns of some roles."""

@@ -11,7 +11,7 @@ from functools import reduce
 import numpy as np
 
 from ..storages.rounding import numbers_around, store_number
-from ..storages.storage import LARGEST, Storage, of_unit
+from ..storages.storage import BITS_32, LARGEST, Storage, of_unit
 from ..vec import Vec3, dot, jnp, select
 from .encoding import Encoding
 
@@ -34,7 +34,8 @@ def numbers_misfit(storage: Storage, levels: Sequence[int]) -> str | None:
 class Codec:
     """An encoding, the storage of its components, and how that rounds: one of `storage.ROUNDINGS`.
 
-    An encoding of numbers in [0, 1] fills every storage with these, signed ones as well.
+    An encoding of numbers in [0, 1] fills every storage with these, signed ones as well. One that packs by itself has a
+    storage of its own, whatever is given.
     """
 
     encoding: Encoding
@@ -42,6 +43,9 @@ class Codec:
     rounding: str = "nearest"
 
     def __post_init__(self) -> None:
+        if self.encoding.is_packed:
+            object.__setattr__(self, "storage", BITS_32)
+            object.__setattr__(self, "rounding", "nearest")
         if self.encoding.is_unit:
             object.__setattr__(self, "storage", of_unit(self.storage))
 
@@ -61,7 +65,7 @@ class Codec:
         if encoding.components > storage.channels:
             return f"{encoding.components} components, but {storage.title} has {storage.channels} channels"
         if storage.kind == "float" and (encoding.is_precise or self.rounding == "truncate_half"):
-            return f"{storage.title} is of floats, and {self._rounds} is for fixed point"
+            return f"{storage.title} is of floats, and {self._rounding_text} is for fixed point"
         if encoding.is_precise and self.rounding != "nearest":
             return "it is rounded precisely, not otherwise"
         if encoding.is_half and self._not_in_half:
@@ -69,12 +73,14 @@ class Codec:
         return numbers_misfit(storage, [encoding.levels_of(channel) for channel in range(encoding.components)])
 
     @property
-    def _rounds(self) -> str:
+    def _rounding_text(self) -> str:
         return "precise rounding" if self.encoding.is_precise else self.rounding
 
     @property
     def _not_in_half(self) -> str:
         """Why half arithmetic cannot be asked of the encoding; empty where it can."""
+        if self.encoding.is_packed:
+            return "an integer of 32 bits is not a number"
         if self.encoding.before:
             return "the first of two codecs is not computed again"
         if self.encoding.is_precise:
@@ -91,15 +97,19 @@ class Codec:
 
     @property
     def bits(self) -> int:
-        """The bits it occupies: of every channel that it uses, all; and its sign bits.
+        """The bits it occupies: of every channel that it uses, all; and its sign bits. Of an integer, those it uses.
 
         A component of few values takes its channel, too: another storage has a channel that fits.
         """
+        if self.encoding.is_packed:
+            return self.encoding.packed_bits
         return sum(self.storage.bits[: self.encoding.components]) + self.encoding.sign_bits
 
     @property
     def codes(self) -> int:
         """How many codes it has: whatever its numbers in [-1, 1] can be, used or not."""
+        if self.encoding.is_packed:
+            return 2**self.encoding.packed_bits
         size = self.encoding.components + self.encoding.sign_bits
         return math.prod(self.encoding.levels_of(i) or self.storage.count(i) for i in range(size))
 

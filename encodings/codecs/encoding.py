@@ -86,6 +86,9 @@ class Encoding:
         source: the user's file that its GLSL was translated from; None where the GLSL was written.
         before: the codec that normals have been through when they are encoded; None where it is given them as they are.
         is_unit: its author's functions give and take numbers in [0, 1], u for c = 2 u - 1: every storage holds u.
+        packed_bits: how many bits are used of a code that is one integer of 32 bits as its author's functions make it:
+            its two numbers are the halves, and it is stored as it stands. 0 for any other code.
+        declares_half: its author's functions are of numbers of 16 bits.
         own: the same in its author's axes, of a code for another half than z >= 0, which tables turn.
     """
 
@@ -114,7 +117,19 @@ class Encoding:
     source: Path | None = None
     before: Any = None
     is_unit: bool = False
+    packed_bits: int = 0
+    declares_half: bool = False
     own: Encoding | None = None
+
+    @property
+    def is_packed(self) -> bool:
+        """Whether its code is one integer of 32 bits, which is stored as it stands."""
+        return self.packed_bits > 0
+
+    @property
+    def is_also_half(self) -> bool:
+        """Whether it is measured in half arithmetic as well, unless an arithmetic is asked for."""
+        return self.declares_half and not self.is_packed and not self.is_half
 
     @property
     def twin(self) -> Path:
@@ -193,10 +208,10 @@ class Encoding:
         encode, decode = self.encode, self.decode
 
         def turned_encode(n: Vec3, view: Vec3) -> Any:
-            return encode(_ordered(n, order) * sign, _ordered(view, order) * sign)
+            return encode(_reordered_axes(n, order) * sign, _reordered_axes(view, order) * sign)
 
         def turned_decode(e: Any, view: Vec3) -> Vec3:
-            return _ordered(decode(e, _ordered(view, order) * sign), back) * sign
+            return _reordered_axes(decode(e, _reordered_axes(view, order) * sign), back) * sign
 
         made = replace(self, encode=turned_encode, decode=turned_decode, axis=axis, sign=sign)
         return made._variant(said)
@@ -206,11 +221,11 @@ class Encoding:
         encode, decode = self.encode, self.decode
 
         def half_encode(n: Vec3, view: Vec3) -> Any:
-            code = encode(_as(n, jnp.float16), _as(view, jnp.float16))
-            return _as(code, jnp.float16)
+            code = encode(_as_dtype(n, jnp.float16), _as_dtype(view, jnp.float16))
+            return _as_dtype(code, jnp.float16)
 
         def half_decode(e: Any, view: Vec3) -> Vec3:
-            return _as(decode(_as(e, jnp.float16), _as(view, jnp.float16)), view.z.dtype)
+            return _as_dtype(decode(_as_dtype(e, jnp.float16), _as_dtype(view, jnp.float16)), view.z.dtype)
 
         return replace(self, encode=half_encode, decode=half_decode, is_half=True)._variant(said)
 
@@ -246,9 +261,9 @@ class Encoding:
         return replace(self, name=name, title=title, encode=encode, decode=decode, functions=self.prefix)
 
 
-def _as(v: Any, dtype: Any) -> Any:
+def _as_dtype(v: Any, dtype: Any) -> Any:
     return type(v)(*(jnp.asarray(c, dtype) for c in v))
 
 
-def _ordered(v: Vec3, order: str) -> Vec3:
+def _reordered_axes(v: Vec3, order: str) -> Vec3:
     return Vec3(*(getattr(v, axis) for axis in order))

@@ -16,6 +16,8 @@ from typing import Any
 # No text that people write is larger.
 MOST_TEXT = 16 << 20
 MISSING, FOLDER, NOT_PLAIN = "there is no such file", "it is a folder; name a file", "it is not a plain file"
+# What stands in a repository for a file that lies elsewhere.
+LFS, LFS_POINTER = b"version https://git-lfs.github.com/spec/", "it is a Git LFS pointer: git lfs pull"
 # Why the system does not give a file.
 REASONS: Mapping[int, str] = MappingProxyType(
     {
@@ -65,11 +67,13 @@ def _bytes(path: Path, most: int) -> bytes:
         data = file.read(min(found.st_size, most) + 1)
     if len(data) > most:
         raise OSError(errno.EFBIG, f"it is larger than {most >> 20} MiB")
+    if data.startswith(LFS):
+        raise OSError(errno.EINVAL, LFS_POINTER)
     return data
 
 
-def not_a_file(path: Path) -> str:
-    """Why a path does not name a plain file; nothing is opened."""
+def why_no_file(path: Path) -> str:
+    """Which of a folder, not plain or missing a path is that names no plain file; nothing is opened."""
     return FOLDER if path.is_dir() else NOT_PLAIN if path.exists() else MISSING
 
 

@@ -27,8 +27,10 @@ def fingerprint(glsl: Path, values: object, tables: Mapping[str, Any], twin: Pat
     """
     twin = twin or glsl.with_suffix(".py")
     files = (*_texts(glsl.resolve(), set()), *([file_bytes(twin, MOST_TEXT)] if twin.exists() else []))
-    arrays = (part for name, table in sorted(tables.items()) for part in _array(name, np.ascontiguousarray(table)))
-    return _hashed((*files, repr(values).encode(), *arrays))
+    arrays = (
+        part for name, table in sorted(tables.items()) for part in _array_parts(name, np.ascontiguousarray(table))
+    )
+    return _hash_digits((*files, repr(values).encode(), *arrays))
 
 
 def _texts(path: Path, seen: set[Path]) -> Iterator[bytes]:
@@ -40,10 +42,10 @@ def _texts(path: Path, seen: set[Path]) -> Iterator[bytes]:
             yield from _texts(target, seen)
 
 
-def _array(name: str, array: np.ndarray) -> tuple[bytes, bytes]:
+def _array_parts(name: str, array: np.ndarray) -> tuple[bytes, bytes]:
     return f"{name} {array.dtype} {array.shape}".encode(), array.tobytes()
 
 
-def _hashed(parts: Iterable[bytes]) -> str:
+def _hash_digits(parts: Iterable[bytes]) -> str:
     # Each part is hashed first, so that nothing can move from one to the next.
     return hashlib.sha256(b"".join(hashlib.sha256(part).digest() for part in parts)).hexdigest()[:DIGITS]

@@ -107,12 +107,12 @@ class MotionCodec:
             motion: screens a frame, float32 of any shape.
             largest: the range, float32 scalar; not used where `needs_range` is not.
         """
-        code = self.encoding.encode(motion, self._range(largest))
+        code = self.encoding.encode(motion, self._range_or_one(largest))
         return Vec2(*(store_number(c, self.storage, i) for i, c in enumerate(code)))
 
     def round_trip(self, motion: Vec2, largest) -> Vec2:
         """Motions encoded, stored and decoded; see `stored`."""
-        return self.encoding.decode(self.stored(motion, largest), self._range(largest))
+        return self.encoding.decode(self.stored(motion, largest), self._range_or_one(largest))
 
-    def _range(self, largest):
+    def _range_or_one(self, largest):
         return largest if self.needs_range else 1.0

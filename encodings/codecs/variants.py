@@ -9,6 +9,8 @@ from .encoding import AXES, Encoding
 MARK, TABLE = ":", "table"
 SIGNS = ("1", "-1")
 FLOAT, HALF = ARITHMETICS = ("float", "half")
+# In place of an arithmetic: float, and half as well for a file that declares numbers of 16 bits.
+DECLARED = "declared"
 # What the name of an encoding in half arithmetic ends with.
 HALF_NAME = f"{MARK}arithmetic={HALF}"
 
@@ -52,9 +54,9 @@ def variant(encoding: Encoding, values: Mapping[str, str]) -> Encoding:
     arithmetic = values.get("arithmetic", FLOAT)
     _check("arithmetic", arithmetic, ARITHMETICS)
     own = [key for key in values if key in encoding.published]
-    numbers = {key: _number(encoding, key, values[key]) for key in own}
+    numbers = {key: _checked_number(encoding, key, values[key]) for key in own}
     made = encoding.with_parameters(numbers) if numbers else encoding
-    made = _turned(made, turns) if turns else made
+    made = _turned_encoding(made, turns) if turns else made
     return in_half(made) if arithmetic == HALF else made
 
 
@@ -63,7 +65,7 @@ def in_half(encoding: Encoding) -> Encoding:
     return encoding.in_half(HALF_NAME)
 
 
-def _number(encoding: Encoding, key: str, text: str) -> float:
+def _checked_number(encoding: Encoding, key: str, text: str) -> float:
     parameter = next(p for p in encoding.parameters if p.name == key)
     try:
         value = float(text)
@@ -74,7 +76,7 @@ def _number(encoding: Encoding, key: str, text: str) -> float:
     return value
 
 
-def _turned(encoding: Encoding, turns: Mapping[str, str]) -> Encoding:
+def _turned_encoding(encoding: Encoding, turns: Mapping[str, str]) -> Encoding:
     axis, sign = turns.get("axis", "z"), turns.get("sign", "1")
     _check("axis", axis, tuple(AXES))
     _check("sign", sign, SIGNS)

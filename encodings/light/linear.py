@@ -26,7 +26,7 @@ def decode(e: Vec4, limit: float = RANGE) -> Vec4:
     return e * limit
 
 
-def _in_curve(name: str, limit: float) -> tuple[str, str]:
+def _name_and_title(name: str, limit: float) -> tuple[str, str]:
     return name, f"sRGB RGBA8, scaled to [0, {limit:g}]"
 
 
@@ -36,7 +36,7 @@ def ranged(limit: float) -> LightEncoding:
         ENCODING,
         name=f"linear:{limit:g}",
         title=f"RGBA8, linear, scaled to [0, {limit:g}]",
-        in_curve=_in_curve(f"srgb:{limit:g}", limit),
+        in_curve=_name_and_title(f"srgb:{limit:g}", limit),
         encode=partial(encode, limit=limit),
         decode=partial(decode, limit=limit),
         limit=limit,
@@ -47,7 +47,7 @@ def ranged(limit: float) -> LightEncoding:
 ENCODING = LightEncoding(
     name="linear",
     title="RGBA8, linear, scaled to [0, 2]",
-    in_curve=_in_curve("srgb", RANGE),
+    in_curve=_name_and_title("srgb", RANGE),
     encode=encode,
     decode=decode,
     storages=("rgba8", "srgb8_a8"),

@@ -46,7 +46,7 @@ class DepthStorage:
         return self.format.kind == "float" and self.home == "channel"
 
 
-def _native(name: str, title: str, kind: str, bits: int, internal_format: int) -> DepthStorage:
+def _native_storage(name: str, title: str, kind: str, bits: int, internal_format: int) -> DepthStorage:
     return DepthStorage(name, title, Storage(name, title, kind, (bits,), internal_format), "attachment", bits)
 
 
@@ -58,9 +58,9 @@ DEPTH_STORAGES: Mapping[str, DepthStorage] = MappingProxyType(
         "packed24": DepthStorage("packed24", "8:8:8 in G, B and A of RGBA8", STORAGES["rgba8"], "packed", 24),
         "r16f": DepthStorage("r16f", "R16F", R16F, "channel", 16),
         "r32f": DepthStorage("r32f", "R32F", R32F, "channel", 32),
-        "depth16": _native("depth16", "depth buffer, 16 bits", "unorm", 16, 0x81A5),
-        "depth24": _native("depth24", "depth buffer, 24 bits", "unorm", 24, 0x81A6),
-        "depth32f": _native("depth32f", "depth buffer, 32-bit float", "float", 32, 0x8CAC),
+        "depth16": _native_storage("depth16", "depth buffer, 16 bits", "unorm", 16, 0x81A5),
+        "depth24": _native_storage("depth24", "depth buffer, 24 bits", "unorm", 24, 0x81A6),
+        "depth32f": _native_storage("depth32f", "depth buffer, 32-bit float", "float", 32, 0x8CAC),
     }
 )
 

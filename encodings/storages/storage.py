@@ -3,6 +3,9 @@
 Numbers may be laid across channels of 8 bits as integers of any size, the highest bits first: 12:12 in three bytes. A
 signed one of n bits is then the integer of SNORM plus 2^(n-1) - 1, so that -1 is 0 and there is a code for 0. How
 numbers become texels is in `rounding.py`.
+
+A format in STORAGES holds normals everywhere. FORMATS, which layouts name, has these and more. Those of tangent frames
+and of motion vectors are picked from STORAGES by their names.
 """
 
 from __future__ import annotations
@@ -105,11 +108,11 @@ class Storage:
         return texels * 2.0 - 1.0 if self.is_biased else np.concatenate([-texels[:0:-1], texels])
 
 
-def _packed(name: str, title: str, kind: str, *bits: int) -> Storage:
+def _packed_storage(name: str, title: str, kind: str, *bits: int) -> Storage:
     return Storage(name, title, kind, bits, RGBA8, is_packed=True)
 
 
-def _centred(like: Storage) -> Storage:
+def _centred_storage(like: Storage) -> Storage:
     name, title = f"{like.name}{CENTRED}", f"{like.title} centred"
     return replace(like, name=name, title=title, kind="snorm", is_centred=True)
 
@@ -137,24 +140,29 @@ STORAGES: Mapping[str, Storage] = MappingProxyType(
         "rgba16f": Storage("rgba16f", "RGBA16F", "float", (16, 16, 16, 16), 0x881A),
         "rgba32f": Storage("rgba32f", "RGBA32F", "float", (32, 32, 32, 32), 0x8814),
         "r11g11b10f": R11G11B10F,
-        "rgb8_8_8_1": _packed("rgb8_8_8_1", "8:8:1 in RGB8", "unorm", 8, 8, 1),
-        "rgb8_10_10_2": _packed("rgb8_10_10_2", "10:10:2 in RGB8", "unorm", 10, 10, 2),
-        "rgb8_10_10_3": _packed("rgb8_10_10_3", "10:10:3 in RGB8", "unorm", 10, 10, 3),
-        "rgb8_12_12": _packed("rgb8_12_12", "12:12 in RGB8", "unorm", 12, 12),
-        "rgb8_12_12_snorm": _packed("rgb8_12_12_snorm", "12:12 signed in RGB8", "snorm", 12, 12),
-        "rgba8_11_11_10": _packed("rgba8_11_11_10", "11:11:10 in RGBA8", "unorm", 11, 11, 10),
-        "rgba8_11_10_11": _packed("rgba8_11_10_11", "11:10:11 in RGBA8", "unorm", 11, 10, 11),
-        "rgba8_10_10_10_snorm": _packed("rgba8_10_10_10_snorm", "10:10:10 signed in RGBA8", "snorm", 10, 10, 10),
-        "rgba8_16_16": _packed("rgba8_16_16", "16:16 in RGBA8", "unorm", 16, 16),
+        "rgb8_8_8_1": _packed_storage("rgb8_8_8_1", "8:8:1 in RGB8", "unorm", 8, 8, 1),
+        "rgb8_10_10_2": _packed_storage("rgb8_10_10_2", "10:10:2 in RGB8", "unorm", 10, 10, 2),
+        "rgb8_10_10_3": _packed_storage("rgb8_10_10_3", "10:10:3 in RGB8", "unorm", 10, 10, 3),
+        "rgb8_12_12": _packed_storage("rgb8_12_12", "12:12 in RGB8", "unorm", 12, 12),
+        "rgb8_12_12_snorm": _packed_storage("rgb8_12_12_snorm", "12:12 signed in RGB8", "snorm", 12, 12),
+        "rgba8_11_11_10": _packed_storage("rgba8_11_11_10", "11:11:10 in RGBA8", "unorm", 11, 11, 10),
+        "rgba8_11_10_11": _packed_storage("rgba8_11_10_11", "11:10:11 in RGBA8", "unorm", 11, 10, 11),
+        "rgba8_10_10_10_snorm": _packed_storage(
+            "rgba8_10_10_10_snorm", "10:10:10 signed in RGBA8", "snorm", 10, 10, 10
+        ),
+        "rgba8_16_16": _packed_storage("rgba8_16_16", "16:16 in RGBA8", "unorm", 16, 16),
     }
 )
+
+# An integer that a user's encoder makes itself, as two halves that are stored exactly.
+BITS_32 = replace(STORAGES["rg16"], name="bits32", title="32 bits as they stand")
 
 # What holds a tangent frame: four numbers.
 FRAME_STORAGES: Mapping[str, Storage] = MappingProxyType(
     {
         **{name: STORAGES[name] for name in ("rgb10a2", "rgba8", "rgba8_snorm", "rgba16f", "rgba32f")},
         **{name: STORAGES[name] for name in ("rgba16", "rgba16_snorm")},
-        "rgba8_10_10_11_1": _packed("rgba8_10_10_11_1", "10:10:11:1 in RGBA8", "unorm", 10, 10, 11, 1),
+        "rgba8_10_10_11_1": _packed_storage("rgba8_10_10_11_1", "10:10:11:1 in RGBA8", "unorm", 10, 10, 11, 1),
     }
 )
 
@@ -164,7 +172,10 @@ _OF_MOTION += ("rgba8", "rgba8_snorm", "rgba16", "rgba16_snorm", "rgba16f", "rgb
 MOTION_STORAGES: Mapping[str, Storage] = MappingProxyType(
     {
         **{name: STORAGES[name] for name in _OF_MOTION},
-        **{s.name: s for s in (_centred(STORAGES[name]) for name in ("rg8", "rgb10a2", "rg16", "rgba8", "rgba16"))},
+        **{
+            s.name: s
+            for s in (_centred_storage(STORAGES[name]) for name in ("rg8", "rgb10a2", "rg16", "rgba8", "rgba16"))
+        },
     }
 )
 
@@ -186,7 +197,7 @@ def across(kind: str, bits: tuple[int, ...]) -> Storage:
     channels, spread = ACROSS[(sum(bits) - 1) // 8], ":".join(map(str, bits))
     is_signed = kind == "snorm"
     name = f"{channels}_{spread.replace(':', '_')}" + ("_snorm" if is_signed else "")
-    return _packed(name, f"{spread} {'signed ' if is_signed else ''}in {channels.upper()}", kind, *bits)
+    return _packed_storage(name, f"{spread} {'signed ' if is_signed else ''}in {channels.upper()}", kind, *bits)
 
 
 def storage_of(name: str) -> Storage | None:
@@ -218,6 +229,7 @@ LIGHT_STORAGES: Mapping[str, Storage] = MappingProxyType(
 FORMATS: Mapping[str, Storage] = MappingProxyType(
     {
         **{name: storage for name, storage in STORAGES.items() if not storage.is_packed},
+        BITS_32.name: BITS_32,
         "r8": Storage("r8", "R8", "unorm", (8,), 0x8229),
         "r16": Storage("r16", "R16", "unorm", (16,), 0x822A),
         "r16f": R16F,

@@ -27,13 +27,13 @@ def encoding_defines(encoding: Encoding, as_half: bool = False) -> dict[str, obj
         ShaderError: its GLSL file cannot be read or lacks one of the two functions, or it is of half arithmetic.
     """
     if encoding.before:
-        raise ShaderError(f"{encoding.name}: a chain of codecs is not rendered; {BY_JAX} it by JAX")
+        raise ShaderError(f"{encoding.name}: a chain of codecs is not drawn into a G-buffer; {BY_JAX} it by JAX")
     if encoding.is_half and not as_half:
         raise ShaderError(f"{encoding.name}: OpenGL computes shaders in 32 bits; {BY_JAX} half arithmetic by JAX")
     check_functions(encoding.glsl, encoding.signatures)
     return {
         "CODE": f"vec{encoding.components + encoding.sign_bits}",
-        **_functions(encoding),
+        **_function_defines(encoding),
         "COMPONENTS": encoding.components,
         "SIGN_BITS": encoding.sign_bits,
         "LEVELS": levels_of(encoding),
@@ -43,7 +43,7 @@ def encoding_defines(encoding: Encoding, as_half: bool = False) -> dict[str, obj
     }
 
 
-def _functions(encoding: Encoding) -> dict[str, object]:
+def _function_defines(encoding: Encoding) -> dict[str, object]:
     names: dict[str, object] = {side.upper(): f"{encoding.prefix}_{side}" for side in ("encode", "decode")}
     short = {name: function for name, function in names.items() if not takes_view(encoding.glsl, str(function))}
     own: dict[str, object] = {f"SHORT_{name}": function for name, function in short.items()}
@@ -143,12 +143,12 @@ class CodecPasses(Passes):
             FormatError: the device cannot render to the storage's format.
         """
         if self._before:
-            normals = _unit(self._before.round_trip(normals, views).normals)
+            normals = _unit_pixels(self._before.round_trip(normals, views).normals)
         decoded, codes = self._through([STORAGES["rgba32f"]] * 2, normals=normals, views=views)
         return Decoded(decoded[..., :3], codes)
 
 
-def _unit(normals: np.ndarray) -> np.ndarray:
+def _unit_pixels(normals: np.ndarray) -> np.ndarray:
     """Directions of shape (height, width, 3), as pixels of four numbers at length 1."""
     length = np.sqrt(np.sum(normals * normals, axis=-1, keepdims=True))
     return np.concatenate([normals / np.maximum(length, vec.TINY), np.zeros_like(length)], axis=-1)

@@ -90,17 +90,17 @@ class DepthPasses(Passes):
             points: place (from -1 to 1, right and up) and view depth, float32 of shape (height, width, 3).
             way: to the position, a Rebuild's; one by the projection only where the number is a depth buffer's.
         """
-        given = _seen(camera, self._codec.encoding) | {"way": way}
+        given = _camera_uniforms(camera, self._codec.encoding) | {"way": way}
         for program in (self._encode.program, self._decode.program):
             set_uniforms(program, given)
         positions, stored = self._through([FORMATS["rgba32f"], RG32F], points=points)
         return Rebuilt(positions[..., :3], stored[..., 0], stored[..., 1])
 
-    def _written(self, stack: ExitStack, sources: Textures) -> Textures:
-        return {"texels": _stored(self._device, stack, self._codec.storage, self._encode, sources["points"])}
+    def _written_textures(self, stack: ExitStack, sources: Textures) -> Textures:
+        return {"texels": _stored_texture(self._device, stack, self._codec.storage, self._encode, sources["points"])}
 
 
-def _seen(camera: Camera, encoding: DepthEncoding) -> dict[str, Any]:
+def _camera_uniforms(camera: Camera, encoding: DepthEncoding) -> dict[str, Any]:
     """The uniforms that describe the camera, by name."""
     projection = encoding.projection
     return {
@@ -112,7 +112,9 @@ def _seen(camera: Camera, encoding: DepthEncoding) -> dict[str, Any]:
     }
 
 
-def _stored(device: Device, stack: ExitStack, storage: DepthStorage, passed: VertexArray, source: Texture) -> Texture:
+def _stored_texture(
+    device: Device, stack: ExitStack, storage: DepthStorage, passed: VertexArray, source: Texture
+) -> Texture:
     """What a pass writes into a storage, as a texture; released with the stack."""
     if storage.home != "attachment":
         target = device.owned(stack, device.target(source.size, storage.format))
@@ -157,7 +159,7 @@ def through(device: Device, storage: DepthStorage, numbers: np.ndarray) -> np.nd
         write = device.owned(stack, device.fragment_pass("depth_as_it_is.frag", home))
         copy = device.owned(stack, device.fragment_pass("copy.frag"))
         result = device.owned(stack, device.target(source.size, FORMATS["rgba32f"]))
-        device.render(copy, [result], source=_stored(device, stack, storage, write, source))
+        device.render(copy, [result], source=_stored_texture(device, stack, storage, write, source))
         return read_pixels(result)[0, :, 0].copy()
 
 
@@ -172,6 +174,6 @@ def exact_values(device: Device, encoding: DepthEncoding, camera: Camera, points
         the depths by the eye's ray, (count, 3).
     """
     defines, names = depth_defines(encoding), {"DEPTH_ENCODING": encoding.glsl}
-    seen = _seen(camera, encoding)
+    seen = _camera_uniforms(camera, encoding)
     values, *positions = exact(device, "depth_parity.comp", defines, names, [points], 4, **seen)
     return values[:, :2], *(found[:, :3] for found in positions)

@@ -86,12 +86,12 @@ class Passes:
         device = self._device
         with ExitStack() as stack:
             sources = uploaded(device, stack, given)
-            kept = self._written(stack, sources)
+            kept = self._written_textures(stack, sources)
             made = [device.owned(stack, device.target(kept["texels"].size, storage)) for storage in results]
             device.render(self._decode, made, **kept, **sources, **self._tables)
             return [read_pixels(texture) for texture in made]
 
-    def _written(self, stack: ExitStack, sources: Textures) -> Textures:
+    def _written_textures(self, stack: ExitStack, sources: Textures) -> Textures:
         """What the encoding pass leaves in the targets; released with the stack."""
         device, size = self._device, next(iter(sources.values())).size
         kept = {name: device.owned(stack, device.target(size, storage)) for name, storage in self._formats.items()}

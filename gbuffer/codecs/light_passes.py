@@ -66,7 +66,7 @@ class LightPasses(Passes):
         light, kept = self._through([STORAGES["rgba32f"]] * 2, lights=lights)
         return Sum(light[0], kept[0])
 
-    def _written(self, stack: ExitStack, sources: Textures) -> Textures:
+    def _written_textures(self, stack: ExitStack, sources: Textures) -> Textures:
         width, count = sources["lights"].size
         device, none = self._device, self._codec.no_light
         copies = 2 if self._codec.blend == "read" else 1

@@ -67,7 +67,7 @@ def turns_made(device: Device, encoding: Encoding, n: np.ndarray, view: np.ndarr
     """
     scale = float(STORAGES["rgba8"].scale(0))
     defines = encoding_defines(encoding) | {"MOST_LOOPS": MOST_LOOPS, "KERNEL_SCALE": scale}
-    text, loops = _counted(Source(_COUNTER, defines, {"ENCODING": encoding.glsl}))
+    text, loops = _counted_text(Source(_COUNTER, defines, {"ENCODING": encoding.glsl}))
     if loops > MOST_LOOPS:
         raise ShaderError(f"{encoding.glsl}: {loops} loops, of which at most {MOST_LOOPS} are counted")
     # A normal once for each loop, which its fourth number names.
@@ -82,7 +82,7 @@ def turns_made(device: Device, encoding: Encoding, n: np.ndarray, view: np.ndarr
     return encoded.reshape(len(n), loops), decoded.reshape(len(n), loops)
 
 
-def _counted(source: Source) -> tuple[str, int]:
+def _counted_text(source: Source) -> tuple[str, int]:
     """A shader's text with each condition of the encoding's loops counted, and how many these are."""
     text = source.text
     code = _NO_CODE.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)

@@ -75,17 +75,21 @@ def encode(encoding: Encoding) -> Operation:
     defines, *others = _read(encoding)
     scale = {"KERNEL_SCALE": float(STORAGES["rgba8"].scale(0))}
     portable = not encoding.is_precise
-    return Operation("kernel_encode.glsl", 3, 3, _size(encoding), defines | scale, *others, is_portable=portable)
+    return Operation(
+        "kernel_encode.glsl", 3, 3, _number_count(encoding), defines | scale, *others, is_portable=portable
+    )
 
 
 def decode(encoding: Encoding) -> Operation:
     """A code and the view-space position beside it to a normal. Raises ShaderError as `encoding_defines`."""
-    return Operation("kernel_decode.glsl", _size(encoding), 3, 3, *_read(encoding))
+    return Operation("kernel_decode.glsl", _number_count(encoding), 3, 3, *_read(encoding))
 
 
-def _size(encoding: Encoding) -> int:
+def _number_count(encoding: Encoding) -> int:
     return encoding.components + encoding.sign_bits
 
 
 def _read(encoding: Encoding) -> tuple[Any, ...]:
-    return encoding_defines(encoding), {"ENCODING": encoding.glsl}, encoding.tables
+    """The macros of an encoding, the files that its macros name, and what gives its tables."""
+    as_it_stands = {"AS_IT_STANDS": 1} if encoding.is_packed else {}
+    return encoding_defines(encoding) | as_it_stands, {"ENCODING": encoding.glsl}, encoding.tables

@@ -7,12 +7,19 @@ from ..layouts.layout import Layout
 from ..layouts.words import COMPONENTS, PACKINGS, SIGNED, least_carried
 
 
-def layout_defines(layout: Layout, rounds: tuple[int, ...]) -> dict[str, object]:
-    """The macros that make `gbuffer.glsl` speak of a layout; `rounds` is `shader_roundings`."""
+def layout_defines(layout: Layout, rounds: tuple[int, ...], is_metal_rough: bool = False) -> dict[str, object]:
+    """The macros that make `gbuffer.glsl` speak of a layout.
+
+    Args:
+        rounds: `shader_roundings`.
+        is_metal_rough: whether it is surfaces of metal/rough materials that lie in it.
+    """
     words = layout.words
     storages = [target.storage for target in layout.targets]
     first = {"DEPTH": "depth", "ALBEDO": "albedo.r", "SPECULAR": "specular.r", "MOTION": "motion.x"}
-    first |= {"POWER": "power", "ROUGHNESS": "roughness", "KIND": "kind", "INSTANCE": "instance"}
+    first |= {"EMISSION": "emission.r"}
+    single = ("power", "roughness", "metalness", "reflectance", "occlusion", "kind", "instance")
+    first |= {name.upper(): name for name in single}
     widen, bias = PACKINGS[layout.packing]
     return {
         **{name: COMPONENTS.index(component) for name, component in first.items()},
@@ -37,6 +44,9 @@ def layout_defines(layout: Layout, rounds: tuple[int, ...]) -> dict[str, object]
         "HAS_DEPTH": int("depth" in layout.components),
         "HAS_POWER": int("power" in layout.components),
         "HAS_ROUGHNESS": int("roughness" in layout.components),
+        "HAS_EMISSION": int("emission.r" in layout.components),
+        "METAL_ROUGH": int(is_metal_rough),
+        "BY_METALNESS": int(is_metal_rough and "metalness" in layout.components),
         **_sign_defines(layout),
         "HAS_KIND": int("kind" in layout.components),
         "HAS_INSTANCE": int("instance" in layout.components),

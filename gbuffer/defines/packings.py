@@ -118,6 +118,7 @@ class WordPacking:
         return Operation("kernel_unpack.glsl", self.channels, 3, made, *self._read(), is_portable=False)
 
     def _read(self) -> tuple[Any, ...]:
+        """The macros of a layout with these numbers, and the files that its macros name."""
         layout = self._layout
         first = 0 if self.numbers else COMPONENTS.index("depth")
         rounds = (0,) * len(layout.targets)

@@ -30,7 +30,7 @@ def _passes(size: str, radius: float, slices: int, steps: int, power: float, see
     return passes("gtao.frag", size, True, **macros, **CONSTANTS)
 
 
-def _falls_off(distance: np.ndarray) -> np.ndarray:
+def _falloff_weights(distance: np.ndarray) -> np.ndarray:
     return np.clip((1 - distance) / CONSTANTS["FALL_OFF"], 0, 1)
 
 
@@ -49,5 +49,5 @@ EFFECT = AmbientOcclusion(
     VISIBILITY,
     _passes,
     SETTINGS,
-    falls_off=_falls_off,
+    falls_off=_falloff_weights,
 )

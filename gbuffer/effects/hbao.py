@@ -15,7 +15,7 @@ def _passes(size: str, radius: float, directions: int, steps: int, bias: float, 
     return passes("hbao.frag", size, False, **macros)
 
 
-def _falls_off(distance: np.ndarray) -> np.ndarray:
+def _falloff_weights(distance: np.ndarray) -> np.ndarray:
     return np.maximum(1 - distance**2, 0)
 
 
@@ -34,5 +34,5 @@ EFFECT = AmbientOcclusion(
     VISIBILITY,
     _passes,
     SETTINGS,
-    falls_off=_falls_off,
+    falls_off=_falloff_weights,
 )

@@ -27,7 +27,7 @@ def _passes(size: str, radius: float, taps: int, bias: float, strength: float, s
     return passes("sao.frag", size, False, RADIUS=radius, TAPS=taps, BIAS=bias, SEED=seed, **own)
 
 
-def _falls_off(distance: np.ndarray) -> np.ndarray:
+def _falloff_weights(distance: np.ndarray) -> np.ndarray:
     return np.maximum(1 - distance**2, 0) ** 3
 
 
@@ -46,5 +46,5 @@ EFFECT = AmbientOcclusion(
     VISIBILITY,
     _passes,
     SETTINGS,
-    falls_off=_falls_off,
+    falls_off=_falloff_weights,
 )

@@ -14,7 +14,7 @@ def _passes(size: str, radius: float, taps: int, bias: float, seed: int) -> tupl
     return passes("ssao.frag", size, False, RADIUS=radius, TAPS=taps, BIAS=bias, SEED=seed)
 
 
-def _falls_off(distance: np.ndarray) -> np.ndarray:
+def _falloff_weights(distance: np.ndarray) -> np.ndarray:
     # A direction's point lies anywhere up to the radius: it is behind a surface at `distance` with this probability.
     return np.maximum(1 - distance, 0)
 
@@ -33,5 +33,5 @@ EFFECT = AmbientOcclusion(
     VISIBILITY,
     _passes,
     SETTINGS,
-    falls_off=_falls_off,
+    falls_off=_falloff_weights,
 )

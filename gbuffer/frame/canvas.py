@@ -48,11 +48,11 @@ class Canvas:
 
     def textures(self, resource: Resource, copy: int = 0) -> list[Any]:
         """A resource's textures: of the copy in use, or `copy` before it."""
-        return self.frame.textures(self._declared(resource, (*self._pass.reads, *self._pass.writes)), copy)
+        return self.frame.textures(self._declared_resource(resource, (*self._pass.reads, *self._pass.writes)), copy)
 
     def swap(self, resource: Resource) -> None:
         """Write the next copy from here on; what was in use is the copy before."""
-        self.frame.held(self._declared(resource, self._pass.writes)).move_on()
+        self.frame.held(self._declared_resource(resource, self._pass.writes)).move_on()
 
     def target(self, *colours: Resource, depth: Resource | None = None, most: int | None = None) -> Target:
         """What to draw into.
@@ -63,9 +63,9 @@ class Canvas:
             most: how many textures at most.
         """
         for resource in colours:
-            self._declared(resource, self._pass.writes)
+            self._declared_resource(resource, self._pass.writes)
         if depth:
-            self._declared(depth, (*self._pass.reads, *self._pass.writes))
+            self._declared_resource(depth, (*self._pass.reads, *self._pass.writes))
         return Target(self, colours, depth, most, depth in self._pass.writes)
 
     def at(self, size: tuple[int, int], view: Sight | None) -> None:
@@ -113,7 +113,7 @@ class Canvas:
         there = {name: several for name, several in read.items() if several}
         self.frame.bind(program, self._size, self._view, {**there, **textures})
 
-    def _declared(self, resource: Resource, known: tuple[Resource, ...]) -> Resource:
+    def _declared_resource(self, resource: Resource, known: tuple[Resource, ...]) -> Resource:
         if resource not in known:
             raise PipelineError(f"pass {self._pass.name} uses {resource.name}, which it does not declare")
         return resource

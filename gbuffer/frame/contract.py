@@ -135,11 +135,11 @@ class Pipeline:
         """
         stages = list(self.stages)
         for one in passes:
-            stages.insert(_place(self.name, one, stages), one)
+            stages.insert(_index_after(self.name, one, stages), one)
         return replace(self, stages=tuple(stages))
 
 
-def _place(pipeline: str, one: Pass, stages: list[Pass]) -> int:
+def _index_after(pipeline: str, one: Pass, stages: list[Pass]) -> int:
     places = [index for index, stage in enumerate(stages) if stage.name in one.after]
     if not places:
         known = ", ".join(stage.name for stage in stages)
@@ -167,6 +167,7 @@ def _misfits(one: Pass, earlier: Sequence[Pass], stages: Sequence[Pass]) -> Iter
 
 
 def _written(stages: Sequence[Pass]) -> dict[str, Resource]:
+    """The resources that stages write, by name."""
     return {resource.name: resource for stage in stages for resource in stage.writes}
 
 

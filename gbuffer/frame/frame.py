@@ -17,10 +17,13 @@ from ..codecs.depth_passes import depth_defines
 from ..codecs.light_passes import light_defines
 from ..defines import materials
 from ..defines.layouts import layout_defines
+from ..environment.dfg import dfg_table
+from ..environment.prefilter import COARSE, FINE, Prefiltered, kept_prefiltered
 from ..gl import raw
 from ..gl.device import Device, bind
 from ..gl.handles import Buffer, Framebuffer, Program, Texture3D, VertexArray
 from ..layouts.layout import Layout
+from ..scenes.metal_rough import MAPS
 from ..scenes.scene import Scene
 from .contract import Pipeline
 from .held import Held
@@ -54,7 +57,10 @@ class Frame:
         try:
             self.scene_buffers = SceneBuffers(device, self.stack, scene)
             tables = plan.layout.codec.encoding.tables().items()
-            self.tables = {name: device.owned(self.stack, device.upload(table)) for name, table in tables}
+            self.tables: dict[str, Any] = {
+                **{name: device.owned(self.stack, device.upload(table)) for name, table in tables},
+                **self._material_tables(),
+            }
         except BaseException:
             self.stack.close()
             raise
@@ -135,12 +141,34 @@ class Frame:
             **LIGHT_HOLDS,
             **encoding_defines(plan.layout.codec.encoding),
             **depth_defines(plan.layout.depth_encoding),
-            **layout_defines(plan.layout, shader_roundings(self.device, plan.layout)),
+            **layout_defines(plan.layout, shader_roundings(self.device, plan.layout), self.scene.is_metal_rough),
+            **self._material_defines(),
             "SAMPLES": plan.surface_samples,
             "LIGHT_TARGETS": plan.light_targets,
             **light_defines(plan.light_buffer),
             "SHADOWS": int(plan.shadows),
         }
+
+    def _material_defines(self) -> dict[str, object]:
+        """The macros of metal/rough materials and of what lies around."""
+        around = self.scene.environment
+        found: dict[str, object] = {"HAS_MAPS": int(self.scene.has_maps), "HAS_ENVIRONMENT": int(around is not None)}
+        found |= {"SPECULAR_ANTIALIASING": int(self.plan.antialiased), "LEAST_ROUGHNESS": self.plan.least_roughness}
+        found |= {f"{name.upper()}_MAP": number for number, name in enumerate(MAPS)} | {"MAP_COUNT": len(MAPS)}
+        for name, levels in (("FINE", FINE), ("COARSE", COARSE)):
+            found |= {f"{name}_ROUGHNESS": tuple(map(float, levels)), f"{name}_LEVELS": len(levels)}
+        return found
+
+    def _material_tables(self) -> dict[str, Any]:
+        """What metal/rough surfaces look up: the split sum, and what lies around. On the device beyond the frame."""
+        if not self.scene.is_metal_rough:
+            return {}
+        device = self.device
+        (sums,) = device.lasting("dfg", lambda: [device.upload(dfg_table())])
+        if (around := self.scene.environment) is None:
+            return {"dfg": sums}
+        fine, coarse = device.lasting(around, lambda: _levels_uploaded(device, kept_prefiltered(around)))
+        return {"dfg": sums, "environment_fine": fine, "environment_coarse": coarse}
 
     def program(self, vertex: str | Path, fragment: str | Path, **defines: object) -> Program:
         """A compiled pair of shaders that knows the frame's layout. Raises ShaderError."""
@@ -162,12 +190,12 @@ class Frame:
     def bind(self, program: Program, size: tuple[int, int], view: Sight | None, textures: Mapping[str, Any]) -> None:
         """Bind what a draw into a target of this size reads, seen from a view or by the scene's own camera (None)."""
         if (size, view) not in self._blocks:
-            self._blocks[size, view] = self._block(size, view)
+            self._blocks[size, view] = self._frame_buffer(size, view)
         self._blocks[size, view].bind_to_uniform_block(FRAME_BINDING)
         self.scene_buffers.bind(view)
         bind(program, {"bumps": self.scene_buffers.bumps, **self.tables, **textures})
 
-    def _block(self, size: tuple[int, int], view: Sight | None) -> Buffer:
+    def _frame_buffer(self, size: tuple[int, int], view: Sight | None) -> Buffer:
         """What `frame.glsl` declares."""
         sight, previous = view or self.scene.view, view or self.scene.previous
         picture = size if view else self.plan.size
@@ -179,6 +207,10 @@ class Frame:
         matrices = [projection, np.linalg.inv(projection), to_world, to_sun, previous_clip]
         data = np.concatenate([*(m.T.ravel() for m in matrices), *map(np.array, vectors)])
         return self.device.owned(self.stack, self.context.buffer(data.astype(np.float32).tobytes()))
+
+
+def _levels_uploaded(device: Device, levels: Prefiltered) -> list[Any]:
+    return [device.layers(levels.fine), device.layers(levels.coarse)]
 
 
 def shader_roundings(device: Device, layout: Layout) -> tuple[int, ...]:

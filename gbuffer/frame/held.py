@@ -25,21 +25,21 @@ class Held:
         """The textures, or the depth buffer, of the copy in use or of one before it."""
         place = (self._used - before) % self._resource.copies
         if place not in self._copies:
-            self._copies[place] = [self._made(texel) for texel in self._texels]
+            self._copies[place] = [self._owned_texture(texel) for texel in self._texels]
         return self._copies[place]
 
     def move_on(self) -> None:
         """Make the next copy the one in use."""
         self._used = (self._used + 1) % self._resource.copies
 
-    def _made(self, texel: Texel) -> Any:
-        made = self._texture(texel)
+    def _owned_texture(self, texel: Texel) -> Any:
+        made = self._new_texture(texel)
         self._stack.callback(made.release)
         if self._resource.smooth:
             self._device.smooth(made)
         return made
 
-    def _texture(self, texel: Texel) -> Any:
+    def _new_texture(self, texel: Texel) -> Any:
         width, height, samples = self._shape
         if isinstance(texel, Storage):
             volume = (width, height, self._resource.depth)

@@ -12,7 +12,7 @@ class Geometry:
     def __init__(self, frame: Frame, program: Program):
         self._frame, self.program = frame, program
         # The compiler drops what nobody reads; its bytes are skipped.
-        attributes = {"in_position": 3, "in_normal": 3, "in_tangent": 4, "in_uv": 2}
+        attributes = {"in_position": 3, "in_normal": 3, "in_tangent": 4, "in_uv": 2, "in_second_uv": 2}
         form = " ".join(f"{n}f" if name in program else f"{4 * n}x" for name, n in attributes.items())
         read = [name for name in attributes if name in program]
         self._arrays = [
@@ -27,4 +27,5 @@ class Geometry:
         for draw in buffers.draws[name]:
             device.cull(not buffers.two_sided[draw.mesh])
             self.program["first"] = draw.first
+            buffers.bind_maps(self.program, draw.material)
             self._arrays[draw.mesh].render(instances=draw.count)

@@ -7,6 +7,9 @@ from dataclasses import dataclass
 from ...encodings.codecs.light_codec import LightCodec
 from ..layouts.layout import Layout
 
+# In 32-bit floats (Filament's clamp for them): what lights make of less is narrower than pixels tell.
+LEAST_ROUGHNESS = 0.045
+
 
 @dataclass(frozen=True)
 class Plan:
@@ -18,6 +21,8 @@ class Plan:
         layout, light_buffer: what the G-buffer and the light are kept in.
         light_targets: 1 or 2, see `accumulation.glsl`.
         shadows: whether the sun has a shadow map.
+        antialiased: whether metal/rough surfaces are made rougher by the normals that a pixel sees.
+        least_roughness: that lights see; what lies around is mirrored down to 0.
         scale: of the G-buffer's and light buffer's size to the image's, for pipelines that have the choice.
         apart: whether G-buffer and light buffer have that scale, and one sample a pixel; the pipeline says so.
     """
@@ -30,6 +35,8 @@ class Plan:
     shadows: bool
     scale: float
     apart: bool = False
+    antialiased: bool = True
+    least_roughness: float = LEAST_ROUGHNESS
 
     @property
     def surface_scale(self) -> float:

@@ -20,15 +20,15 @@ AS_MANY = 0
 Texel = Storage | str
 
 
-def _light(plan: Plan) -> tuple[Texel, ...]:
+def _light_texels(plan: Plan) -> tuple[Texel, ...]:
     return (plan.light_buffer.storage,) * plan.light_targets
 
 
-def _next_light(plan: Plan) -> tuple[Texel, ...]:
-    return _light(plan) if plan.light_buffer.blend == "read" else ()
+def _next_light_texels(plan: Plan) -> tuple[Texel, ...]:
+    return _light_texels(plan) if plan.light_buffer.blend == "read" else ()
 
 
-def _linear_depth(plan: Plan) -> tuple[Texel, ...]:
+def _linear_depth_texels(plan: Plan) -> tuple[Texel, ...]:
     return () if "depth" in plan.layout.components else (R32F,)
 
 
@@ -36,9 +36,9 @@ def _linear_depth(plan: Plan) -> tuple[Texel, ...]:
 PLANNED: Mapping[str, Callable[[Plan], tuple[Texel, ...]]] = MappingProxyType(
     {
         "the layout's": lambda plan: tuple(target.storage for target in plan.layout.targets),
-        "the light buffer's": _light,
-        "the light buffer's, where it is read": _next_light,
-        "linear depth": _linear_depth,
+        "the light buffer's": _light_texels,
+        "the light buffer's, where it is read": _next_light_texels,
+        "linear depth": _linear_depth_texels,
         "shadows": lambda plan: (DEPTH_MAP,) * plan.shadows,
     }
 )

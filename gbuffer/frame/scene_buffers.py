@@ -10,9 +10,11 @@ from typing import Protocol
 import numpy as np
 
 from ..gl.device import Device
-from ..gl.handles import Buffer, Texture
+from ..gl.handles import Buffer, Program, Texture
 from ..scenes.mesh import Mesh
-from ..scenes.scene import KINDS, LIGHT_KINDS, Light, Scene
+from ..scenes.metal_rough import MetalRough
+from ..scenes.scene import KINDS, LIGHT_KINDS, Light, Material, Scene
+from .maps import Maps, metal_rough_numbers
 
 INSTANCES, ORDER, LIGHTS, MATERIALS = 0, 1, 2, 3
 LAYERS = 3
@@ -38,11 +40,13 @@ class Sight(Protocol):
 
 @dataclass(frozen=True)
 class Draw:
-    """Some instances of one mesh, `count` entries of the order from `first` on."""
+    """Some instances of one mesh, `count` entries of the order from `first` on. Those of metal/rough materials are all
+    of one material, whose maps are bound before."""
 
     mesh: int
     first: int
     count: int
+    material: int
 
 
 class SceneBuffers:
@@ -63,6 +67,7 @@ class SceneBuffers:
         self.two_sided = [part.two_sided for part in scene.parts]
         self.meshes = [self._upload_mesh(part.mesh) for part in scene.parts]
         self.bumps = device.owned(stack, _bump_texture(device))
+        self._maps = Maps(device, stack, scene) if scene.has_maps else None
         # Tables of the moment.
         self._moment = ExitStack()
         stack.callback(lambda: self._moment.close())
@@ -84,7 +89,10 @@ class SceneBuffers:
         # The shaders find the sun in the first place.
         self.lights = tuple(sorted(scene.lights, key=lambda light: light.kind != "sun"))
         self.first_lamp = int(scene.sun is not None)
-        self._tables = {ORDER: self._table(self._order()), MATERIALS: self._table(self._materials())}
+        self._tables = {
+            ORDER: self._table_buffer(self._ordered_instances()),
+            MATERIALS: self._table_buffer(self._material_table()),
+        }
         self._seen: dict[Sight, dict[int, Buffer]] = {}
 
     def bind(self, view: Sight | None = None) -> None:
@@ -92,12 +100,17 @@ class SceneBuffers:
         sight = view or self._scene.view
         if sight not in self._seen:
             matrix = sight.matrix()
-            tables = {INSTANCES: self._instances(matrix), LIGHTS: self._lights(matrix)}
-            self._seen[sight] = {binding: self._table(data) for binding, data in tables.items()}
+            tables = {INSTANCES: self._instance_table(matrix), LIGHTS: self._light_table(matrix)}
+            self._seen[sight] = {binding: self._table_buffer(data) for binding, data in tables.items()}
         for binding, buffer in (self._tables | self._seen[sight]).items():
             buffer.bind_to_storage_buffer(binding)
 
-    def _table(self, data: np.ndarray) -> Buffer:
+    def bind_maps(self, program: Program, material: int) -> None:
+        """Make a material's maps those that a program samples."""
+        if self._maps:
+            self._maps.bind(program, material)
+
+    def _table_buffer(self, data: np.ndarray) -> Buffer:
         # An empty list is a buffer all the same.
         return self._device.owned(self._moment, self._device.context.buffer(data.tobytes() or bytes(16)))
 
@@ -105,7 +118,7 @@ class SceneBuffers:
         corners, triangles = (self._device.context.buffer(data.tobytes() or bytes(16)) for data in mesh.uploaded)
         return self._device.owned(self._stack, corners), self._device.owned(self._stack, triangles)
 
-    def _instances(self, view: np.ndarray) -> np.ndarray:
+    def _instance_table(self, view: np.ndarray) -> np.ndarray:
         models = np.concatenate([part.models for part in self._scene.parts])
         count = len(models)
         table = np.zeros(count, [("model_view", np.float32, (4, 4)), ("numbers", np.int32, 4)])
@@ -116,17 +129,15 @@ class SceneBuffers:
         table["numbers"][:, 2] = np.arange(count) % IDENTITIES + 1
         return table
 
-    def _materials(self) -> np.ndarray:
-        rows = [
-            [*m.albedo, m.alpha, *m.specular, m.power, *m.emissive, KINDS.index(m.kind), m.bump, m.bump_repeat, 0, 0]
-            for m in self._scene.materials
-        ]
+    def _material_table(self) -> np.ndarray:
+        materials = self._scene.materials
+        rows = [metal_rough_numbers(m) if isinstance(m, MetalRough) else _blinn_phong_numbers(m) for m in materials]
         return np.array(rows, np.float32)
 
-    def _lights(self, view: np.ndarray) -> np.ndarray:
-        return np.array([_light(light, view) for light in self.lights], np.float32).reshape(-1, 16)
+    def _light_table(self, view: np.ndarray) -> np.ndarray:
+        return np.array([_light_numbers(light, view) for light in self.lights], np.float32).reshape(-1, 16)
 
-    def _order(self) -> np.ndarray:
+    def _ordered_instances(self) -> np.ndarray:
         """Fills `draws` and gives the instances that they list."""
         parts, transparent = self._scene.parts, self._transparent
         mesh = np.repeat(np.arange(len(parts)), [len(part.models) for part in parts])
@@ -147,19 +158,36 @@ class SceneBuffers:
             chosen[index] = ~transparent & ((light.kind == "sun") | (away < radii + light.radius))
         order: list[int] = []
         for name, mask in chosen.items():
-            self.draws[name] = _listed(np.flatnonzero(mask), mesh, order)
+            self.draws[name] = self._listed_draws(np.flatnonzero(mask), mesh, order)
         depth = centres @ self.view[2, :3] + self.view[2, 3]
         glass = np.flatnonzero(transparent)
         glass = glass[np.argsort(depth[glass], kind="stable")]
         self.draws["transparent"] = []
         for instance in glass:
-            self.draws["transparent"] += _listed(np.array([instance]), mesh, order)
+            self.draws["transparent"] += self._listed_draws(np.array([instance]), mesh, order)
         # Special materials first: where a general surface meets one in one depth, both geometry passes keep that one.
         self.draws["opaque"] = self.draws["special"] + self.draws["general"]
         return np.array(order, np.int32)
 
+    def _listed_draws(self, instances: np.ndarray, mesh: np.ndarray, order: list[int]) -> list[Draw]:
+        """Draws of instances, one for each mesh they are of and, where there are maps, for each material, appended to
+        the order."""
+        of_material = self._material if self._maps else np.zeros_like(self._material)
+        kinds = np.stack([mesh[instances], of_material[instances]], axis=1)
+        draws = []
+        for index, material in np.unique(kinds, axis=0):
+            chosen = instances[np.all(kinds == (index, material), axis=1)]
+            draws.append(Draw(int(index), len(order), len(chosen), int(material)))
+            order += chosen.tolist()
+        return draws
 
-def _light(light: Light, view: np.ndarray) -> list[float]:
+
+def _blinn_phong_numbers(material: Material) -> list[float]:
+    kind, bump = KINDS.index(material.kind), (material.bump, material.bump_repeat)
+    return [*material.albedo, material.alpha, *material.specular, material.power, *material.emissive, kind, *bump, 0, 0]
+
+
+def _light_numbers(light: Light, view: np.ndarray) -> list[float]:
     position = view[:3, :3] @ np.array(light.position) + view[:3, 3]
     direction = view[:3, :3] @ np.array(light.direction)
     outer, inner = np.cos(np.radians([light.outer, light.inner]))
@@ -170,17 +198,8 @@ def _light(light: Light, view: np.ndarray) -> list[float]:
 def what_is_built(scene: Scene) -> tuple[object, ...]:
     """What passes are built for, and may not change from frame to frame."""
     meshes = ((part.mesh.positions.tobytes(), part.mesh.triangles.tobytes(), part.casts) for part in scene.parts)
-    return *meshes, *sorted(light.kind for light in scene.lights)
-
-
-def _listed(instances: np.ndarray, mesh: np.ndarray, order: list[int]) -> list[Draw]:
-    """Draws of instances, one for each mesh they are of, appended to the order."""
-    draws = []
-    for index in np.unique(mesh[instances]):
-        of_mesh = instances[mesh[instances] == index]
-        draws.append(Draw(int(index), len(order), len(of_mesh)))
-        order += of_mesh.tolist()
-    return draws
+    lights = sorted(light.kind for light in scene.lights)
+    return *meshes, *lights, scene.is_metal_rough, scene.has_maps, scene.environment
 
 
 def bounds(scene: Scene, casters_only: bool = False) -> tuple[np.ndarray, np.ndarray]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from functools import cache
 from pathlib import Path
@@ -24,6 +24,9 @@ DITHER, FRAMEBUFFER_SRGB = 0x0BD0, 0x8DB9
 NATIVE_ROUNDINGS = ("nearest", "truncate")
 # More than any one frame uses: the one that was asked for longest ago is released.
 KEPT_PROGRAMS = 64
+# Sets of textures that outlive frames, each of up to a hundred megabytes; more than one frame uses.
+KEPT_TEXTURES = 4
+SRGB8_ALPHA8 = 0x8C43
 # Factors of what is drawn and of what is there: their sum, their product, and the one over the other by its alpha.
 ADD, MULTIPLY = (moderngl.ONE, moderngl.ONE), (moderngl.DST_COLOR, moderngl.ZERO)
 OVER = (moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA)
@@ -84,6 +87,7 @@ class Device:
         self.max_samples = int(min(info[name] for name in samples))
         self._programs: dict[tuple[str, str], moderngl.Program] = {}
         self._native: dict[str, str] = {}
+        self._lasting: dict[object, list[Any]] = {}
         # In use while no pass is: a framebuffer that is released while in use leaves an error for the next one.
         self.idle = self.context.simple_framebuffer((1, 1))
         # GL dithers by default, where it dithers at all: what is stored would not be what was written.
@@ -103,7 +107,7 @@ class Device:
         self, vertex: str | Path, fragment: str | Path, defines: Mapping[str, object] | None = None, names=None
     ):
         """A vertex and a fragment shader under the same macros. Raises ShaderError as `fragment_pass` does."""
-        return self._compiled(Source(vertex, defines, names), Source(fragment, defines, names))
+        return self._compiled_program(Source(vertex, defines, names), Source(fragment, defines, names))
 
     def shared_program(self, vertex: str | Path, fragment: str | Path, defines: Mapping[str, object], names=None):
         """A program that the device keeps for the next who asks for the same; not to be released."""
@@ -112,11 +116,11 @@ class Device:
         if key not in self._programs:
             if len(self._programs) >= KEPT_PROGRAMS:
                 self._programs.pop(next(iter(self._programs))).release()
-            self._programs[key] = self._compiled(*sources)
+            self._programs[key] = self._compiled_program(*sources)
         self._programs[key] = self._programs.pop(key)
         return self._programs[key]
 
-    def _compiled(self, first: Source, second: Source) -> moderngl.Program:
+    def _compiled_program(self, first: Source, second: Source) -> moderngl.Program:
         try:
             return self.context.program(vertex_shader=first.text, fragment_shader=second.text)
         except moderngl.Error as error:
@@ -188,6 +192,40 @@ class Device:
         texture.build_mipmaps()
         texture.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
         return texture
+
+    def picture(self, texels: np.ndarray, is_srgb: bool, repeats: tuple[bool, bool]) -> moderngl.Texture:
+        """uint8 or uint16 of shape (height, width, 4) that shaders sample at every size, each in [0, 1].
+
+        Args:
+            is_srgb: whether the first three channels are on the sRGB curve; 8 bits only.
+            repeats: along x and y, or its edge goes on.
+        """
+        height, width, _ = texels.shape
+        data, dtype = np.ascontiguousarray(texels).tobytes(), "nu2" if texels.dtype == np.uint16 else "f1"
+        internal = {"internal_format": SRGB8_ALPHA8} if is_srgb else {}
+        texture = self.context.texture((width, height), 4, data, dtype=dtype, **internal)
+        texture.build_mipmaps()
+        texture.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
+        texture.repeat_x, texture.repeat_y = repeats
+        return texture
+
+    def layers(self, pixels: np.ndarray) -> moderngl.TextureArray:
+        """A float32 array of shape (layers, height, width, 3) to fetch texels from."""
+        count, height, width, channels = pixels.shape
+        data = np.ascontiguousarray(pixels, np.float32).tobytes()
+        texture = self.context.texture_array((width, height, count), channels, data, dtype="f4")
+        texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
+        return texture
+
+    def lasting(self, key: object, make: Callable[[], Sequence[moderngl.Texture | moderngl.TextureArray]]) -> list[Any]:
+        """Textures that outlive frames: made once for a key, and released once KEPT_TEXTURES others were asked for."""
+        if key not in self._lasting:
+            if len(self._lasting) >= KEPT_TEXTURES:
+                for texture in self._lasting.pop(next(iter(self._lasting))):
+                    texture.release()
+            self._lasting[key] = list(make())
+        self._lasting[key] = self._lasting.pop(key)
+        return self._lasting[key]
 
     @staticmethod
     def build_mips(texture: moderngl.Texture) -> None:
@@ -353,7 +391,7 @@ def bind(program: Any, textures: Mapping[str, moderngl.Texture | Sequence[modern
     for name, given in textures.items():
         if name not in program:
             continue
-        several = [given] if isinstance(given, moderngl.Texture) else list(given)
+        several = list(given) if isinstance(given, Sequence) else [given]
         # The compiler shortens an array whose last elements nobody reads.
         several = several[: program[name].array_length]
         units = list(range(unit, unit + len(several)))

@@ -55,7 +55,7 @@ class Source:
     """
 
     def __init__(self, path: str | Path, defines: Mapping[str, object] | None = None, names=None):
-        self.place = main = _resolved(Path(shaders().get(str(path), path)))
+        self.place = main = _resolved_path(Path(shaders().get(str(path), path)))
         stand_for = tuple(sorted((name, Path(target)) for name, target in (names or {}).items()))
         is_own = all(map(_is_own, (main, *(target for _, target in stand_for))))
         (version, *rest), body = (_expanded_of_own if is_own else _expanded)(main, stand_for)
@@ -63,7 +63,7 @@ class Source:
         mentioned = _words(body) | _words(" ".join(macros.values()))
         head = [(f"#define {name} {value}", main, 1) for name, value in macros.items() if name in mentioned]
         self._lines: list[Line] = [version, *head, *rest]
-        self.text = _text([version, *head]) + body
+        self.text = _joined_text([version, *head]) + body
 
     @property
     def files(self) -> list[Path]:
@@ -107,11 +107,11 @@ def _once_of_own(function: Callable[..., T]) -> Callable[..., T]:
 
 
 @_once_of_own
-def _resolved(path: Path) -> Path:
+def _resolved_path(path: Path) -> Path:
     return path.resolve()
 
 
-def _text(lines: Iterable[Line]) -> str:
+def _joined_text(lines: Iterable[Line]) -> str:
     return "".join(f"{line}\n" for line, _, _ in lines)
 
 
@@ -131,11 +131,11 @@ def _expanded(main: Path, names: Sequence[tuple[str, Path]]) -> tuple[list[Line]
         named = match["name"]
         if named and named not in stand_for:
             raise ShaderError(f"{path}:{number}: nothing is named {named}")
-        target = _resolved(stand_for[named]) if named else _beside(path, match["file"])
+        target = _resolved_path(stand_for[named]) if named else _beside(path, match["file"])
         return [] if target in seen else expand(target)
 
     lines = expand(main)
-    return lines, _text(lines[1:])
+    return lines, _joined_text(lines[1:])
 
 
 # Frames ask for the same programs again and again, with other macros; the program's own files stay as they are.

@@ -4,6 +4,9 @@
 #include "code.glsl"
 #include "words.glsl"
 #include "surface.glsl"
+#if METAL_ROUGH
+#include "metal_rough.glsl"
+#endif
 
 #ifdef WRITES_GBUFFER
 layout(location = 0) out vec4 texels[TARGETS];
@@ -16,11 +19,16 @@ void write_gbuffer(Surface s) {
     for (int i = 0; i < DEPTH; ++i) numbers[i] = code[i];
     numbers[DEPTH] = SIGN_IN_DEPTH != 0 ? code[SIGN_NUMBER] * -s.position.z : -s.position.z;
     for (int i = 0; i < 3; ++i) {
-        numbers[ALBEDO + i] = s.albedo[i];
+        numbers[ALBEDO + i] = BY_METALNESS != 0 ? s.base[i] : s.albedo[i];
         numbers[SPECULAR + i] = s.specular[i];
+        numbers[EMISSION + i] = s.emissive[i];
     }
-    numbers[POWER] = s.power;
-    numbers[ROUGHNESS] = roughness_of_power(s.power);
+    // A layout that has a place for a power, and none for a roughness, has the roughness of a metal/rough surface there.
+    numbers[POWER] = METAL_ROUGH != 0 ? s.roughness : s.power;
+    numbers[ROUGHNESS] = METAL_ROUGH != 0 ? s.roughness : roughness_of_power(s.power);
+    numbers[METALNESS] = s.metalness;
+    numbers[REFLECTANCE] = s.reflectance;
+    numbers[OCCLUSION] = s.occlusion;
     numbers[KIND] = float(s.kind);
     numbers[INSTANCE] = float(s.instance);
     numbers[MOTION] = s.motion.x;
@@ -38,6 +46,8 @@ Surface read_gbuffer(ivec2 pixel) {
     float numbers[NUMBERS];
     for (int i = 0; i < NUMBERS; ++i) numbers[i] = 0.0;
     numbers[POWER] = LIGHT_PASS_POWER;
+    numbers[REFLECTANCE] = DIELECTRIC;
+    numbers[OCCLUSION] = 1.0;
     from_texels(texels, numbers);
     Surface s;
     float depth = HAS_DEPTH != 0 ? abs(numbers[DEPTH]) : texelFetch(linear_depth, pixel, SAMPLE).x;
@@ -52,10 +62,18 @@ Surface read_gbuffer(ivec2 pixel) {
     s.albedo = vec3(numbers[ALBEDO], numbers[ALBEDO + 1], numbers[ALBEDO + 2]);
     s.specular = vec3(numbers[SPECULAR], numbers[SPECULAR + 1], numbers[SPECULAR + 2]);
     s.power = HAS_ROUGHNESS != 0 ? power_of_roughness(numbers[ROUGHNESS]) : numbers[POWER];
+    s.roughness = clamp(HAS_ROUGHNESS != 0 ? numbers[ROUGHNESS] : numbers[POWER], 0.0, 1.0);
+    s.base = s.albedo;
+    s.metalness = clamp(numbers[METALNESS], 0.0, 1.0);
+    s.reflectance = numbers[REFLECTANCE];
+#if BY_METALNESS
+    settle(s);
+#endif
     s.kind = int(numbers[KIND] + 0.5);
     s.instance = int(numbers[INSTANCE] + 0.5);
     s.motion = vec2(numbers[MOTION], numbers[MOTION + 1]);
-    s.emissive = vec3(0.0);
+    s.emissive = vec3(numbers[EMISSION], numbers[EMISSION + 1], numbers[EMISSION + 2]);
+    s.occlusion = numbers[OCCLUSION];
     s.alpha = 1.0;
     s.layer = 0;
     return s;

@@ -1,5 +1,6 @@
 // Light that comes from everywhere, and what effects know of it: how much of it arrives, and what other surfaces add.
 #include "frame.glsl"
+#include "unlit.glsl"
 
 #ifdef HAS_VISIBILITY
 uniform sampler2D visibility;
@@ -8,14 +9,15 @@ uniform sampler2D visibility;
 uniform sampler2D indirect;
 #endif
 
-// Times 1 / pi, at a pixel of the G-buffer.
-vec3 light_from_everywhere(ivec2 pixel) {
-    vec3 light = ambient.rgb;
+// What a surface at a pixel of the G-buffer shows without lights.
+vec3 unlit_at(Surface s, ivec2 pixel) {
+    float arriving = 1.0;
+    vec3 added = vec3(0.0);
 #ifdef HAS_VISIBILITY
-    light *= texelFetch(visibility, pixel, 0).x;
+    arriving = texelFetch(visibility, pixel, 0).x;
 #endif
 #ifdef HAS_INDIRECT
-    light += texelFetch(indirect, pixel, 0).rgb;
+    added = texelFetch(indirect, pixel, 0).rgb;
 #endif
-    return light;
+    return unlit(s, arriving, added);
 }

@@ -32,7 +32,7 @@ float taken(int component, float x) { return NORMAL_UNIT != 0 && component < DEP
 float to_unit(int component, float x, float scale) {
     if (is_signed(component)) return x * 0.5 + 0.5;
     if (is_integer(component)) return mod(x, scale + 1.0) / scale;
-    if (component == POWER) return log2(max(x, 1.0)) / LOG2_POWER_MAX;
+    if (component == POWER && METAL_ROUGH == 0) return log2(max(x, 1.0)) / LOG2_POWER_MAX;
     if (component != DEPTH) return x;
     float number = number_of_depth(x, DEPTH_RANGE, false);
     return DEPTH_SIGNED != 0 ? float(fixed_code(number, scale, true)) / scale : number;
@@ -41,7 +41,7 @@ float to_unit(int component, float x, float scale) {
 float from_unit(int component, float x, float scale) {
     if (is_signed(component)) return x * 2.0 - 1.0;
     if (is_integer(component)) return floor(x * scale + 0.5);
-    if (component == POWER) return exp2(x * LOG2_POWER_MAX);
+    if (component == POWER && METAL_ROUGH == 0) return exp2(x * LOG2_POWER_MAX);
     if (component != DEPTH) return x;
     float number = DEPTH_SIGNED != 0 ? from_fixed_code(uint(x * scale + 0.5), scale, true) : x;
     return depth_of_number(number, DEPTH_RANGE, false);

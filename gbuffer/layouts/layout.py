@@ -19,7 +19,7 @@ from ...encodings.codecs.depth_encoding import DepthEncoding
 from ...encodings.codecs.encoding import Encoding
 from ...encodings.codecs.files import called, file_toml
 from ...encodings.codecs.variants import MARK, settings_in, variant
-from ...encodings.storages.storage import FORMATS, ROUNDINGS, Storage
+from ...encodings.storages.storage import BITS_32, FORMATS, ROUNDINGS, Storage
 from .words import FREE, LEAST_BITS, PACKINGS, SIGNED, LayoutError, Target, Word, place_of, placed, without_normal
 
 SPACES = ("view", "world")
@@ -141,6 +141,8 @@ class Layout:
     def _check_normal(self, place: str, component: str, storage: Storage, bits: int) -> None:
         """Raises LayoutError where a number of the normal's code is not kept as the encoding needs it."""
         encoding = self.encoding
+        if encoding.is_packed and storage != BITS_32:
+            raise LayoutError(f"{place}: {encoding.name} packs 32 bits itself, which need the format {BITS_32.name}")
         if encoding.is_precise and (storage.kind == "float" or self.rounding != "nearest" or self.packing != "nearest"):
             raise LayoutError(f"{place}: {encoding.name} is rounded precisely, in fixed point and not otherwise")
         levels = encoding.levels_of("xyz".index(component[-1]))
@@ -160,6 +162,12 @@ class Layout:
         """What it keeps; a roughness is a power too."""
         found = frozenset(word.component for word in self.words)
         return found | {"power"} if "roughness" in found else found
+
+    @property
+    def metal_rough_components(self) -> frozenset[str]:
+        """What it keeps of a metal/rough surface: a metalness next to the base colour is what it reflects too."""
+        reflected = {f"specular.{channel}" for channel in "rgb"}
+        return self.components | (reflected if "metalness" in self.components else set())
 
     @property
     def codec(self) -> Codec:
@@ -223,7 +231,7 @@ class Layout:
         """
         if codec.misfit:
             raise LayoutError(f"layout {self.name}: {codec.name}: {codec.misfit}")
-        kept = [replace(t, holds=" ".join(_without_depth(t.holds))) for t in self.targets]
+        kept = [replace(t, holds=" ".join(_words_without_depth(t.holds))) for t in self.targets]
         kept = [target for target in kept if any(not word.startswith(FREE) for word in target.holds.split())]
         channel = {16: "r16f", 32: "r32f"}[codec.bits] if codec.storage.format.kind == "float" else ""
         home = Target(channel, "depth") if channel else Target("rgba8", f"depth:{codec.bits}")
@@ -236,7 +244,7 @@ def _check_known(layout: str, field: str, name: str, known: Collection[str]) -> 
         raise LayoutError(f"layout {layout}: unknown {field} {name!r}; known: {', '.join(known)}")
 
 
-def _without_depth(holds: str) -> list[str]:
+def _words_without_depth(holds: str) -> list[str]:
     return [FREE + word.removeprefix("depth") if word.startswith("depth") else word for word in holds.split()]
 
 
@@ -266,12 +274,12 @@ def read_layout(path: Path, encoding_named: Callable[[str], Encoding] = catalogu
     except (OSError, ValueError) as error:
         raise LayoutError(f"{path}: {error}") from error
     try:
-        return _from_data(path, data, encoding_named)
+        return _layout_from_data(path, data, encoding_named)
     except LayoutError as error:
         raise LayoutError(str(error) if str(path) in str(error) else f"{path}: {error}") from error
 
 
-def _from_data(path: Path, data: dict[str, Any], encoding_named: Callable[[str], Encoding]) -> Layout:
+def _layout_from_data(path: Path, data: dict[str, Any], encoding_named: Callable[[str], Encoding]) -> Layout:
     texts = {
         "title": called(path.stem),
         "source": called(str(path)),
@@ -292,11 +300,11 @@ def _from_data(path: Path, data: dict[str, Any], encoding_named: Callable[[str],
         raise LayoutError(f"{path}: targets is a list of tables, each with a format and what it holds, as texts")
     named: dict[str, Any] = {"encoding": encoding_named(texts.pop("encoding"))}
     depth = texts.pop("depth")
-    named |= {"depth": _named(path, "depth", depth, DEPTH_ENCODINGS)} if depth else {}
+    named |= {"depth": _known_value(path, "depth", depth, DEPTH_ENCODINGS)} if depth else {}
     return Layout(called(path.stem), targets=tuple(Target(t["format"], t["holds"]) for t in targets), **texts, **named)
 
 
-def _named(path: Path, field: str, name: str, known: Mapping[str, Any]) -> Any:
+def _known_value(path: Path, field: str, name: str, known: Mapping[str, Any]) -> Any:
     _check_known(path.stem, field, name, known)
     return known[name]
 

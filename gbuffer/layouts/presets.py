@@ -21,7 +21,7 @@ _ARTICLES = (
             Target("rgba32f", "normal.x normal.y normal.z depth"),
             Target("rgba32f", "albedo.r albedo.g albedo.b kind"),
             Target("rgba32f", "specular.r specular.g specular.b power"),
-            Target("rgba32f", "instance motion.x motion.y"),
+            Target("rgba32f", "instance motion.x motion.y occlusion"),
         ),
         ENCODINGS["xyz"],
         "this project",
@@ -60,6 +60,17 @@ _ARTICLES = (
         (Target("rgba8", "normal.x:16 normal.y:16"), Target("rgba8", "depth:16 instance power")),
         ENCODINGS["spheremap"],
         "Kircher and Lawrance 2009: normal, depth and an ID for the discontinuity-sensitive filter",
+    ),
+    Layout(
+        "metal_rough",
+        "base colour, occlusion; normal; roughness, metalness, reflectance, Deferred ID; emission in the light buffer",
+        targets_of(
+            "srgb8_a8: albedo.r albedo.g albedo.b occlusion; rg16: normal.x normal.y; "
+            "rgba8: roughness metalness reflectance kind"
+        ),
+        ENCODINGS["octahedral"],
+        "this project: what engines of metal/rough materials usually keep",
+        space="world",
     ),
     Layout(
         "xy_depth_sign",

@@ -18,12 +18,12 @@ from ...encodings.storages.storage import FORMATS, MANTISSA, Storage
 # The order is the G-buffer shaders' (gbuffer.glsl).
 COMPONENTS = (
     *("normal.x", "normal.y", "normal.z", "depth", "albedo.r", "albedo.g", "albedo.b"),
-    *("specular.r", "specular.g", "specular.b", "power", "roughness", "kind", "instance", "motion.x", "motion.y"),
+    *("specular.r", "specular.g", "specular.b", "power", "roughness", "metalness", "reflectance", "occlusion"),
+    *("emission.r", "emission.g", "emission.b", "kind", "instance", "motion.x", "motion.y"),
 )
 FREE = "-"
-# What engines keep and this renderer does not use: it takes its bits. There may be several others.
+# What engines keep and this renderer does not use: it takes its bits. There may be several.
 OTHER = "other"
-UNUSED = ("metalness", "occlusion", "emission.r", "emission.g", "emission.b", OTHER)
 # What may carry a sign: quantities that are not negative.
 CARRIERS = ("depth", "power", "roughness")
 COLOURS = ("albedo", "specular", "emission")
@@ -79,7 +79,7 @@ def placed(layout: str, index: int, target: Target) -> Iterator[Word]:
     """
     place, storage, bit = place_of(layout, index, target), target.storage, 0
     for text in target.holds.split():
-        name, sign, bits = _read(place, text)
+        name, sign, bits = _word_parts(place, text)
         if bits and name != OTHER:
             _check_packed(place, text, storage, bits)
         channel = len([end for end in _ends(storage) if end <= bit])
@@ -88,9 +88,9 @@ def placed(layout: str, index: int, target: Target) -> Iterator[Word]:
         taken = bits or (storage.bits[channel] if channel < storage.channels else 1)
         if bit + taken > sum(storage.bits):
             raise LayoutError(f"{place}: {target.holds!r} takes more than its {sum(storage.bits)} bits")
-        if channel < storage.curved and name.partition(".")[0] not in (*COLOURS, *UNUSED, FREE):
+        if channel < storage.curved and name.partition(".")[0] not in (*COLOURS, OTHER, FREE):
             raise LayoutError(f"{place}: {text}: the first three channels of {storage.title} hold colours")
-        if name not in (FREE, *UNUSED):
+        if name not in (FREE, OTHER):
             yield Word(name, index, bit if bits else channel, bits, sign)
         bit += taken
 
@@ -100,11 +100,11 @@ def place_of(layout: str, index: int, target: Target) -> str:
     return f"layout {layout}, target {index} ({target.format})"
 
 
-def _read(place: str, text: str) -> tuple[str, str, int]:
+def _word_parts(place: str, text: str) -> tuple[str, str, int]:
     """The component of a word, the sign that it carries, and its bits."""
     match = WORD.fullmatch(text)
-    if not match or match[1] not in (*COMPONENTS, *UNUSED, FREE):
-        known = ", ".join((*COMPONENTS, *UNUSED, FREE))
+    if not match or match[1] not in (*COMPONENTS, OTHER, FREE):
+        known = ", ".join((*COMPONENTS, OTHER, FREE))
         raise LayoutError(f"{place}: unknown component {text!r}; known: {known}")
     if match[3] and not int(match[3]):
         raise LayoutError(f"{place}: {text}: a word has at least 1 bit; without a number it has a channel")

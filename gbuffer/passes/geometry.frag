@@ -21,7 +21,8 @@ void main() {
 #endif
     write_gbuffer(s);
 #if LIGHT_HOLDS != TERMS
-    vec3 begins = s.kind == GENERAL || LIGHT_HOLDS != BY_KIND ? s.emissive : vec3(0.0);
+    bool is_finished = s.kind == GENERAL || LIGHT_HOLDS != BY_KIND;
+    vec3 begins = is_finished && HAS_EMISSION == 0 ? s.emissive : vec3(0.0);
     emissive = LIGHT_ENCODE(light_or_none(vec4(begins, 0.0)));
 #endif
 }

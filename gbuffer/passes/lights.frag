@@ -17,10 +17,11 @@ void main() {
 #else
     vec3 l, colour = from_lamp(lights[light], s.position, l);
 #endif
-    Terms t = light_terms(s.kind, s.direction, l, unit(-s.position), s.power);
+    vec3 v = unit(-s.position);
     if (LIGHT_HOLDS == COLOURS || (LIGHT_HOLDS == BY_KIND && s.kind == GENERAL)) {
-        add_colour(compose(s, colour * t.diffuse, colour * t.specular));
+        add_colour(colour * lit(s, l, v));
     } else {
+        Terms t = light_terms(s.kind, s.direction, l, v, s.power);
         add_terms(colour * t.diffuse, colour * t.specular);
     }
 }

@@ -51,10 +51,10 @@ class LightVolumes:
         self._back = canvas.program("lights.vert", "copy_light.frag") if self._reads else None
         self._sun = canvas.fullscreen("lights.frag", LIT_BY_SUN=1)
         self._sun_back = canvas.fullscreen("copy_light.frag") if self._reads else None
-        self._ball, self._cone = self._upload(ball()), self._upload(cone())
+        self._ball, self._cone = self._uploaded_arrays(ball()), self._uploaded_arrays(cone())
         self.queries: list[Query] | None = None
 
-    def _upload(self, bounds: Mesh) -> list[VertexArray]:
+    def _uploaded_arrays(self, bounds: Mesh) -> list[VertexArray]:
         corners = bounds.positions[wound(bounds)].astype(np.float32)
         frame = self._canvas.frame
         vertices = frame.device.owned(frame.stack, frame.context.buffer(corners.tobytes()))

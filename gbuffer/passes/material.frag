@@ -27,6 +27,6 @@ void main() {
     vec4 spread = texelFetch(scattered, pixel, 0);
     if (s.kind == SKIN && spread.w > 0.0) diffuse = spread.rgb;
 #endif
-    vec3 own = LIGHT_HOLDS == BY_KIND ? s.emissive : unlit(s, light_from_everywhere(pixel));
+    vec3 own = LIGHT_HOLDS == BY_KIND ? s.emissive : unlit_at(s, pixel);
     colour = vec4(compose(s, diffuse, specular) + own, s.alpha);
 }

@@ -11,5 +11,6 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     Surface s = read_gbuffer(pixel);
     bool finished = s.kind == GENERAL || LIGHT_HOLDS != BY_KIND;
-    colour = vec4(unlit(s, light_from_everywhere(pixel)) + (finished ? fetch_light(pixel).first.rgb : vec3(0.0)), 1.0);
+    if (!finished) s.emissive = vec3(0.0);
+    colour = vec4(unlit_at(s, pixel) + (finished ? fetch_light(pixel).first.rgb : vec3(0.0)), 1.0);
 }

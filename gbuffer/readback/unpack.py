@@ -5,7 +5,7 @@ from ..frame.contract import Pass, Run
 from ..frame.resource import SURFACES, Resource
 from ..frame.resources import DEPTH, SURFACE
 
-# Position and instance, direction and kind, albedo and specular power, specular colour.
+# Position and instance, direction and kind, albedo and specular power or roughness, specular colour and occlusion.
 NAMES = ("unpacked_position", "unpacked_direction", "unpacked_albedo", "unpacked_specular")
 UNPACKED = tuple(Resource(name, "rgba32f", follows=SURFACES) for name in NAMES)
 

@@ -6,9 +6,15 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from . import gloss, head, lake, objects, playground, room
+import numpy as np
+
+from ..display import Display, measured_exposure
+from .built_in import gloss, head, lake, objects, playground, room, studio
 from .scene import Scene
 from .setting import Setting
+
+# How metal/rough scenes are shown: their lights are a hundred times as bright as their shadows.
+FILMIC = "aces"
 
 
 @dataclass(frozen=True)
@@ -20,6 +26,7 @@ class SceneMaker:
         make: it, at a moment.
         frames: over how many moments a figure is averaged.
         exposure: in stops; None to have it measured, of a scene whose light nobody has set.
+        tone_mapping: one of TONE_MAPPINGS.
     """
 
     name: str
@@ -27,6 +34,12 @@ class SceneMaker:
     make: Callable[[Setting], Scene]
     frames: int
     exposure: float | None = 0.0
+    tone_mapping: str = "none"
+
+    def display(self, linear: np.ndarray) -> Display:
+        """How its images are shown; an exposure that nobody has set is measured of linear light, (..., 3)."""
+        exposure = measured_exposure(linear.reshape(-1, 3)) if self.exposure is None else self.exposure
+        return Display(exposure, self.tone_mapping)
 
 
 SCENES: Mapping[str, SceneMaker] = MappingProxyType(
@@ -34,6 +47,7 @@ SCENES: Mapping[str, SceneMaker] = MappingProxyType(
         "playground": SceneMaker("playground", playground.TITLE, playground.lit_playground, playground.FRAMES),
         "objects": SceneMaker("objects", objects.TITLE, objects.objects, objects.FRAMES),
         "gloss": SceneMaker("gloss", gloss.TITLE, gloss.gloss, gloss.FRAMES),
+        "studio": SceneMaker("studio", studio.TITLE, studio.studio, studio.FRAMES, studio.EXPOSURE, FILMIC),
         "room": SceneMaker("room", room.TITLE, room.room, room.FRAMES),
         "head": SceneMaker("head", head.TITLE, head.head, head.FRAMES),
         "lake": SceneMaker("lake", lake.TITLE, lake.lake, lake.FRAMES),

@@ -21,7 +21,9 @@ class Mesh:
         normals: (vertices, 3), unit, pointing out, float64.
         triangles: (triangles, 3) vertex indices; no order of corners is promised, the normals say which side is out.
         uv: (vertices, 2), where a vertex lies on its surface; a normal map's tangents follow from it.
-        authored: (vertices, 4), tangents and their bitangents' signs as a file has them, where it has any.
+        authored: (vertices, 4), tangents and their bitangents' signs, as `tangents` has them, that do not follow from
+            `uv`: a file's own, or those of the uv that its normal map lies by.
+        second_uv: (vertices, 2), another set of uv that maps may be laid by; None where there is none.
     """
 
     positions: np.ndarray
@@ -29,21 +31,31 @@ class Mesh:
     triangles: np.ndarray
     uv: np.ndarray
     authored: np.ndarray | None = None
+    second_uv: np.ndarray | None = None
 
     @cached_property
     def uploaded(self) -> tuple[np.ndarray, np.ndarray]:
         """What a device is given, kept for further frames: vertices, float32, and triangles as `wound` has them, int32.
 
-        A vertex is its position, its normal, its tangent with the bitangent's sign, and its uv.
+        A vertex is its position, its normal, its tangent with the bitangent's sign, and its two uv, where a mesh of one
+        set has it twice.
         """
-        vertices = np.concatenate([self.positions, self.normals, tangents(self), self.uv], axis=1)
+        second = self.uv if self.second_uv is None else self.second_uv
+        vertices = np.concatenate([self.positions, self.normals, tangents(self), self.uv, second], axis=1)
         return vertices.astype(np.float32), wound(self).astype(np.int32)
 
     def placed(self, linear: np.ndarray, translation) -> Mesh:
         """The mesh under row vectors' p' = p linear + translation; normals go by the inverse transpose."""
         normals = _unit(self.normals @ np.linalg.inv(linear).T)
         authored = None if self.authored is None else _tangents_placed(self.authored, linear)
-        return Mesh(self.positions @ linear + np.asarray(translation), normals, self.triangles, self.uv, authored)
+        return Mesh(
+            self.positions @ linear + np.asarray(translation),
+            normals,
+            self.triangles,
+            self.uv,
+            authored,
+            self.second_uv,
+        )
 
 
 def _tangents_placed(authored: np.ndarray, linear: np.ndarray) -> np.ndarray:
@@ -134,31 +146,58 @@ def grid_uv(rows: int, columns: int) -> np.ndarray:
     return np.stack([u.ravel(), v.ravel()], axis=1)
 
 
-def tangents(mesh: Mesh) -> np.ndarray:
+def tangents(mesh: Mesh, uv: np.ndarray | None = None) -> np.ndarray:
     """The direction in which u grows, (vertices, 4): unit, at right angles to the normal, and the bitangent's sign.
 
-    The bitangent is sign x (normal x tangent). Where u grows nowhere, as at a pole, the tangent is any direction.
-    Authored ones are given as they are.
+    The bitangent is sign x (normal x tangent), the side to which v grows. Where u grows nowhere, as at a pole, the
+    tangent is any direction. Authored ones are given as they are, unless other uv are asked for.
     """
-    if mesh.authored is not None:
+    if uv is None and mesh.authored is not None:
         return mesh.authored
-    corners, uv = mesh.positions[mesh.triangles], mesh.uv[mesh.triangles]
+    along_u, along_v, side = _gradients(mesh, mesh.uv if uv is None else uv)
+    t, b, most = np.zeros_like(mesh.positions), np.zeros_like(mesh.positions), np.zeros(len(mesh.positions))
+    length = np.linalg.norm(along_u, axis=1)
+    for corner in mesh.triangles.T:
+        np.add.at(t, corner, along_u * side)
+        np.add.at(b, corner, along_v * side)
+        np.add.at(most, corner, length)
+    n = mesh.normals
+    least = np.eye(3)[np.argmin(abs(n), axis=1)]
+    t = t - n * np.sum(n * t, axis=1, keepdims=True)
+    lost = np.linalg.norm(t, axis=1) <= 1e-9 * most
+    t[lost] = np.cross(n[lost], least[lost])
+    sign = np.where(np.sum(np.cross(n, t) * b, axis=1) < 0, -1.0, 1.0)
+    return np.concatenate([_unit(t), sign[:, None]], axis=1)
+
+
+def _gradients(mesh: Mesh, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Where u and where v grows on each triangle, (triangles, 3), times its area in uv, and that area's sign,
+    (triangles, 1)."""
+    corners, uv = mesh.positions[mesh.triangles], uv[mesh.triangles]
     (e1, e2), (d1, d2) = (np.moveaxis(a[:, 1:] - a[:, :1], 1, 0) for a in (corners, uv))
     # e = du T + dv B for two edges, solved for T and B; the area in uv weighs each triangle.
     along_u = e1 * d2[:, 1:] - e2 * d1[:, 1:]
     along_v = e2 * d1[:, :1] - e1 * d2[:, :1]
-    side = np.sign(d1[:, :1] * d2[:, 1:] - d2[:, :1] * d1[:, 1:])
-    t, b = np.zeros_like(mesh.positions), np.zeros_like(mesh.positions)
-    for corner in mesh.triangles.T:
-        np.add.at(t, corner, along_u * side)
-        np.add.at(b, corner, along_v * side)
-    n = mesh.normals
-    least = np.eye(3)[np.argmin(abs(n), axis=1)]
-    t = t - n * np.sum(n * t, axis=1, keepdims=True)
-    lost = np.linalg.norm(t, axis=1) < 1e-9
-    t[lost] = np.cross(n[lost], least[lost])
-    sign = np.where(np.sum(np.cross(n, t) * b, axis=1) < 0, -1.0, 1.0)
-    return np.concatenate([_unit(t), sign[:, None]], axis=1)
+    return along_u, along_v, np.sign(d1[:, :1] * d2[:, 1:] - d2[:, :1] * d1[:, 1:])
+
+
+def laid_by(mesh: Mesh, uv: np.ndarray) -> Mesh:
+    """The mesh with the tangents of a map that lies by `uv`, (vertices, 2).
+
+    Triangles on which the map is mirrored share no vertex with the others: their bitangents have the other sign.
+    """
+    corners = mesh.positions[mesh.triangles]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    out = np.sign(np.sum(across * mesh.normals[mesh.triangles].sum(axis=1), axis=1))
+    is_mirrored = out * _gradients(mesh, uv)[2][:, 0] < 0
+    shared = np.intersect1d(mesh.triangles[is_mirrored], mesh.triangles[~is_mirrored])
+    twin = np.arange(len(mesh.positions))
+    twin[shared] = len(mesh.positions) + np.arange(len(shared))
+    source = np.concatenate([np.arange(len(mesh.positions)), shared])
+    second = None if mesh.second_uv is None else mesh.second_uv[source]
+    triangles = np.where(is_mirrored[:, None], twin[mesh.triangles], mesh.triangles)
+    made = Mesh(mesh.positions[source], mesh.normals[source], triangles, mesh.uv[source], second_uv=second)
+    return replace(made, authored=tangents(made, uv[source]))
 
 
 def plane(width: float, depth: float, repeat: float = 1.0) -> Mesh:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,6 +17,10 @@ EDGE = 1e-9
 SIDE = 16
 # What rounding may add to an edge function, in its largest value.
 ROUNDED = 1e-12
+
+
+# Of points in triangles, by their numbers, (points,), and the weights of their corners, (points, 3): which are drawn.
+IsDrawn = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -43,29 +48,40 @@ class Rendered:
         normals: interpolated and renormalised, view space, (height, width, 3), float32; zero on the background.
         positions: view-space positions, (height, width, 3), float32; (0, 0, -far) on the background.
         covered: (height, width), bool. Row 0 is the top.
+        triangle: (height, width), int64, which of the mesh's triangles it is; any number where nothing is covered.
     """
 
     normals: np.ndarray
     positions: np.ndarray
     covered: np.ndarray
+    triangle: np.ndarray
 
 
-def rasterise(mesh: Mesh, camera: Camera) -> Rendered:
-    """A mesh in view space, both sides of its triangles, the nearest at each pixel's centre.
+def rasterise(mesh: Mesh, camera: Camera, is_drawn: IsDrawn | None = None) -> Rendered:
+    """A mesh in view space, both sides of its triangles, the nearest at each pixel's centre; with holes where something
+    is not drawn.
 
     Homogeneous rasterisation (Olano and Greer 1997): edge functions come from clip coordinates, so that triangles that
     reach behind the eye need no clipping.
     """
-    half = np.tan(np.radians(camera.fov) / 2)
     corners = mesh.positions[mesh.triangles]
-    clip = corners * (1 / (half * camera.width / camera.height), 1 / half, -1.0)
+    clip = to_clip(corners, camera)
     # Left out: triangles seen edge on, poles' triangles that have no area, and what lies wholly before the near plane.
     seen = (abs(np.linalg.det(clip)) > 1e-12) & np.any(clip[..., 2] > camera.near, axis=1)
     corners, normals, clip = corners[seen], mesh.normals[mesh.triangles][seen], clip[seen]
     inverse = np.linalg.inv(clip)
     triangle, boxes = _squares(_pixel_boxes(clip, camera))
     is_met = _is_met(inverse[triangle], boxes, camera)
-    return _resolve(corners, normals, inverse, triangle[is_met], boxes[is_met], camera)
+    number = np.flatnonzero(seen)
+    kept = None if is_drawn is None else lambda some, weights: is_drawn(number[some], weights)
+    made = _resolve(corners, normals, inverse, triangle[is_met], boxes[is_met], camera, kept)
+    return replace(made, triangle=np.append(number, 0)[made.triangle])
+
+
+def to_clip(corners: np.ndarray, camera: Camera) -> np.ndarray:
+    """Points in view space, (..., 3), as clip coordinates x, y and w."""
+    half = np.tan(np.radians(camera.fov) / 2)
+    return corners * (1 / (half * camera.width / camera.height), 1 / half, -1.0)
 
 
 def _pixel_boxes(clip: np.ndarray, camera: Camera) -> np.ndarray:
@@ -95,13 +111,13 @@ def _is_met(inverse: np.ndarray, boxes: np.ndarray, camera: Camera) -> np.ndarra
     """Whether a box has a pixel on the inner side of each of a triangle's edges: edge functions are linear, so they are
     largest in one of its four corners."""
     columns, rows = boxes[:, (0, 2, 0, 2)] - (0, 1, 0, 1), boxes[:, (1, 1, 3, 3)] - (0, 0, 1, 1)
-    edges = np.einsum("cjn,njk->nck", _centres(columns.T, rows.T, camera), inverse)
+    edges = np.einsum("cjn,njk->nck", centres(columns.T, rows.T, camera), inverse)
     edges += EDGE * edges.sum(axis=2, keepdims=True)
     largest = edges.max(axis=1)
     return np.all(largest >= -ROUNDED * np.abs(edges).max(axis=1), axis=1)
 
 
-def _centres(column: np.ndarray, row: np.ndarray, camera: Camera) -> np.ndarray:
+def centres(column: np.ndarray, row: np.ndarray, camera: Camera) -> np.ndarray:
     """The centres of pixels as x, y in [-1, 1] and 1: the three of them are the axis before the last."""
     x = (column + 0.5) / camera.width * 2 - 1
     y = 1 - (row + 0.5) / camera.height * 2
@@ -120,17 +136,22 @@ def _candidates(triangle_of: np.ndarray, boxes: np.ndarray):
         yield triangle_of[box], boxes[box, 0] + column, boxes[box, 1] + row
 
 
-def _resolve(corners, normals, inverse, triangle_of, boxes, camera: Camera) -> Rendered:
+def _resolve(corners, normals, inverse, triangle_of, boxes, camera: Camera, is_drawn: IsDrawn | None) -> Rendered:
     depth = np.full(camera.width * camera.height, np.inf)
     normal = np.zeros((camera.width * camera.height, 3))
     position = np.tile([0.0, 0.0, -camera.far], (camera.width * camera.height, 1))
+    nearest = np.full(len(depth), -1)
     for triangle, column, row in _candidates(triangle_of, boxes):
         # Each edge function is a corner's weight over w; their sum is 1/w.
-        edges = np.einsum("jn,njk->nk", _centres(column, row, camera), inverse[triangle])
+        edges = np.einsum("jn,njk->nk", centres(column, row, camera), inverse[triangle])
         one_over_w = edges.sum(axis=1)
         # A centre on an edge two triangles share belongs to both, so that rounding leaves no crack between them.
         inside = np.all(edges >= -EDGE * one_over_w[:, None], axis=1)
         inside &= (one_over_w * camera.far >= 1) & (one_over_w * camera.near <= 1)
+        if is_drawn is not None:
+            candidates = np.flatnonzero(inside)
+            weights = edges[candidates] / one_over_w[candidates, None]
+            inside[candidates] = is_drawn(triangle[candidates], weights)
         triangle, edges, one_over_w = triangle[inside], edges[inside], one_over_w[inside]
         pixel, w = (row * camera.width + column)[inside], 1 / one_over_w
         order = np.lexsort((w, pixel))
@@ -138,6 +159,7 @@ def _resolve(corners, normals, inverse, triangle_of, boxes, camera: Camera) -> R
         first = first[w[first] < depth[pixel[first]]]
         weights = (edges * w[:, None])[first]
         depth[pixel[first]] = w[first]
+        nearest[pixel[first]] = triangle[first]
         normal[pixel[first]] = np.einsum("nc,nck->nk", weights, normals[triangle[first]])
         position[pixel[first]] = np.einsum("nc,nck->nk", weights, corners[triangle[first]])
     length = np.linalg.norm(normal, axis=1)
@@ -149,4 +171,5 @@ def _resolve(corners, normals, inverse, triangle_of, boxes, camera: Camera) -> R
         normal.reshape(*shape, 3).astype(np.float32),
         position.reshape(*shape, 3).astype(np.float32),
         covered.reshape(shape),
+        nearest.reshape(shape),
     )

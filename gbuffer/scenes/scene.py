@@ -8,7 +8,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..environment.environment import Environment
 from .mesh import Mesh
+from .metal_rough import MetalRough
 
 Colour = tuple[float, float, float]
 # The order is the Deferred ID's: 0 is the material that the light pass shades in full.
@@ -125,7 +127,7 @@ class View:
         turned = axes * np.cos(angle) + np.cross(k, axes) * np.sin(angle) + np.outer(axes @ k, k) * (1 - np.cos(angle))
         away = np.linalg.norm(np.subtract(self.target, self.eye))
         target, up = np.array(self.eye) - turned[2] * away, turned[1]
-        return replace(self, target=_triple(target), up=_triple(up))
+        return replace(self, target=_float_triple(target), up=_float_triple(up))
 
     def projection(self, aspect: float) -> np.ndarray:
         """View to clip space, (4, 4), for column vectors: GL's, depth from -w to w."""
@@ -174,31 +176,55 @@ class Scene:
     """Everything a frame is drawn from.
 
     Attributes:
-        parts, materials, lights: what there is; at most one light is a sun.
+        parts, materials, lights: what there is; at most one light is a sun. Materials are all of one model.
         ambient: linear colour, times the albedo.
         view: the camera.
         previous: where the camera stood a frame ago; the motion that a G-buffer may keep is between the two.
         water: if there is any.
+        environment: what lies around, at every distance; of metal/rough scenes alone.
     """
 
     parts: tuple[Part, ...]
-    materials: tuple[Material, ...]
+    materials: tuple[Material, ...] | tuple[MetalRough, ...]
     lights: tuple[Light, ...]
     ambient: Colour
     view: View
     previous: View
     water: Water | None = None
+    environment: Environment | None = None
+
+    def under(self, environment: Environment) -> Scene:
+        """The scene with what lies around; a sun that was taken out of that takes the place of the scene's own."""
+        if environment.sun is None:
+            return replace(self, environment=environment)
+        way, irradiance = environment.sun
+        # A light of colour c gives an irradiance of pi c.
+        r, g, b = (channel / np.pi for channel in irradiance)
+        others = [light for light in self.lights if light.kind != "sun"]
+        lights = (Light("sun", (float(r), float(g), float(b)), direction=way), *others)
+        return replace(self, environment=environment, lights=lights)
+
+    @property
+    def is_metal_rough(self) -> bool:
+        """Whether its materials are metal/rough, and not Blinn-Phong."""
+        return isinstance(self.materials[0], MetalRough)
+
+    @property
+    def has_maps(self) -> bool:
+        """Whether pictures vary its materials."""
+        return any(one for material in self.materials if isinstance(material, MetalRough) for one in material.maps)
 
     @property
     def sun(self) -> Light | None:
         return next((light for light in self.lights if light.kind == "sun"), None)
 
     def with_power(self, power: float) -> Scene:
-        """The scene with another specular power, 1 to 2048, of all materials."""
-        return replace(self, materials=tuple(replace(material, power=power) for material in self.materials))
+        """The scene with another specular power, 1 to 2048, of all Blinn-Phong materials."""
+        changed = [replace(m, power=power) if isinstance(m, Material) else m for m in self.materials]
+        return replace(self, materials=tuple(changed))
 
 
-def _triple(v: np.ndarray) -> Colour:
+def _float_triple(v: np.ndarray) -> Colour:
     return float(v[0]), float(v[1]), float(v[2])
 
 

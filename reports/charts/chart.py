@@ -124,7 +124,7 @@ class Names:
     Attributes:
         field: the field of rows that has them.
         values: all of them, in order.
-        title: of the legend.
+        title: what the names are: the heading of the page's legend. In files it follows each name, as a unit does.
         looks: the shapes or dashes of the values; empty for the usual ones in turn.
     """
 
@@ -252,12 +252,21 @@ class Chart:
         """The height of a panel on the page."""
         return self.height or LINE_HEIGHT * len(self.y.names or self.y.ticks) or HEIGHT
 
+    def named(self, look: str, mark: Mark) -> Names | None:
+        """The names that the colour, shape or dash of a mark tells apart; None where it tells none."""
+        names = getattr(self, look)
+        return names if isinstance(names, Names) and names.field == getattr(mark, look) else None
+
     def rows_of(self, mark: Mark) -> tuple[Row, ...]:
         """The rows of a mark that have a place."""
         axes = ((self.x, mark.x), (self.x, mark.x2), (self.y, mark.y), (self.y, mark.y2))
         used = [(axis, name) for axis, name in axes if name]
         rows = self.rows if mark.rows is None else mark.rows
         return tuple(row for row in rows if all(axis.places(row.get(name)) for axis, name in used))
+
+    def lasts(self, mark: Mark) -> list[Row]:
+        """The last row of each line of a mark, at which its name stands."""
+        return [line[-1] for line in mark.groups(self.rows_of(mark))]
 
     def still(self) -> list[tuple[str, Chart]]:
         """The panels of a file, where nothing can be chosen."""

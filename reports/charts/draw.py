@@ -62,14 +62,14 @@ def figure(charts: Sequence[Chart]) -> Any:
     return whole
 
 
-def _across(chart: Chart) -> int:
+def _column_count(chart: Chart) -> int:
     count = len(chart.still())
     return min(count, 2 if count == 4 else MOST_ACROSS)
 
 
 def _size(chart: Chart) -> tuple[float, float]:
     """Inches across and down."""
-    across, panels = _across(chart), len(chart.still())
+    across, panels = _column_count(chart), len(chart.still())
     down = -(-panels // across)
     beside = ENDS if any(mark.kind == Kind.ENDS for mark in chart.marks) else 0.0
     return ALONE if across == 1 else (BESIDE + beside) * across, down * (chart.pixels / PIXELS + AROUND) + 0.6
@@ -77,7 +77,7 @@ def _size(chart: Chart) -> tuple[float, float]:
 
 def _draw(place: Any, chart: Chart) -> list[tuple[Chart, Any]]:
     """Draw a chart into a figure or a part of one. Gives its panels with their axes."""
-    parts, across = chart.still(), _across(chart)
+    parts, across = chart.still(), _column_count(chart)
     grid = place.subplots(-(-len(parts) // across), across, squeeze=False)
     drawn = [(part, axes) for (_, part), axes in zip(parts, grid.flat, strict=False)]
     for (name, part), axes in zip(parts, grid.flat, strict=False):
@@ -123,10 +123,10 @@ def _axis(axis: Any, limit: Any, said: Axis) -> None:
         last = len(said.names) - 0.5
         limit(*((last, -0.5) if axis.axis_name == "y" else (-0.5, last)))
         return
-    if said.scale != Scale.LINEAR:
-        axis._set_axes_scale("function", functions=_functions(said)) if said.scale == Scale.COUNT else (
-            axis._set_axes_scale("log")
-        )
+    if said.scale == Scale.LOG:
+        axis._set_axes_scale("log")
+    elif said.scale == Scale.COUNT:
+        axis._set_axes_scale("function", functions=_functions(said))
     assert said.domain
     limit(*said.domain)
     _ticks(axis, said)

@@ -34,7 +34,7 @@ def write_ends(axes: Any, part: Chart) -> list[Any]:
 def _lasts(part: Chart) -> list[tuple[Mark, Row]]:
     """The last point of each line that is named at its end."""
     ends = [mark for mark in part.marks if mark.kind == Kind.ENDS]
-    return [(mark, line[-1]) for mark in ends for line in mark.groups(part.rows_of(mark))]
+    return [(mark, row) for mark in ends for row in part.lasts(mark)]
 
 
 def label_ends(axes: Any, part: Chart, texts: Sequence[Any]) -> None:
@@ -56,11 +56,11 @@ def label_points(axes: Any, part: Chart) -> None:
     for mark in marks:
         rows = sorted(part.rows_of(mark), key=lambda row: bool(mark.rest and row.get(mark.rest)))
         for row, x, y in zip(rows, *places(part, mark, rows), strict=True):
-            text = _written(axes, as_text(str(row[mark.text])), (x, y), colour_of(part, mark, row))
+            text = _written_label(axes, as_text(str(row[mark.text])), (x, y), colour_of(part, mark, row))
             taken.append(_placed(text, taken, axes.bbox))
 
 
-def _written(axes: Any, said: str, at: tuple[float, float], colour: str) -> Any:
+def _written_label(axes: Any, said: str, at: tuple[float, float], colour: str) -> Any:
     leader = LEADER | {"color": "#BBBBBB", "shrinkA": 0, "shrinkB": 3}
     text = axes.annotate(
         said, at, (0, 0), textcoords="offset points", size=SIZE, color=colour, arrowprops=leader, zorder=4
@@ -113,7 +113,7 @@ def _placed(written: Any, taken: Sequence[Any], within: Any) -> Any:
     found, pixels, boxes = [], written.figure.dpi / 72, np.array([box.extents for box in taken])
     # Laying text out takes a hundred times as long as moving its box.
     at_point: dict[tuple[str, str], Any] = {}
-    for x, y in _places():
+    for x, y in _label_offsets():
         side = "left" if x > 1 else "right" if x < -1 else "center"
         height = "center" if abs(x) > abs(y) else "bottom" if y > 0 else "top"
         if (side, height) not in at_point:
@@ -143,6 +143,6 @@ def extent(written: Any) -> Any:
     return Text.get_window_extent(written).padded(2)
 
 
-def _places() -> list[tuple[float, float]]:
+def _label_offsets() -> list[tuple[float, float]]:
     turns = [2 * math.pi * step / ANGLES for step in range(ANGLES)]
     return [(far * math.cos(turn), far * math.sin(turn)) for far in DISTANCES for turn in turns]

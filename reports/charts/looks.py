@@ -29,10 +29,10 @@ def plain(text: str) -> str:
 
 def places(part: Chart, mark: Mark, rows: Sequence[Row]) -> tuple[list[Any], list[Any]]:
     """Where the rows of a mark are drawn, in matplotlib's own numbers."""
-    return [_place(part.x, row[mark.x]) for row in rows], [_place(part.y, row[mark.y]) for row in rows]
+    return [_axis_position(part.x, row[mark.x]) for row in rows], [_axis_position(part.y, row[mark.y]) for row in rows]
 
 
-def _place(axis: Axis, value: Any) -> Any:
+def _axis_position(axis: Axis, value: Any) -> Any:
     return axis.names.index(value) if axis.scale == Scale.NAMES else value
 
 
@@ -42,22 +42,20 @@ def colour_of(part: Chart, mark: Mark, row: Row) -> str:
         return ROLES[FAINT]
     if mark.colour in ROLES:
         return ROLES[mark.colour]
-    if isinstance(part.colour, Names) and part.colour.field == mark.colour:
-        return look(part.colour, COLOURS, row)
-    return str(row[mark.colour])
+    names = part.named("colour", mark)
+    return look(names, COLOURS, row) if names else str(row[mark.colour])
 
 
 def marker_of(part: Chart, mark: Mark, row: Row) -> str:
     """The marker of a point."""
-    is_by_name = part.shape and part.shape.field == mark.shape
-    return MARKERS[look(part.shape, SHAPES, row) if part.shape and is_by_name else mark.shape]
+    names = part.named("shape", mark)
+    return MARKERS[look(names, SHAPES, row) if names else mark.shape]
 
 
 def stroke_of(part: Chart, mark: Mark, row: Row) -> Any:
     """How a line is dashed."""
-    if part.dash and part.dash.field == mark.dash:
-        return stroke(look(part.dash, DASHES, row))
-    return STROKES[mark.dash]
+    names = part.named("dash", mark)
+    return stroke(look(names, DASHES, row)) if names else STROKES[mark.dash]
 
 
 def stroke(lengths: Sequence[float]) -> Any:

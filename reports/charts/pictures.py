@@ -29,7 +29,7 @@ SLOPE = "the rebuilt surface, lit by its own slope"
 LIGHT = np.array([0.3, 0.5, 0.8]) / np.linalg.norm([0.3, 0.5, 0.8])
 
 
-def _bytes(values: np.ndarray) -> np.ndarray:
+def _byte_pixels(values: np.ndarray) -> np.ndarray:
     return np.round(np.clip(np.nan_to_num(values), 0, 1) * 255).astype(np.uint8)
 
 
@@ -46,36 +46,36 @@ def codec_pictures(
     # The seeds raise the dot product to 1024; a negative one is as wrong as can be.
     along = np.clip(np.sum(normals * decoded, axis=-1, keepdims=True), 0, 1)
     return {
-        "encoded": _bytes((encoded * 0.5 + 0.5) * mask),
+        "encoded": _byte_pixels((encoded * 0.5 + 0.5) * mask),
         "decoded": normals_picture(decoded, covered),
-        "error": _bytes(np.abs(normals - decoded) * GAIN * mask),
-        "power": _bytes((1 - along**POWER) * mask * np.ones(3)),
+        "error": _byte_pixels(np.abs(normals - decoded) * GAIN * mask),
+        "power": _byte_pixels((1 - along**POWER) * mask * np.ones(3)),
     }
 
 
 def normals_picture(normals: np.ndarray, covered: np.ndarray) -> np.ndarray:
     """Normals as they are: [-1, 1] as [0, 255], black on the background; shapes as for `codec_pictures`."""
-    return _bytes((normals * 0.5 + 0.5) * covered[..., None])
+    return _byte_pixels((normals * 0.5 + 0.5) * covered[..., None])
 
 
 def picture(image: np.ndarray) -> np.ndarray:
     """An image as displayed, floats in [0, 1], in bytes."""
-    return _bytes(image)
+    return _byte_pixels(image)
 
 
 def grey(values: np.ndarray) -> np.ndarray:
     """Numbers in [0, 1], (height, width), as grey pixels."""
-    return _bytes(values[..., None] * np.ones(3))
+    return _byte_pixels(values[..., None] * np.ones(3))
 
 
 def difference(image: np.ndarray, reference: np.ndarray) -> np.ndarray:
     """How far two displayed images are apart, times RENDER_GAIN, in bytes; NaN is as far as can be."""
-    return _bytes(np.abs(np.nan_to_num(image, nan=1.0) - reference) * RENDER_GAIN)
+    return _byte_pixels(np.abs(np.nan_to_num(image, nan=1.0) - reference) * RENDER_GAIN)
 
 
 def strips(lines: Sequence[np.ndarray], height: int) -> np.ndarray:
     """Lines of colours as displayed, (width, 3) each, one below the other, each so many pixels high; in bytes."""
-    return np.concatenate([np.repeat(_bytes(line)[None], height, axis=0) for line in lines])
+    return np.concatenate([np.repeat(_byte_pixels(line)[None], height, axis=0) for line in lines])
 
 
 def depth_pictures(errors: np.ndarray, positions: np.ndarray, covered: np.ndarray) -> dict[str, np.ndarray]:
@@ -92,7 +92,9 @@ def depth_pictures(errors: np.ndarray, positions: np.ndarray, covered: np.ndarra
     coloured = _coloured(powers) * covered[..., None]
     return {
         "position_error": np.concatenate([_scale_of_colours(errors.shape[1]), coloured]),
-        "shaded": _caption(_bytes(_lit(positions)[..., None] * covered[..., None] * np.ones(3)), SLOPE, SCALE_HEIGHT),
+        "shaded": _captioned_pixels(
+            _byte_pixels(_lit(positions)[..., None] * covered[..., None] * np.ones(3)), SLOPE, SCALE_HEIGHT
+        ),
     }
 
 
@@ -102,7 +104,7 @@ def _coloured(powers: np.ndarray) -> np.ndarray:
 
     low, high = DECADES
     share = np.clip((np.nan_to_num(powers, nan=high) - low) / (high - low), 0, 1)
-    return _bytes(matplotlib.colormaps[COLOURS](share)[..., :3])
+    return _byte_pixels(matplotlib.colormaps[COLOURS](share)[..., :3])
 
 
 def _scale_of_colours(width: int, height: int = SCALE_HEIGHT) -> np.ndarray:
@@ -140,7 +142,10 @@ def contact_sheet(rows: dict[str, dict[str, np.ndarray]], scale: int = 2, column
     one below the other, in so many columns."""
     lines = []
     for name, pictures in rows.items():
-        small = [_caption(_shrunk(picture, scale), f"{name}: {CAPTIONS[kind]}") for kind, picture in pictures.items()]
+        small = [
+            _captioned_pixels(_shrunk_pixels(picture, scale), f"{name}: {CAPTIONS[kind]}")
+            for kind, picture in pictures.items()
+        ]
         lines.append(np.concatenate(small, axis=1))
     high = -(-len(lines) // columns)
     lines += [np.full_like(lines[0], 255)] * (high * columns - len(lines))
@@ -148,13 +153,13 @@ def contact_sheet(rows: dict[str, dict[str, np.ndarray]], scale: int = 2, column
     return np.concatenate(parts, axis=1)
 
 
-def _shrunk(pixels: np.ndarray, scale: int) -> np.ndarray:
+def _shrunk_pixels(pixels: np.ndarray, scale: int) -> np.ndarray:
     height, width = (size // scale * scale for size in pixels.shape[:2])
     cells = pixels[:height, :width].reshape(height // scale, scale, width // scale, scale, 3)
     return np.round(cells.mean(axis=(1, 3))).astype(np.uint8)
 
 
-def _caption(pixels: np.ndarray, text: str, height: int = 16) -> np.ndarray:
+def _captioned_pixels(pixels: np.ndarray, text: str, height: int = 16) -> np.ndarray:
     image = Image.new("RGB", (pixels.shape[1], pixels.shape[0] + height), "white")
     image.paste(Image.fromarray(pixels), (0, height))
     ImageDraw.Draw(image).text((3, 2), text, fill="black")

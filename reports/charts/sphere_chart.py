@@ -52,7 +52,7 @@ def _mark(axis: Any, n: np.ndarray, cells: int) -> None:
     axis.scatter(x * cells - 0.5, y * cells - 0.5, s=9, facecolors="none", edgecolors="red", linewidths=0.6)
 
 
-def _marked(name: str, marks: Maps | None) -> str:
+def _marked_title(name: str, marks: Maps | None) -> str:
     count = len((marks or {}).get(name, ()))
     return f"{name}\n{count} directions come back elsewhere (red)" if count else name
 
@@ -79,7 +79,7 @@ def sphere_chart(maps: Maps, marks: Maps | None = None, halves: tuple[str, str] 
         _mark(axis, (marks or {}).get(name, np.empty((0, 3))), discs.shape[-1])
         for side, said in enumerate(halves):
             axis.text((side + 0.5) * discs.shape[-1], discs.shape[-1], said, size=6, ha="center", va="top")
-        axis.set_title(_marked(name, marks), size=8)
+        axis.set_title(_marked_title(name, marks), size=8)
     for axis in axes.flat:
         axis.set_axis_off()
     scale = ScalarMappable(LogNorm(*limits), SPHERE_COLOURS)

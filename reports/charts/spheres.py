@@ -55,10 +55,10 @@ def globes(maps: Sequence[SphereMap]) -> list[Globes]:
 
 
 def _globes(bits: int, maps: Sequence[SphereMap]) -> Globes:
-    limits = sphere_chart.sphere_range({f"{m.key.label} {which}": a for m in maps for which, a in _planes(m)})
+    limits = sphere_chart.sphere_range({f"{m.key.label} {which}": a for m in maps for which, a in _named_planes(m)})
     made = []
     for one in maps:
-        mean, largest = (small_uri(_discs(plane, limits)) for _, plane in _planes(one))
+        mean, largest = (small_uri(_disc_pixels(plane, limits)) for _, plane in _named_planes(one))
         front, back = (f"{_mean(h):.3g}" if np.isfinite(h).any() else "" for h in one.mean_deg)
         figures = f"mean {front} degrees towards the viewer" + (f", {back} away" if back else "")
         made.append(Globe(one.key.label, mean, largest, f"{figures}; largest {np.nanmax(one.max_deg):.3g}"))
@@ -76,11 +76,11 @@ def _mean(half: np.ndarray) -> float:
     return float(np.average(half[held], weights=np.maximum(inside[held], 1)))
 
 
-def _planes(one: SphereMap) -> list[tuple[str, np.ndarray]]:
+def _named_planes(one: SphereMap) -> list[tuple[str, np.ndarray]]:
     return [("mean", one.mean_deg), ("largest", one.max_deg)]
 
 
-def _discs(plane: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
+def _disc_pixels(plane: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
     return sphere_chart.coloured(np.concatenate([plane[0], plane[1]], axis=1), limits)
 
 
@@ -94,10 +94,10 @@ def drawings(maps: Sequence[SphereMap]) -> list[Drawing]:
     """The maps as charts for files, one for each number of bits."""
     said = "Mean angle in degrees in each direction."
     return [
-        Drawing(f"sphere-{bits}-bits", f"Errors over the sphere, {bits} bits", said, partial(_draw, group))
+        Drawing(f"sphere-{bits}-bits", f"Errors over the sphere, {bits} bits", said, partial(_drawn_figure, group))
         for bits, group in _groups(maps).items()
     ]
 
 
-def _draw(maps: Sequence[SphereMap]) -> Any:
+def _drawn_figure(maps: Sequence[SphereMap]) -> Any:
     return sphere_chart.sphere_chart({as_text(one.key.label): one.mean_deg for one in maps})

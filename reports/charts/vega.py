@@ -146,10 +146,10 @@ def _title(name: str, part: Chart) -> Any:
 
 def _plain(rows: Sequence[Row]) -> list[Spec]:
     """Rows as a browser reads them: four digits, and nothing for what is no finite number."""
-    return [{name: _value(value) for name, value in row.items()} for row in rows]
+    return [{name: _json_value(value) for name, value in row.items()} for row in rows]
 
 
-def _value(value: Any) -> Any:
+def _json_value(value: Any) -> Any:
     return rounded(value) if isinstance(value, float) else value
 
 
@@ -180,12 +180,12 @@ def if_lit(lit: float, other: float) -> Spec:
 
 def _places(part: Chart, mark: Mark) -> Spec:
     """Where a mark stands."""
-    found = {"x": _place(part.x, mark.x), "y": _place(part.y, mark.y)}
+    found = {"x": _place_channel(part.x, mark.x), "y": _place_channel(part.y, mark.y)}
     found |= {name: {"field": field} for name, field in (("x2", mark.x2), ("y2", mark.y2)) if field}
     return found
 
 
-def _place(axis: Axis, field: str) -> Spec:
+def _place_channel(axis: Axis, field: str) -> Spec:
     if axis.scale == Scale.NAMES:
         names = list(axis.names)
         return {"field": field, "type": "nominal", "sort": names, "title": axis.title or None} | {
@@ -198,10 +198,16 @@ def _place(axis: Axis, field: str) -> Spec:
     if axis.scale == Scale.COUNT:
         scale |= {"type": "symlog", "constant": LINEAR_TO}
         del scale["zero"]
-    return {"field": field, "type": "quantitative", "scale": scale, "title": axis.title or None, "axis": _ticks(axis)}
+    return {
+        "field": field,
+        "type": "quantitative",
+        "scale": scale,
+        "title": axis.title or None,
+        "axis": _ticks_spec(axis),
+    }
 
 
-def _ticks(axis: Axis) -> Spec:
+def _ticks_spec(axis: Axis) -> Spec:
     if axis.ticks:
         names = {f"{at:g}": name for at, name in axis.ticks}
         said = f"{json.dumps(names)}[toString(datum.value)]" if any(_is_word(tick) for tick in axis.ticks) else ""
@@ -221,8 +227,8 @@ def _colour(part: Chart, mark: Mark) -> Spec:
     """The colour of a mark."""
     if mark.colour in ROLES:
         found: Spec = {"value": ROLES[mark.colour]}
-    elif isinstance(part.colour, Names) and part.colour.field == mark.colour:
-        found = _names(part.colour, PALETTE)
+    elif names := part.named("colour", mark):
+        found = _names_channel(names, PALETTE)
     else:
         found = {"value": {"expr": f"datum.{mark.colour}"}}
     if not mark.rest:
@@ -231,7 +237,7 @@ def _colour(part: Chart, mark: Mark) -> Spec:
     return {"condition": faint, **found}
 
 
-def _names(names: Names, looks: Sequence[Any]) -> Spec:
+def _names_channel(names: Names, looks: Sequence[Any]) -> Spec:
     """Names by what they look like."""
     longest = max((len(str(value)) for value in names.values), default=1)
     columns = f"max(1, min({len(names.values)}, floor((across - {SIDE}) / {SYMBOL + LETTER * longest})))"
@@ -247,40 +253,41 @@ def _names(names: Names, looks: Sequence[Any]) -> Spec:
     }
 
 
-def _shape(part: Chart, mark: Mark) -> Spec:
-    if part.shape and part.shape.field == mark.shape:
-        shown = _names(part.shape, SHAPES)
-        shown["scale"]["range"] = [PATHS.get(name, name) for name in shown["scale"]["range"]]
-        shown["legend"] |= (
-            {"symbolFillColor": ROLES[INK], "symbolStrokeColor": ROLES[INK]}
-            if not (isinstance(part.colour, Names) and part.colour.field == part.shape.field)
-            else {}
-        )
-        return shown
-    return {"value": PATHS.get(mark.shape, mark.shape)}
+def _shape_channel(part: Chart, mark: Mark) -> Spec:
+    names = part.named("shape", mark)
+    if not names:
+        return {"value": PATHS.get(mark.shape, mark.shape)}
+    shown = _names_channel(names, SHAPES)
+    shown["scale"]["range"] = [PATHS.get(name, name) for name in shown["scale"]["range"]]
+    if not (isinstance(part.colour, Names) and part.colour.field == names.field):
+        shown["legend"] |= {"symbolFillColor": ROLES[INK], "symbolStrokeColor": ROLES[INK]}
+    return shown
 
 
-def _dash(part: Chart, mark: Mark) -> Spec:
-    if part.dash and part.dash.field == mark.dash:
-        shown = _names(part.dash, DASHES)
-        shown["scale"]["range"] = [list(dash) or [1, 0] for dash in shown["scale"]["range"]]
-        shown["legend"] |= {"symbolType": "stroke", "symbolStrokeColor": ROLES[INK], "symbolSize": 400}
-        return shown
-    return {"value": STROKES[mark.dash] or [1, 0]}
+def _dash_channel(part: Chart, mark: Mark) -> Spec:
+    names = part.named("dash", mark)
+    if not names:
+        return {"value": STROKES[mark.dash] or [1, 0]}
+    shown = _names_channel(names, DASHES)
+    shown["scale"]["range"] = [list(dash) or [1, 0] for dash in shown["scale"]["range"]]
+    shown["legend"] |= {"symbolType": "stroke", "symbolStrokeColor": ROLES[INK], "symbolSize": 400}
+    return shown
 
 
-def _detail(mark: Mark) -> list[Spec]:
+def _detail_channel(mark: Mark) -> list[Spec]:
     return [{"field": field} for field in mark.by]
 
 
-def _points(part: Chart, mark: Mark) -> Iterator[Spec]:
+def _point_layers(part: Chart, mark: Mark) -> Iterator[Spec]:
     shown = {"type": "point", "filled": True, "size": 60}
-    yield _layer(part, mark, shown, {**_places(part, mark), "color": _colour(part, mark), "shape": _shape(part, mark)})
+    yield _layer(
+        part, mark, shown, {**_places(part, mark), "color": _colour(part, mark), "shape": _shape_channel(part, mark)}
+    )
 
 
-def _lines(part: Chart, mark: Mark) -> Iterator[Spec]:
+def _line_layers(part: Chart, mark: Mark) -> Iterator[Spec]:
     across = {"interpolate": "step-after"} if mark.is_stepped else {}
-    looks = {"color": _colour(part, mark), "strokeDash": _dash(part, mark), "detail": _detail(mark)}
+    looks = {"color": _colour(part, mark), "strokeDash": _dash_channel(part, mark), "detail": _detail_channel(mark)}
     # What is dotted is beside the point.
     width = {"strokeWidth": 1, "strokeOpacity": 0.6} if mark.dash == "dotted" else {"strokeWidth": 1.6}
     yield _layer(part, mark, {"type": "line", **width, **across}, {**_places(part, mark), **looks})
@@ -290,23 +297,25 @@ def _lines(part: Chart, mark: Mark) -> Iterator[Spec]:
         yield hits | {"name": "hits"}
 
 
-def _areas(part: Chart, mark: Mark) -> Iterator[Spec]:
+def _area_layers(part: Chart, mark: Mark) -> Iterator[Spec]:
     shown = {"type": "area", "fillOpacity": 0.55, "line": False}
     shown |= {"interpolate": "step-after"} if mark.is_stepped else {}
-    yield _layer(part, mark, shown, {**_places(part, mark), "color": _colour(part, mark), "detail": _detail(mark)})
+    yield _layer(
+        part, mark, shown, {**_places(part, mark), "color": _colour(part, mark), "detail": _detail_channel(mark)}
+    )
 
 
-def _rules(part: Chart, mark: Mark) -> Iterator[Spec]:
+def _rule_layers(part: Chart, mark: Mark) -> Iterator[Spec]:
     yield _layer(part, mark, {"type": "rule"}, {**_places(part, mark), "color": _colour(part, mark)})
 
 
-def _bars(part: Chart, mark: Mark) -> Iterator[Spec]:
+def _bar_layers(part: Chart, mark: Mark) -> Iterator[Spec]:
     places = _places(part, mark)
     places["x"]["stack"] = None
     yield _layer(part, mark, {"type": "bar"}, {**places, "color": _colour(part, mark)})
 
 
-def _cells(part: Chart, mark: Mark) -> Iterator[Spec]:
+def _cell_layers(part: Chart, mark: Mark) -> Iterator[Spec]:
     assert isinstance(part.colour, Shades)
     shades = part.colour
     scale = {"type": "log", "domain": [shades.low, shades.high], "scheme": "viridis", "clamp": True}
@@ -316,7 +325,7 @@ def _cells(part: Chart, mark: Mark) -> Iterator[Spec]:
     yield _layer(part, mark, {"type": "rect"}, {**places, "color": colour})
 
 
-def _texts(part: Chart, mark: Mark) -> Iterator[Spec]:
+def _text_layers(part: Chart, mark: Mark) -> Iterator[Spec]:
     is_cell = part.x.scale == Scale.NAMES
     shown = {"type": "text", "fontSize": 11} | ({} if is_cell else {"align": "left", "dx": 4})
     encoding = {**_places(part, mark), "text": {"field": mark.text}, "color": _colour(part, mark)}
@@ -364,7 +373,7 @@ def _labelled(part: Chart, mark: Mark) -> list[Row]:
 
 def _ends(part: Chart, mark: Mark) -> Iterator[Spec]:
     """The names of lines to the right of the panel, with a line from the last point to each."""
-    lasts = [line[-1] for line in mark.groups(part.rows_of(mark))]
+    lasts = part.lasts(mark)
     shares = lines_apart(part.y, [row[mark.y] for row in lasts], part.pixels, LABEL_LINE)
     rows = [{**row, "label": part.y.at(share)} for row, share in zip(lasts, shares, strict=True)]
     colour = _colour(part, mark)
@@ -381,13 +390,13 @@ def _ends(part: Chart, mark: Mark) -> Iterator[Spec]:
 
 LAYERS = MappingProxyType(
     {
-        Kind.POINTS: _points,
-        Kind.LINES: _lines,
-        Kind.AREAS: _areas,
-        Kind.RULES: _rules,
-        Kind.BARS: _bars,
-        Kind.CELLS: _cells,
-        Kind.TEXTS: _texts,
+        Kind.POINTS: _point_layers,
+        Kind.LINES: _line_layers,
+        Kind.AREAS: _area_layers,
+        Kind.RULES: _rule_layers,
+        Kind.BARS: _bar_layers,
+        Kind.CELLS: _cell_layers,
+        Kind.TEXTS: _text_layers,
         Kind.LABELS: _labels,
         Kind.ENDS: _ends,
     }

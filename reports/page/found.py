@@ -9,12 +9,11 @@ from typing import Any
 import numpy as np
 
 from ..charts.pareto import Error, Panel
+from ..sheets import Row
 from .codec_key import CodecKey
 from .live import Live
 from .pixels import Subject
-from .sections import Section
-
-Row = dict[str, Any]
+from .sections import TableSection
 
 
 @dataclass(frozen=True)
@@ -56,8 +55,10 @@ class Found:
         steps: how many have their rows.
         finished: whether all that was asked for has.
         domains: of each encoding, the normals that it is made for.
+        others: the names of encodings of normals that are not the catalogue's.
         subjects: what codecs were tried on, and their pixels.
-        extras: what tables show beside their rows, by name: `maps`, `fronts`, `listings` and `order`.
+        extras: what tables show beside their rows, by name: `maps`, `agreement`, `fronts`, `listings` and
+            `order`.
         live: what its laboratory runs; None where the run keeps none.
         remarks: what does not fit, in sentences.
     """
@@ -65,10 +66,11 @@ class Found:
     name: str
     facts: Row
     tables: Mapping[str, Sequence[Row]]
-    sections: Sequence[Section] = ()
+    sections: Sequence[TableSection] = ()
     steps: int = 0
     finished: bool = False
     domains: Mapping[str, str] = field(default_factory=dict)
+    others: frozenset[str] = frozenset()
     subjects: Sequence[Subject] = ()
     extras: Mapping[str, Any] = field(default_factory=dict)
     live: Live | None = None
@@ -80,15 +82,14 @@ class Found:
 
     @property
     def machine(self) -> Row:
-        """Names and versions of what measured."""
+        """Names and versions of what measured, by what they are of; empty where the run does not say."""
         machine = self.facts.get("machine")
         return machine if isinstance(machine, dict) else {}
 
     @property
     def encodings(self) -> set[str]:
         """The names of encodings of normals: the catalogue's, and those of users' files."""
-        rows = (row for name in ("quality", "render", "pick") for row in self.tables.get(name, ()))
-        return {*self.domains, *(str(row["encoding"]) for row in rows if row.get("encoding"))}
+        return {*self.domains, *self.others}
 
     @property
     def begun(self) -> str:

@@ -8,10 +8,10 @@ from dataclasses import replace
 from typing import Any
 
 from .. import tables
-from .found import Found, Row
+from ..sheets import Row
+from .found import Found
 from .page import remarks
 from .sections import whole
-from .verdict import agreement
 
 # What GitHub takes of a comment, less room for a word of one's own.
 LONGEST = 60_000
@@ -38,11 +38,12 @@ def _blocks(found: Found) -> Iterator[str]:
     yield f"## normalbench: {found.name}\n"
     for remark in remarks(found):
         yield f"> {_plain(remark)}\n"
-    for sheet in (sheet for section in found.sections if section.leads for sheet in section.summary if sheet.said):
+    leading = (sheet for section in found.sections if section.about.leads for sheet in section.summary)
+    for sheet in (sheet for sheet in leading if sheet.said):
         first, *rest = map(tables.markdown_sentence, (*sheet.said, *sheet.aside))
         yield "\n".join([f"**{first}**\n", *(f"- {line}" for line in rest), ""])
-    if said := agreement(found.tables.get("quality", ())):
-        yield f"{said}\n"
+    if said := found.extras.get("agreement"):
+        yield f"{tables.markdown_sentence(said)}\n"
     for sheet in (sheet for section in found.sections for sheet in section.summary if sheet.rows):
         heading = f"<details><summary>{html.escape(sheet.title)}</summary>\n"
         yield "\n".join([heading, tables.to_markdown(_rows(whole(sheet.rows))), "</details>\n"])

@@ -15,12 +15,13 @@ from typing import Any
 from .. import tables
 from ..charts import spheres
 from ..charts.drawings import Drawing, rows_of
+from ..sheets import Column, Row, Sheet, undefined
 from . import embedded, live
 from .codec_key import CodecKey
-from .found import Found, Row
+from .found import Found
 from .packing import packed
-from .sections import Section, Sheet, whole
-from .verdict import agreement, is_number
+from .sections import TableSection, whole
+from .verdict import is_number
 
 WEB = Path(__file__).parent / "web"
 SCRIPTS = ("tables.js", "pictures.js", "charts.js", "opener.js")
@@ -42,14 +43,12 @@ class Cell:
 
 
 @dataclass(frozen=True)
-class Column:
-    """A table's column."""
+class Heading:
+    """A column's heading: its text, and whether its cells are numbers."""
 
-    name: str
+    column: Column
     title: str
-    definition: str
     numeric: bool
-    better: str = ""
 
 
 @dataclass(frozen=True)
@@ -65,42 +64,41 @@ class Table:
     """A table as the template shows it; `constants` says what is the same in every row."""
 
     title: str
-    columns: Sequence[Column]
+    columns: Sequence[Heading]
     rows: Sequence[Line]
     constants: str
     folded: bool = False
     said: Sequence[str] = ()
     aside: Sequence[str] = ()
-    keys: Row = field(default_factory=dict)
+    keys: Mapping[str, Any] = field(default_factory=dict)
 
 
 def table(title: str, rows: Sequence[Row], says: Callable[[str], str]) -> Table:
     """Rows as a table to show; columns that say the same in each row are said once."""
-    return _table(Sheet(title, rows), says, lambda _: "", ())
+    return _table(Sheet(title, rows), lambda name: Column(name, says(name)), ())
 
 
 def shown_sheet(sheet: Sheet) -> Table:
     """A sheet whose columns need no definition."""
-    return _table(sheet, lambda _: "", lambda _: "", ())
+    return _table(sheet, undefined, ())
 
 
-def _table(sheet: Sheet, says: Callable[[str], str], better: Callable[[str], str], encodings: Container[str]) -> Table:
+def _table(sheet: Sheet, column: Callable[[str], Column], encodings: Container[str]) -> Table:
     rows = whole(sheet.rows)
     shown, constants = tables.without_constants(rows)
-    columns = [
-        Column(name, name.replace("_", " "), says(name), tables.is_numeric(shown, name), better(name))
-        for name in shown[0]
-    ]
+    heads = [Heading(column(name), name.replace("_", " "), tables.is_numeric(shown, name)) for name in shown[0]]
+    numbers = [head.column for head in heads if head.numeric and head.column.better]
     # Among every row there are several back ends and conditions: the best of them all says nothing.
-    best = set() if sheet.folded else {at for c in columns if c.numeric and c.better for at in _best(shown, rows, c)}
+    best = set() if sheet.folded else {at for one in numbers for at in _best(shown, rows, one)}
     lines = [
         Line(
-            [_cell(row[c.name], c.numeric, (at, c.name) in best) for c in columns], _codec(sheet.keys | one, encodings)
+            [_cell(row[head.column.name], head.numeric, (at, head.column.name) in best) for head in heads],
+            _codec({**sheet.keys, **one}, encodings),
         )
         for at, (row, one) in enumerate(zip(shown, rows, strict=True))
     ]
     about = {"folded": sheet.folded, "said": sheet.said, "aside": sheet.aside, "keys": sheet.keys}
-    return Table(sheet.title, columns, lines, constants.replace("_", " "), **about)
+    return Table(sheet.title, heads, lines, constants.replace("_", " "), **about)
 
 
 def _best(shown: Sequence[Row], rows: Sequence[Row], column: Column) -> Iterator[tuple[int, str]]:
@@ -126,7 +124,7 @@ def _cell(value: Any, numeric: bool, is_best: bool) -> Cell:
     return Cell(text, exact if exact != text else "", "n best" if is_best else "n")
 
 
-def _codec(row: Row, encodings: Container[str]) -> str:
+def _codec(row: Mapping[str, Any], encodings: Container[str]) -> str:
     """The codec of a row, an encoding's name alone where the storage is not known; empty for none."""
     encoding, storage = row.get("encoding"), row.get("storage")
     if not isinstance(encoding, str) or encoding not in encodings:
@@ -157,7 +155,7 @@ class Chart:
 class Part:
     """A section as the template shows it."""
 
-    section: Section
+    section: TableSection
     charts: Sequence[Chart]
     tables: Sequence[Table]
     measured: Sequence[tuple[str, str]]
@@ -172,10 +170,10 @@ def navigation(found: Found, has_pictures: bool) -> list[tuple[str, str]]:
     """Anchors and their names, in the order of the page; what leads is on top of it."""
     made = [("pictures", "Pictures")] if has_pictures else []
     for section in found.sections:
-        if section.leads:
+        if section.about.leads:
             continue
-        made.append((section.key, section.short))
-        made += [(extra, EXTRAS[extra]) for extra in section.extras if extra in EXTRAS]
+        made.append((section.key, section.about.short))
+        made += [(extra, EXTRAS[extra]) for extra in section.about.extras if extra in EXTRAS]
     made += [("live", "Your GPU")] if found.live else []
     return [*made, ("measured", "Measured")]
 
@@ -232,9 +230,9 @@ def html(
         found=found,
         remarks=remarks(found),
         nav=navigation(found, bool(gallery.subjects)),
-        agreement=agreement(found.tables.get("quality", ())),
+        agreement=found.extras.get("agreement", ""),
         parts=parts,
-        leading=[part for part in parts if part.section.leads and part.is_there],
+        leading=[part for part in parts if part.section.about.leads and part.is_there],
         spheres=spheres.globes(maps),
         directions=maps[0].directions if maps else 0,
         cells=maps[0].mean_deg.shape[-1] if maps else 0,
@@ -280,9 +278,9 @@ def sources_of(scripts: Sequence[str], is_beside: bool = False) -> str:
     return " ".join([*(f"'sha256-{digest}'" for digest in digests), *(["'self'", "file:"] if is_beside else [])])
 
 
-def _part(found: Found, section: Section, specs: Mapping[str, Sequence[Row]]) -> Part:
+def _part(found: Found, section: TableSection, specs: Mapping[str, Sequence[Row]]) -> Part:
     sheets = section.sheets(found.domains)
     encodings = found.encodings
-    shown = [_table(sheet, section.says, section.better, encodings) for sheet in sheets]
+    shown = [_table(sheet, section.column, encodings) for sheet in sheets]
     charts = [Chart(drawing, len(specs[drawing.name])) for drawing in section.drawings if drawing.name in specs]
     return Part(section, charts, shown, section.measured())

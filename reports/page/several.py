@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from .. import tables
+from ..sheets import Sheet
 from .page import base, data_block, shown_sheet, template
-from .sections import Sheet
 
 SCRIPTS = ("tables.js", "several.js")
 

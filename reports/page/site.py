@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from .. import tables
-from .page import Cell, Column, Line, Table, base, template
+from ..sheets import undefined
+from .page import Cell, Heading, Line, Table, base, template
 
 SCRIPTS = ("tables.js", "site.js")
 
@@ -55,9 +56,9 @@ class Searched:
 
 def words_table(title: str, rows: Sequence[Mapping[str, str | None]]) -> Table:
     """Rows of words as a table to show; every column stays, also one that says the same in each row."""
-    columns = [Column(name, name, "", numeric=False) for name in rows[0]]
-    lines = [Line([Cell(tables.text_of(row[column.name]), "", "") for column in columns], "") for row in rows]
-    return Table(title, columns, lines, "")
+    heads = [Heading(undefined(name), name, numeric=False) for name in rows[0]]
+    lines = [Line([Cell(tables.text_of(row[head.title]), "", "") for head in heads], "") for row in rows]
+    return Table(title, heads, lines, "")
 
 
 def index_html(said: Sequence[str], searched: Sequence[Searched]) -> str:

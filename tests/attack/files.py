@@ -15,6 +15,7 @@ import numpy as np
 from damaged import in_this_process, mutated, revalued
 from written import (
     OBJ,
+    Document,
     as_document,
     chunk,
     dds_bytes,
@@ -115,6 +116,7 @@ def mesh_files(folder: Path) -> dict[str, bytes]:
     ball = sphere(1.0, 6, 4)
     document = as_document([ball], [True])
     document.json["cameras"] = [{"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1}}]
+    dress(document)
     child = document.node(camera=0, translation=[0, 0, 4], rotation=[0, 0, 0, 1])
     document.node(children=[child], scale=[1, 1, 1])
     faces = ball.triangles.tolist()
@@ -131,6 +133,21 @@ def mesh_files(folder: Path) -> dict[str, bytes]:
         "little ply": ply("binary_little_endian", faces, ball.positions, ball.normals),
         "big ply": ply("binary_big_endian", [*faces, [0, 1, 2, 3]], ball.positions, ball.normals),
     }
+
+
+def dress(document: Document) -> None:
+    """A picture as two maps of the first material, and a light."""
+    picture = {"index": document.texture(png_bytes(packed(some_normals()[:4, :4], np.uint8)), wrapS=33071)}
+    moved = {"extensions": {"KHR_texture_transform": {"offset": [0, 1], "rotation": 1.0, "scale": [2, 2]}}}
+    document.json["materials"][0] |= {
+        "alphaMode": "MASK",
+        "alphaCutoff": 0.1,
+        "normalTexture": picture | moved | {"scale": 2.0},
+        "pbrMetallicRoughness": {"baseColorTexture": picture, "metallicFactor": 0.5, "roughnessFactor": 0.5},
+    }
+    lights = [{"type": "spot", "intensity": 3.0, "range": 9.0, "spot": {"innerConeAngle": 0.1, "outerConeAngle": 0.4}}]
+    document.json["extensions"] = {"KHR_lights_punctual": {"lights": lights}}
+    document.node(extensions={"KHR_lights_punctual": {"light": 0}}, translation=[0, 0, 3])
 
 
 def meshes(kind: str, folder: Path) -> Attack:

@@ -10,6 +10,7 @@ from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.shaders.code.verify import agreement
 from normalbench.bench.shaders.languages import translated
 from normalbench.bench.shaders.languages.child import answer
+from normalbench.bench.shaders.languages.words import file_of
 from normalbench.bench.subjects.codecs.first_look import first_look
 from normalbench.bench.subjects.codecs.user_encodings import read_encoding
 from normalbench.encodings.codecs.codec import Codec
@@ -24,9 +25,9 @@ SEAMS = 1e-3
 WRITTEN = tuple(LANGUAGES)
 
 
-def translated_here(path: Path, asked: tuple[str, str] | None, by: str) -> dict[str, object]:
+def translated_here(word: Path, by: str) -> dict[str, object]:
     """A translation in this process: the attack limits itself."""
-    found = answer(path, asked, path.parent, by)
+    found = answer(word, file_of(word).parent, by)
     if "error" in found:
         raise UsageError(str(found["error"]))
     return found

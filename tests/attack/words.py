@@ -23,6 +23,10 @@ COMMANDS = (
     "tune octahedral --storage {}",
     "quality --normals axes --backend jax --encoding {}",
     "quality --normals axes --backend jax --encoding xyz --storage {}",
+    "quality --normals axes --backend jax --encoding mine.hlsl -D {}",
+    "quality --normals axes --backend jax --encoding mine.hlsl --prelude {}",
+    "quality --normals axes --backend jax --encoding mine.hlsl --include {}",
+    "quality --normals axes --backend jax --encoding mine.hlsl --language {}",
     "quality --normals {} --backend jax --encoding xyz",
     "quality --normals axes --backend {} --encoding xyz",
     "quality --normals sphere --backend jax --encoding xyz --count {}",
@@ -50,6 +54,8 @@ stereographic:scale=nan stereographic:scale= best_fit:table=nowhere.npy --format
 . .. / /dev/null /dev/zero ~ * ? [ \\ ' " `id` $(id) ; | %s {} {0} no.png no.glsl no.toml no.npy é 日本
 pipe pipe.png pipe.npy pipe.glsl pipe.toml pipe.glb loop.png loop.toml run run/run.json list.npy ../x.toml
 marked.toml marked.glsl binary.toml binary.glsl sealed.toml sealed.png a,b.png ='x'.png /nowhere/x.toml
+mine.hlsl mine.hlsl:A:B:define=A mine.hlsl:define= mine.hlsl:include=/ mine.hlsl:prelude=/etc/passwd mine.hlsl:prelude=
+mine.hlsl:A,mine.hlsl:B mine.hlsl:A,loop.hlsl:B loop.hlsl pipe.hlsl mine.hlsl:prelude=pipe.hlsl X=/ X= =X A=1 hlsl wgsl
 empty.png empty.toml empty.npy empty.glsl empty.obj /proc/self/mem /proc/self/environ
 """
 ODD = ("", " ", ",", ",,", "\x07", "\x1b[31m", "\x00", "\r", "\n", "a\nb", "\u202e", "\udcff", "\ufeff", "\U0001d51b")
@@ -61,10 +67,10 @@ def prepare(folder: Path) -> None:
     """Files of each odd kind: pipes, links that go round, what cannot be read, byte-order marks."""
     os.chdir(folder)
     Path("a folder").mkdir(exist_ok=True)
-    for name in ("pipe", "pipe.png", "pipe.npy", "pipe.glsl", "pipe.toml", "pipe.glb"):
+    for name in ("pipe", "pipe.png", "pipe.npy", "pipe.glsl", "pipe.hlsl", "pipe.toml", "pipe.glb"):
         if not Path(name).exists():
             os.mkfifo(name)
-    for name in ("loop.png", "loop.toml"):
+    for name in ("loop.png", "loop.toml", "loop.hlsl"):
         Path(name).unlink(missing_ok=True)
         Path(name).symlink_to(name)
     for ending in ("png", "toml", "npy", "glsl", "obj"):
@@ -72,6 +78,7 @@ def prepare(folder: Path) -> None:
     for ending in ("toml", "glsl"):
         Path(f"binary.{ending}").write_bytes(np.random.default_rng(0).bytes(999))
         Path(f"marked.{ending}").write_bytes(b"\xef\xbb\xbf# a mark\n")
+    Path("mine.hlsl").write_text('#include "/etc/passwd"\nfloat2 A(float3 n) { return n.xy; }\n')
     np.save("list.npy", some_normals()[0])
     eight = packed(some_normals()[:4, :4], np.uint8)
     for name in ("a,b.png", "='x'.png", "sealed.png"):

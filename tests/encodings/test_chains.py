@@ -54,7 +54,7 @@ def test_both_languages_agree_on_a_chain(gl):
 
 
 def test_a_chain_is_not_rendered():
-    with pytest.raises(ShaderError, match="a chain of codecs is not rendered"):
+    with pytest.raises(ShaderError, match="a chain of codecs is not drawn into a G-buffer"):
         encoding_defines(codec(CHAIN).encoding)
 
 

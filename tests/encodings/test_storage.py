@@ -24,6 +24,8 @@ from normalbench.gbuffer.codecs.codec_passes import storage_defines
 from normalbench.gbuffer.gl.device import read_pixels
 
 INTEGERS = [name for name, s in STORAGES.items() if s.kind != "float" and not s.is_packed]
+# Each with the first channel of every size that it has.
+CHANNELS = [(name, STORAGES[name].bits.index(bits)) for name in INTEGERS for bits in dict.fromkeys(STORAGES[name].bits)]
 PACKED = [name for name, s in STORAGES.items() if s.is_packed]
 FLOATS = [name for name, s in STORAGES.items() if s.kind == "float" and s.bits[0] < 32]
 FLOAT_ROUNDINGS = ROUNDINGS[:2]
@@ -56,8 +58,8 @@ def as_pixels(values: np.ndarray) -> np.ndarray:
     return np.repeat(padded.reshape(-1, width, 1), 4, axis=2)
 
 
-def emulated(values: np.ndarray, storage, rounding: str) -> np.ndarray:
-    return np.asarray(store_texel(jnp.asarray(values), storage, 0, rounding))
+def emulated(values: np.ndarray, storage, rounding: str, channel: int = 0) -> np.ndarray:
+    return np.asarray(store_texel(jnp.asarray(values), storage, channel, rounding))
 
 
 def assert_same_bits(values, expected, got, what: str) -> None:
@@ -172,22 +174,24 @@ def test_truncated_halves_never_grow():
     assert np.all(np.abs(values[inside].astype(np.float64) - kept[inside]) < step), "more than a step was cut off"
 
 
-@pytest.mark.parametrize("name", INTEGERS)
-def test_every_code_decodes_to_itself(name):
+@pytest.mark.parametrize("name, channel", CHANNELS)
+def test_every_code_decodes_to_itself(name, channel):
     storage = STORAGES[name]
-    codes = np.arange(-storage.scale(0) if storage.kind == "snorm" else 0, storage.scale(0) + 1).astype(np.float32)
-    back = emulated(codes * np.float32(1 / storage.scale(0)), storage, "nearest")
-    assert np.array_equal(np.round(back * storage.scale(0)), codes), f"{name}: a code is not stored as itself"
+    codes = np.arange(-storage.scale(channel) if storage.kind == "snorm" else 0, storage.scale(channel) + 1).astype(
+        np.float32
+    )
+    back = emulated(codes * np.float32(1 / storage.scale(channel)), storage, "nearest", channel)
+    assert np.array_equal(np.round(back * storage.scale(channel)), codes), f"{name}: a code is not stored as itself"
 
 
-@pytest.mark.parametrize("name", INTEGERS)
-def test_ties_of_the_float32_product_go_to_the_even_code(name):
+@pytest.mark.parametrize("name, channel", CHANNELS)
+def test_ties_of_the_float32_product_go_to_the_even_code(name, channel):
     storage = STORAGES[name]
-    scale = np.float32(storage.scale(0))
-    lower = np.arange(0, storage.scale(0), dtype=np.float32)
+    scale = np.float32(storage.scale(channel))
+    lower = np.arange(0, storage.scale(channel), dtype=np.float32)
     middle = (lower + np.float32(0.5)) / scale
     ties = middle * scale == lower + np.float32(0.5)
-    stored = np.round(emulated(middle[ties], storage, "nearest") * scale)
+    stored = np.round(emulated(middle[ties], storage, "nearest", channel) * scale)
     assert ties.sum() > len(lower) / 2
     assert np.all(stored % 2 == 0), f"{name}: {middle[ties][stored % 2 == 1][0]!r} goes to an odd code"
 

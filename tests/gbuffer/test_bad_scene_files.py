@@ -42,9 +42,9 @@ BAD_GLTF = {
     "too many": (lambda: broken(lambda j: j["accessors"][0].update(count=10**9)), ["1000000000 vertices", "2^22"]),
     "a negative count": (lambda: broken(lambda j: j["accessors"][0].update(count=-1)), ["count is -1"]),
     "of another type": (lambda: broken(lambda j: j["accessors"][0].update(type="MAT4")), ["POSITION", "'MAT4'"]),
-    "Draco": (
-        lambda: broken(lambda j: j.update(extensionsRequired=["KHR_draco_mesh_compression"])),
-        ["draco", "without"],
+    "an extension that is not read": (
+        lambda: broken(lambda j: j.update(extensionsRequired=["EXT_mesh_gpu_instancing"])),
+        ["gpu_instancing", "without"],
     ),
     "glTF 1": (lambda: broken(lambda j: j["asset"].update(version="1.0")), ["'1.0'", "glTF 2.0"]),
     "no triangles": (lambda: broken(lambda j: first_primitive(j).update(mode=0)), ["nothing to draw"]),

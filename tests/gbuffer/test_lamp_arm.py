@@ -5,9 +5,9 @@ from functools import cache
 import numpy as np
 import pytest
 
+from normalbench.gbuffer.scenes.built_in.playground import ARMS, CAMERA, in_view_space, playground
 from normalbench.gbuffer.scenes.mesh import facing, joined
 from normalbench.gbuffer.scenes.models.lamp_arm import disc, faceted, lamp_arm, plate, swept, turned
-from normalbench.gbuffer.scenes.playground import ARMS, CAMERA, in_view_space, playground
 from normalbench.gbuffer.scenes.rasterise import rasterise
 
 # Of the original, measured with its own mesh: covered pixels, and those of the arms. Of the latter, percent whose

@@ -7,7 +7,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from drawing import EXACT, FP32, SIZE, apart, covered_by_glass, draw, drawn, scene_of
+from drawing import BLINN_PHONG, EXACT, FP32, SIZE, apart, covered_by_glass, draw, drawn, scene_of
 from slowly import all_but
 
 from normalbench.encodings.catalogue import LIGHT_BUFFERS
@@ -21,7 +21,7 @@ from normalbench.gbuffer.scenes.setting import Setting
 
 
 @pytest.mark.parametrize("shadows", [False, True], ids=["no shadows", "shadows"])
-@pytest.mark.parametrize("name", all_but(2, SCENES))
+@pytest.mark.parametrize("name", all_but(2, BLINN_PHONG))
 def test_all_pipelines_give_one_image(gl, name, shadows):
     """In fp32 and at full size: 70 dB between any two, 55 with shadows, where a comparison of depths may go either way.
     Inferred lighting on what no transparent surface covers."""
@@ -102,7 +102,7 @@ def triangles_of(scene: Scene, wanted) -> int:
     return sum(counts)
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", BLINN_PHONG)
 def test_passes_draw_the_triangles_they_are_for(gl, name):
     """Geometry all opaque ones once; the second geometry pass all of them again in light pre-pass, and exactly the
     special ones in hybrid; the shadow map what casts."""

@@ -7,9 +7,9 @@ import pytest
 from speed import numpy_baseline as independent
 
 from normalbench.bench.measures.metrics import published
+from normalbench.gbuffer.scenes.built_in.playground import ARMS, CAMERA, in_view_space
+from normalbench.gbuffer.scenes.built_in.playground import playground as rendered
 from normalbench.gbuffer.scenes.mesh import Mesh, facing, joined
-from normalbench.gbuffer.scenes.playground import ARMS, CAMERA, in_view_space
-from normalbench.gbuffer.scenes.playground import playground as rendered
 from normalbench.gbuffer.scenes.rasterise import Rendered, rasterise
 
 pytestmark = pytest.mark.usefixtures("rows_are_kept")

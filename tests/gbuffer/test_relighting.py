@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 import relighting
-from drawing import EXACT, FP32, SIZE, apart, covered_by_glass, draw, drawn, psnr, scene_of, towards
+from drawing import BLINN_PHONG, EXACT, FP32, SIZE, apart, covered_by_glass, draw, drawn, psnr, scene_of, towards
 from relighting import relight, surfaces
 
 from normalbench.encodings.catalogue import ENCODINGS, LIGHT_BUFFERS
@@ -22,9 +22,8 @@ from normalbench.gbuffer.layouts.words import Target
 from normalbench.gbuffer.passes.shadow_map import SHADOW_OFFSET
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
-from normalbench.gbuffer.scenes.catalogue import SCENES
+from normalbench.gbuffer.scenes.built_in.playground import in_view_space
 from normalbench.gbuffer.scenes.mesh import box, joined, plane, sphere
-from normalbench.gbuffer.scenes.playground import in_view_space
 from normalbench.gbuffer.scenes.rasterise import Camera, rasterise
 from normalbench.gbuffer.scenes.scene import KINDS, LIGHT_KINDS, Light, Material, Part, Scene, View, placed
 
@@ -41,7 +40,7 @@ def lit(gl, scene: str):
 
 
 @pytest.mark.parametrize("which", ["diffuse", "specular"])
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", BLINN_PHONG)
 def test_the_light_buffer_holds_what_the_formulas_say(gl, name, which):
     """D in the first target and S in the second, all lights and shadows, over the pixels of each material kind: 80 dB
     below the light's own peak or 1, whichever is more. Where float32 cannot tell a shadow either answer counts."""
@@ -56,7 +55,7 @@ def test_the_light_buffer_holds_what_the_formulas_say(gl, name, which):
         assert found >= 80, f"{name}, {which} light on {KINDS[kind]}: {found:.1f} dB, largest {error[here].max():.2g}"
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", BLINN_PHONG)
 def test_the_deferred_colour_is_what_the_formulas_say(gl, name):
     """Emitted and reflected light in the light buffer of deferred shading, as displayed: 80 dB."""
     scene, (seen, sums) = scene_of(name), lit(gl, name)
@@ -90,7 +89,7 @@ def unshadowed(gl, name: str):
 def test_hardly_any_shadow_is_undecided(gl):
     """Of the pixels that the sun can light, float32 is in doubt about fewer than one in a thousand; and there are
     shadows to speak of. The playground's upper slab keeps nearly all of the sun out."""
-    for name in SCENES:
+    for name in BLINN_PHONG:
         (seen, _), scene = lit(gl, name), scene_of(name)
         low, high = relighting.sunlit(scene, seen.position, drawn(gl, "prepass", name, True).shadow_map)
         to_sun = -scene.view.matrix()[:3, :3] @ scene.sun.direction
@@ -351,7 +350,7 @@ def test_positions_from_either_depth_agree(gl):
     """From z/w by the inverse projection, and from linear depth along the eye's ray. A step of 2^-24 in z/w is
     d^2 (f - n) / (f n) 2^-24 in depth; positions agree to eight of those and 2^-20 of the depth. From pixel to pixel
     depth changes by a pixel's extent over the cosine, and a place on the screen is exact to 2^-16 of a pixel."""
-    for name in SCENES:
+    for name in BLINN_PHONG:
         scene = scene_of(name)
         near, far = scene.view.near, scene.view.far
         linear, normals = drawn(gl, "deferred", name, False).gbuffer[:2]

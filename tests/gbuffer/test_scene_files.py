@@ -17,9 +17,9 @@ from normalbench.bench.tables.quality.measure import Case, measure
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
+from normalbench.gbuffer.scenes.built_in.playground import CAMERA, in_view_space
 from normalbench.gbuffer.scenes.files.read import file_scene, file_view, read_mesh_file, seen
 from normalbench.gbuffer.scenes.mesh import box, joined, sphere, tangents, wound
-from normalbench.gbuffer.scenes.playground import CAMERA, in_view_space
 from normalbench.gbuffer.scenes.scene import Material
 from normalbench.gbuffer.scenes.setting import Setting
 
@@ -30,7 +30,8 @@ from normalbench.gbuffer.scenes.setting import Setting
 def test_a_mirrored_uneven_node_in_a_chain_gives_the_normals_computed_by_hand(tmp_path, how):
     """The normal (1, 2, 2) goes by (-1/2, 1, 2) to (-1/2, 2, 4), which is (-1, 4, 8) / 9 when unit; a quarter turn
     about z takes (x, y, z) to (-y, x, z). The tangent (2, 1, -2) goes as positions do, by (-2, 1, 1/2), and then turns;
-    a mirror turns its sign around, so that the bitangent lies where the mirrored one does."""
+    a mirror turns its sign around, so that the bitangent lies where the mirrored one does. The file's bitangent goes up
+    in a picture, and the one that is kept along v, which is down."""
     file = read_mesh_file(chained().write(tmp_path / ("a.glb" if how == "glb" else "a.gltf"), how))
     mesh = file.baked
     assert abs(mesh.normals - np.array([-4, -1, 8]) / 9).max() < 1e-15, mesh.normals
@@ -39,12 +40,12 @@ def test_a_mirrored_uneven_node_in_a_chain_gives_the_normals_computed_by_hand(tm
     (piece,) = file.pieces
     placed = tangents(piece.baked())
     assert abs(placed[:, :3] - np.array([-1, -4, -1]) / 18**0.5).max() < 1e-15, placed
-    assert (placed[:, 3] == -1).all()
+    assert (placed[:, 3] == 1).all()
     n, t = np.array([1, 2, 2]) / 3, np.array([2, 1, -2]) / 3
     bitangent = piece.model[:3, :3] @ np.cross(n, t)
     made = placed[0, 3] * np.cross(mesh.normals[0], placed[0, :3])
     # At right angles to the normal by construction; the mirrored one lies on the same side.
-    assert made @ bitangent > 0.3 * np.linalg.norm(bitangent)
+    assert made @ bitangent < -0.3 * np.linalg.norm(bitangent)
 
 
 def test_the_normals_that_the_renderer_keeps_are_those_computed_by_hand(tmp_path, gl):
@@ -112,30 +113,38 @@ def test_strips_fans_sparse_and_quantised_accessors_are_read(tmp_path):
     assert made.positions.tolist() == [[0, 0, 0], [1, 0, 0], [0, 5, 0], [1, 1, 0]]
 
 
-def test_materials_are_mapped_where_that_is_simple(tmp_path):
+def test_a_material_without_pictures_is_its_numbers(tmp_path):
     document = Document()
     plain = {"baseColorFactor": [0.5, 0.25, 1, 0.5], "metallicFactor": 0, "roughnessFactor": 0.5}
-    metal = {"baseColorFactor": [1, 0.5, 0, 1], "roughnessFactor": 0.25}
+    metal = {"baseColorFactor": [1, 0.5, 0, 0.5], "roughnessFactor": 0.25}
+    strong = {"KHR_materials_emissive_strength": {"emissiveStrength": 25}, "KHR_materials_ior": {"ior": 2.0}}
     document.json["materials"] = [
         {"pbrMetallicRoughness": plain, "doubleSided": True, "alphaMode": "BLEND", "emissiveFactor": [0, 0, 2]},
-        {"pbrMetallicRoughness": metal},
+        {"pbrMetallicRoughness": metal, "extensions": strong, "emissiveFactor": [1, 0.5, 0]},
+        {"pbrMetallicRoughness": metal, "alphaMode": "MASK", "alphaCutoff": 0.2},
     ]
-    for material in range(2):
+    for material in range(3):
         document.node(mesh=document.mesh(TRIANGLE, material=material))
     document.node(mesh=document.mesh(TRIANGLE))
     file = read_mesh_file(document.write(tmp_path / "a.glb"))
-    first, second, none = file.materials
-    assert first == Material(
-        albedo=(0.5, 0.25, 1), specular=(0.04,) * 3, power=pytest.approx(2 / 0.25**2 - 2), emissive=(0, 0, 1), alpha=0.5
-    )
-    assert (second.albedo, second.specular) == ((0, 0, 0), (1, 0.5, 0)) and none == Material()
-    assert file.two_sided == (True, False, False)
+    first, second, third, none = file.materials
+    assert (first.base, first.metalness, first.roughness) == ((0.5, 0.25, 1), 0, 0.5)
+    assert (first.emission, first.alpha, first.cutoff, first.reflectance) == ((0, 0, 2), 0.5, 0, 0.04)
+    assert (second.metalness, second.roughness, second.alpha, second.cutoff) == (1, 0.25, 1, 0)
+    assert second.emission == (25, 12.5, 0) and second.reflectance == pytest.approx(1 / 9)
+    # What is cut out is opaque: a picture's alpha x 0.5 < 0.2.
+    assert (third.alpha, third.cutoff) == (1, pytest.approx(0.4))
+    # glTF 2.0, 3.9.2: the defaults of a material.
+    assert (none.base, none.metalness, none.roughness, none.emission) == ((1, 1, 1), 1, 1, (0, 0, 0))
+    assert file.two_sided == (True, False, False, False) and file.notes.count("textures are not read") == 0
     scene = file_scene(file, Setting())
     assert [(part.materials.tolist(), part.two_sided) for part in scene.parts] == [
         ([0], True),
         ([1], False),
         ([2], False),
+        ([3], False),
     ]
+    assert scene.is_metal_rough
 
 
 # OBJ and PLY
@@ -330,7 +339,8 @@ def test_a_procedural_scene_as_a_file_renders_like_it(tmp_path, gl):
     for part in room.parts:
         mesh = part.mesh
         for material in dict.fromkeys(part.materials.tolist()):
-            arrays = {"TEXCOORD_0": mesh.uv, "TANGENT": tangents(mesh)}
+            # A file's bitangents go against v.
+            arrays = {"TEXCOORD_0": mesh.uv, "TANGENT": tangents(mesh) * (1, 1, 1, -1)}
             made = document.mesh(mesh.positions, mesh.normals, mesh.triangles, material=material, **arrays)
             for model in part.models[part.materials == material]:
                 document.node(mesh=made, matrix=model.T.ravel().tolist())

@@ -35,10 +35,10 @@ def test_the_teapots_normals_point_out():
 
 
 def test_what_a_device_is_given_of_a_mesh_is_made_once(monkeypatch):
-    """Position, normal, tangent and uv of each vertex; the next frame gives it the same."""
+    """Position, normal, tangent and uv of each vertex, the latter twice; the next frame gives it the same."""
     ball = shapes.sphere(2.0, 8, 4)
     vertices, triangles = ball.uploaded
-    expected = np.concatenate([ball.positions, ball.normals, shapes.tangents(ball), ball.uv], axis=1)
+    expected = np.concatenate([ball.positions, ball.normals, shapes.tangents(ball), ball.uv, ball.uv], axis=1)
     np.testing.assert_array_equal(vertices, expected.astype(np.float32))
     np.testing.assert_array_equal(triangles, shapes.wound(ball))
     assert vertices.dtype == np.float32 and triangles.dtype == np.int32

@@ -26,8 +26,8 @@ from normalbench.gbuffer.frame.resource import Resource
 from normalbench.gbuffer.gl.device import read_pixels
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
+from normalbench.gbuffer.scenes.built_in.lake import TREES
 from normalbench.gbuffer.scenes.catalogue import SCENES
-from normalbench.gbuffer.scenes.lake import TREES
 from normalbench.gbuffer.scenes.mesh import box, plane
 from normalbench.gbuffer.scenes.scene import Light, Material, Part, Scene, View, Water, placed
 from normalbench.gbuffer.scenes.setting import Setting

@@ -20,6 +20,8 @@ from normalbench.gbuffer.scenes.setting import Setting
 
 SIZE = (160, 120)
 FP32 = LAYOUTS["fp32"]
+# Those that every pipeline draws.
+BLINN_PHONG = [name for name in SCENES if name != "studio"]
 EXACT = ("forward", "forward_multipass", "deferred", "prepass", "hybrid", "inferred")
 
 
@@ -33,10 +35,10 @@ class Drawn:
     shadow_map: np.ndarray | None
 
 
-def draw(gl, pipeline: str, scene: Scene, layout=FP32, shadows=False, targets=2, scale=1.0) -> Drawn:
+def draw(gl, pipeline: str, scene: Scene, layout=FP32, shadows=False, targets=2, scale=1.0, **more) -> Drawn:
     chosen = PIPELINES[pipeline]
     targets = min(targets, max(chosen.light_targets, default=1))
-    plan = Plan(SIZE, 1, layout, LIGHT_BUFFERS["rgba32f"], targets, shadows, scale)
+    plan = Plan(SIZE, 1, layout, LIGHT_BUFFERS["rgba32f"], targets, shadows, scale, **more)
     with rendering(gl, chosen, scene, plan) as r:
         r.draw()
         deferred = chosen.has_gbuffer

@@ -40,6 +40,8 @@ class Document:
         self.json: dict[str, Any] = {"asset": {"version": "2.0"}, "accessors": [], "bufferViews": [], "meshes": []}
         self.json |= {"nodes": []}
         self.data = b""
+        # Buffers beside the one that holds the data.
+        self.others: list[dict[str, Any]] = []
 
     def accessor(self, values: np.ndarray, normalized: bool = False) -> int:
         """The numbers as an accessor of a view of their own."""
@@ -54,6 +56,28 @@ class Document:
         self.json["accessors"].append(entry)
         self.data += values.tobytes()
         return len(self.json["accessors"]) - 1
+
+    def view(self, data: bytes, **fields: Any) -> int:
+        """A buffer view of these bytes."""
+        self.data += bytes(-len(self.data) % 4)
+        self.json["bufferViews"].append({"buffer": 0, "byteOffset": len(self.data), "byteLength": len(data), **fields})
+        self.data += data
+        return len(self.json["bufferViews"]) - 1
+
+    def texture(self, picture: bytes | str, **sampler: Any) -> int:
+        """A texture of a picture's bytes, or of its address, by a sampler of its own where one is given."""
+        at = {"uri": picture} if isinstance(picture, str) else {"bufferView": self.view(picture)}
+        images, textures, samplers = (self.json.setdefault(name, []) for name in ("images", "textures", "samplers"))
+        images.append(at)
+        textures.append({"source": len(images) - 1})
+        if sampler:
+            samplers.append(sampler)
+            textures[-1]["sampler"] = len(samplers) - 1
+        return len(textures) - 1
+
+    def material(self, **fields: Any) -> int:
+        self.json.setdefault("materials", []).append(fields)
+        return len(self.json["materials"]) - 1
 
     def mesh(self, positions, normals=None, triangles=None, **more: Any) -> int:
         """A mesh of one primitive; `more` are attributes, and "material" or "mode"."""
@@ -76,7 +100,7 @@ class Document:
         uri = {"beside": {"uri": "a%20buffer.bin"}, "glb": {}}.get(how)
         if uri is None:
             uri = {"uri": "data:application/octet-stream;base64," + base64.b64encode(self.data).decode()}
-        text = json.dumps(self.json | {"buffers": [uri | {"byteLength": len(self.data)}]}).encode()
+        text = json.dumps(self.json | {"buffers": [uri | {"byteLength": len(self.data)}, *self.others]}).encode()
         if how != "glb":
             (path.parent / "a buffer.bin").write_bytes(self.data)
             path.write_bytes(text)

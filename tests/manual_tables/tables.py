@@ -304,6 +304,21 @@ ALL = (
         "linear rg16f",
     ),
     Table(
+        marker="normalbench roughness",
+        rows=("roughness",),
+        columns=(
+            key("storage", "storage"),
+            Column("bits", "bits"),
+            Column("acceptable from", "roughness", {"threshold": 0.1, "decides": True}, "{:.2f}".format, abs=0.011),
+            Column("invisible from", "roughness", {"threshold": 0.05, "decides": True}, "{:.2f}".format, abs=0.011),
+            Column("worst object", "object", {"threshold": 0.1, "decides": True}, "`{}`".format),
+            Column("worst environment", "environment", {"threshold": 0.1, "decides": True}, "`{}`".format),
+        ),
+        needs=("gl",),
+        takes=lambda row: row["threshold"] is not None,
+        lines="rg8,rgb10a2,rgb8_12_12,rg16",
+    ),
+    Table(
         marker="normalbench effects",
         rows=(
             f"effects --effect {EFFECTS} --encoding octahedral,spheremap --storage rg8,rgb10a2 --depth linear/packed16",

@@ -5,8 +5,11 @@ import json
 import math
 import re
 import time
+from dataclasses import replace
 from html.parser import HTMLParser
+from importlib import import_module
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -48,6 +51,16 @@ def a_run(folder: Path, tables: dict[str, list], **facts) -> Path:
     about |= {"lines": len(lines), "digest": hashlib.sha256("".join(lines).encode()).hexdigest()}
     (folder / "run.json").write_text(json.dumps(about | facts))
     return folder
+
+
+def test_the_rows_of_a_table_are_finished_once_for_a_page(run, tmp_path, monkeypatch):
+    """And nobody writes into those that were kept."""
+    work = import_module("normalbench.bench.tables.quality.work")
+    seen: list[int] = []
+    counting = replace(work.WORK, finish=lambda rows: seen.append(len(rows)) or work.WORK.finish(rows))
+    monkeypatch.setattr("normalbench.bench.tables.table.import_module", lambda _: SimpleNamespace(WORK=counting))
+    folder = a_run(tmp_path / "run", {"quality": [quality_row("xy"), quality_row("octahedral")]})
+    assert run("report", str(folder))[0] == 0 and seen == [2]
 
 
 class Read(HTMLParser):

@@ -8,6 +8,7 @@ import random
 import tempfile
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import closing
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,7 @@ from normalbench.bench.run.workers.orders import PICTURES
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.table import Table
 
+from .scheduled import scheduled
 from .timing import Row, exponent
 
 WORKERS = (1, 4, 10, 100, 1000)
@@ -171,15 +173,14 @@ def step_times(table: Table) -> tuple[list[float], int]:
 
 
 def measured_costs() -> Costs:
-    """What a task, a row and a byte cost here, with two workers."""
+    """What a task, a row and a byte cost here, with two workers of a scheduler."""
     from normalbench.bench.run.workers.about import about
     from normalbench.bench.run.workers.crew import Crew
-    from normalbench.bench.run.workers.local import LocalProcesses
+    from normalbench.bench.run.workers.link import Link
 
     own, began = about(), time.perf_counter()
-    processes = LocalProcesses(2)
-    crew = Crew(processes.address, own)
-    try:
+    with scheduled({}, {}) as there, closing(Link(there.address)) as link:
+        crew = Crew(link, own)
         while len(crew.admission) < 2:
             crew.lost()
             crew.arrival()
@@ -188,9 +189,6 @@ def measured_costs() -> Costs:
         task = _through(crew, TASKS, lambda address: crew.send(address, "", len, b"")) / TASKS
         data = bytes(BYTES)
         byte = _through(crew, 8, lambda address: crew.send(address, "", len, data)) / (8 * BYTES)
-    finally:
-        crew.close()
-        processes.close()
     return Costs(round(start, 2), round(task, 6), round(_row_cost(), 6), float(f"{byte:.2g}"))
 
 

@@ -37,6 +37,11 @@ def pick(
     needs: Names | None = ...,
     count: int = ...,
     seed: int = ...,
+    define: Names | None = ...,
+    prelude: Names | None = ...,
+    include: Names | None = ...,
+    language: Names | None = ...,
+    all_pairs: bool = ...,
     channels: Names | None = ...,
     unpack: bool | None = ...,
     curve: Names = ...,
@@ -55,7 +60,7 @@ def pick(
     Codes that do not meet the constraints are left out, with the reason. Of the others a code may cost twice as much if it is --worth decibels better. The exit status is 1 where no code meets the constraints.
 
     Args:
-        storage: Storages, comma-separated, or all; `normalbench list` shows them.
+        storage: Storages, comma-separated, or all; `normalbench list` shows them. Any split of bytes is one too: rgb8_12_12.
         bytes: Bytes of a texel, comma-separated: all storages of that size, not --storage.
         encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
         against: Encodings or files of GLSL, HLSL or Slang to compare with the answer, comma-separated, or all; `normalbench list` shows them.
@@ -75,6 +80,11 @@ def pick(
         needs: What stored codes must survive: filter, blend, resolve, upsample; comma-separated, or all.
         count: Normals in a uniform set.
         seed: The random seed of uniform sets, points and scenes.
+        define: Shader files: macros, NAME or NAME=VALUE.
+        prelude: Shader files: files that are put in front.
+        include: Shader files: where includes lie: FOLDER, or NAME=FOLDER of NAME/file.
+        language: Shader files: hlsl, slang, glsl or wgsl. Default: by the ending.
+        all_pairs: Shader files: each encoder that its decoder undoes, not one.
         channels: Captures: a layer, or the channels of x,y,z by name.
         unpack: Captures: [0,1] stands for [-1,1]. Default: for integers.
         curve: Captures: linear, srgb (to be undone), srgb-removed (to be redone).
@@ -101,6 +111,11 @@ def quality(
     seed: int = ...,
     worst_case: bool = ...,
     codes: bool = ...,
+    define: Names | None = ...,
+    prelude: Names | None = ...,
+    include: Names | None = ...,
+    language: Names | None = ...,
+    all_pairs: bool = ...,
     channels: Names | None = ...,
     unpack: bool | None = ...,
     curve: Names = ...,
@@ -120,15 +135,20 @@ def quality(
 
     Args:
         encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
-        storage: Storages, comma-separated, or all; `normalbench list` shows them.
+        storage: Storages, comma-separated, or all; `normalbench list` shows them. Any split of bytes is one too: rgb8_12_12.
         rounding: nearest, truncate, truncate_half; comma-separated, or all.
-        arithmetic: What codes are computed in: float (32 bits), half (every step rounded to 16 bits); comma-separated, or all.
+        arithmetic: What codes are computed in: float (32 bits), half (every step rounded to 16 bits), or declared: float, and half as well for a file that declares half, min16float, float16_t or mediump; comma-separated, or all.
         normals: Normal sets or files, comma-separated, or all; `normalbench list` shows them. `domain` is all that a code is made for: sphere and axes, or hemisphere.
         backend: jax, glsl, wgsl; comma-separated, or all.
         count: Normals in a uniform set.
         seed: The random seed of uniform sets, points and scenes.
         worst_case: The true supremum and where it is, in float64; seconds a codec.
         codes: Codes unused, duplicate, unstable, of up to 2^24; seconds a codec.
+        define: Shader files: macros, NAME or NAME=VALUE.
+        prelude: Shader files: files that are put in front.
+        include: Shader files: where includes lie: FOLDER, or NAME=FOLDER of NAME/file.
+        language: Shader files: hlsl, slang, glsl or wgsl. Default: by the ending.
+        all_pairs: Shader files: each encoder that its decoder undoes, not one.
         channels: Captures: a layer, or the channels of x,y,z by name.
         unpack: Captures: [0,1] stands for [-1,1]. Default: for integers.
         curve: Captures: linear, srgb (to be undone), srgb-removed (to be redone).
@@ -157,7 +177,10 @@ def render(
     effects: Names | None = ...,
     shadow: Names = ...,
     exposure: Names | None = ...,
-    tone_mapping: Names = ...,
+    tone_mapping: Names | None = ...,
+    environment: Names | None = ...,
+    specular_antialiasing: Names = ...,
+    least_roughness: float = ...,
     size: Names = ...,
     samples: int = ...,
     scale: float = ...,
@@ -167,6 +190,11 @@ def render(
     repeats: int = ...,
     seed: int = ...,
     flip: bool = ...,
+    define: Names | None = ...,
+    prelude: Names | None = ...,
+    include: Names | None = ...,
+    language: Names | None = ...,
+    all_pairs: bool = ...,
     on: str | None = ...,
 ) -> Rows:
     """What codecs, layouts and light buffers do to the final image, against the same pipeline in fp32.
@@ -185,8 +213,11 @@ def render(
         power: Specular powers of all materials, comma-separated. Default: each material's own.
         effects: Effects in the image, all at once, with settings: gtao:size=half,lpv.
         shadow: on, off; comma-separated, or all.
-        exposure: Stops, or auto: clip 1 % at most. Default: 0, and auto for files.
-        tone_mapping: none, reinhard or aces.
+        exposure: Stops, or auto: clip 1 % at most. Default: the scene's own, and auto for files.
+        tone_mapping: none, reinhard or aces. Default: aces for metal/rough scenes.
+        environment: What metal/rough scenes reflect: studio, sky, strips, lamp, or an .hdr or .exr file. Default: studio.
+        specular_antialiasing: on, off: whether metal/rough surfaces become rougher where a pixel sees many normals.
+        least_roughness: The least roughness that lights see; what lies around is mirrored to 0.
         size: WIDTHxHEIGHT of the image.
         samples: Samples per pixel; the device may give more.
         scale: Size of inferred's buffers relative to the image's, up to 1.
@@ -196,6 +227,47 @@ def render(
         repeats: Frames that times are taken over; of render, 0 takes none.
         seed: The random seed of uniform sets, points and scenes.
         flip: FLIP as well, a perceptual difference; a second a row.
+        define: Shader files: macros, NAME or NAME=VALUE.
+        prelude: Shader files: files that are put in front.
+        include: Shader files: where includes lie: FOLDER, or NAME=FOLDER of NAME/file.
+        language: Shader files: hlsl, slang, glsl or wgsl. Default: by the ending.
+        all_pairs: Shader files: each encoder that its decoder undoes, not one.
+        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
+    """
+
+def roughness(
+    *,
+    encoding: Names = ...,
+    storage: Names = ...,
+    rounding: Names = ...,
+    object: Names = ...,
+    environment: Names = ...,
+    threshold: Names = ...,
+    size: Names = ...,
+    define: Names | None = ...,
+    prelude: Names | None = ...,
+    include: Names | None = ...,
+    language: Names | None = ...,
+    all_pairs: bool = ...,
+    on: str | None = ...,
+) -> Rows:
+    """From which roughness on a normal code carries reflections: a mirror shows each step of a code, a dull surface none.
+
+    A sphere and two panels of a metal that reflects all light fill the picture one by one, under three environments. A code carries a roughness where FLIP's 99th percentile is at most --threshold there and at every greater roughness, on the worst of objects and environments. 0.1 is what we call acceptable and 0.05 invisible: both are conventions.
+
+    Args:
+        encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
+        storage: Storages, comma-separated, or all; `normalbench list` shows them. Any split of bytes is one too: rgb8_12_12.
+        rounding: nearest, truncate, truncate_half; comma-separated, or all.
+        object: sphere, panel20, panel4; comma-separated, or all.
+        environment: studio, strips, lamp, sky, or .hdr and .exr files; comma-separated.
+        threshold: FLIP's 99th percentile that a code may have, comma-separated.
+        size: WIDTHxHEIGHT of the image.
+        define: Shader files: macros, NAME or NAME=VALUE.
+        prelude: Shader files: files that are put in front.
+        include: Shader files: where includes lie: FOLDER, or NAME=FOLDER of NAME/file.
+        language: Shader files: hlsl, slang, glsl or wgsl. Default: by the ending.
+        all_pairs: Shader files: each encoder that its decoder undoes, not one.
         on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
@@ -213,6 +285,11 @@ def mix(
     count: int = ...,
     worst_case: bool = ...,
     seed: int = ...,
+    define: Names | None = ...,
+    prelude: Names | None = ...,
+    include: Names | None = ...,
+    language: Names | None = ...,
+    all_pairs: bool = ...,
     channels: Names | None = ...,
     unpack: bool | None = ...,
     curve: Names = ...,
@@ -232,7 +309,7 @@ def mix(
 
     Args:
         encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
-        storage: Storages, comma-separated, or all; `normalbench list` shows them.
+        storage: Storages, comma-separated, or all; `normalbench list` shows them. Any split of bytes is one too: rgb8_12_12.
         operation: filter, mip_2x2, mip_4x4, resolve, resolve_decoded, blend, blend_decoded, detail, upsample; comma-separated, or all.
         normals: Normal sets or files, comma-separated, or all; `normalbench list` shows them.
         angle: Degrees between neighbours, comma-separated. Images have their own neighbours.
@@ -243,6 +320,11 @@ def mix(
         count: Mixes of each set and angle.
         worst_case: The worst mix of each operation, by search; seconds a codec.
         seed: The random seed of uniform sets, points and scenes.
+        define: Shader files: macros, NAME or NAME=VALUE.
+        prelude: Shader files: files that are put in front.
+        include: Shader files: where includes lie: FOLDER, or NAME=FOLDER of NAME/file.
+        language: Shader files: hlsl, slang, glsl or wgsl. Default: by the ending.
+        all_pairs: Shader files: each encoder that its decoder undoes, not one.
         channels: Captures: a layer, or the channels of x,y,z by name.
         unpack: Captures: [0,1] stands for [-1,1]. Default: for integers.
         curve: Captures: linear, srgb (to be undone), srgb-removed (to be redone).
@@ -264,6 +346,11 @@ def maps(
     swizzle: Names = ...,
     normals: Names = ...,
     decoder: Names = ...,
+    define: Names | None = ...,
+    prelude: Names | None = ...,
+    include: Names | None = ...,
+    language: Names | None = ...,
+    all_pairs: bool = ...,
     channels: Names | None = ...,
     unpack: bool | None = ...,
     curve: Names = ...,
@@ -287,6 +374,11 @@ def maps(
         swizzle: rg, rrrg, dxt5nm, rgb; those with room for the code are used.
         normals: Image files of normals, or bumps (smooth), grain (noise), playground; comma-separated.
         decoder: model, device; comma-separated, or all.
+        define: Shader files: macros, NAME or NAME=VALUE.
+        prelude: Shader files: files that are put in front.
+        include: Shader files: where includes lie: FOLDER, or NAME=FOLDER of NAME/file.
+        language: Shader files: hlsl, slang, glsl or wgsl. Default: by the ending.
+        all_pairs: Shader files: each encoder that its decoder undoes, not one.
         channels: Captures: a layer, or the channels of x,y,z by name.
         unpack: Captures: [0,1] stands for [-1,1]. Default: for integers.
         curve: Captures: linear, srgb (to be undone), srgb-removed (to be redone).
@@ -319,6 +411,11 @@ def cost(
     seed: int = ...,
     normals: Names = ...,
     error: Names = ...,
+    define: Names | None = ...,
+    prelude: Names | None = ...,
+    include: Names | None = ...,
+    language: Names | None = ...,
+    all_pairs: bool = ...,
     on: str | None = ...,
 ) -> Rows:
     """What encoding and decoding cost: instructions on GPUs of five vendors, and time; all of it by default.
@@ -334,7 +431,7 @@ def cost(
         family: GPUs, comma-separated: polaris10, vega10, navi10, navi21, navi31, or radeon for these; hsw (Haswell), bdw (Broadwell), skl (Skylake), tgl (Tiger Lake), adl (Alder Lake), dg2 (Arc A770), or intel for these; sm_75 (Turing), sm_86 (Ampere), sm_89 (Ada), sm_90 (Hopper), sm_100 (Blackwell B200), sm_120 (Blackwell), or nvidia for these; rv670 (Radeon HD 3870), cypress (Radeon HD 5870), or terascale for these; a630 (Adreno 630), a650 (Adreno 650), a660 (Adreno 660), v3d42 (V3D 4.2, Raspberry Pi 4), or mobile for these, whose drivers you build; all.
         stage: fragment, compute; comma-separated, or all.
         operation: encode, decode; comma-separated, or all.
-        arithmetic: What codes are computed in: float (32 bits), half (every step rounded to 16 bits); comma-separated, or all.
+        arithmetic: What codes are computed in: float (32 bits), half (every step rounded to 16 bits), or declared: float, and half as well for a file that declares half, min16float, float16_t or mediump; comma-separated, or all.
         storage: Storages and packings whose own cost is shown, comma-separated, or all.
         size: WIDTHxHEIGHT of the target that is timed. Default: 64x64 in software, or 1024x1024.
         repeats: Repetitions that medians are taken over.
@@ -342,6 +439,11 @@ def cost(
         seed: The random seed of uniform sets, points and scenes.
         normals: --plot: normal sets, comma-separated, or all; `normalbench list` shows them.
         error: --plot: psnr, mean or max, the largest angle.
+        define: Shader files: macros, NAME or NAME=VALUE.
+        prelude: Shader files: files that are put in front.
+        include: Shader files: where includes lie: FOLDER, or NAME=FOLDER of NAME/file.
+        language: Shader files: hlsl, slang, glsl or wgsl. Default: by the ending.
+        all_pairs: Shader files: each encoder that its decoder undoes, not one.
         on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
@@ -355,6 +457,11 @@ def roofline(
     overdraw: float = ...,
     cache_share: float = ...,
     shared: bool = ...,
+    define: Names | None = ...,
+    prelude: Names | None = ...,
+    include: Names | None = ...,
+    language: Names | None = ...,
+    all_pairs: bool = ...,
     on: str | None = ...,
 ) -> Rows:
     """Bytes saved against instructions spent: which code is faster on which GPU, by a model.
@@ -363,13 +470,18 @@ def roofline(
 
     Args:
         encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
-        storage: Storages, comma-separated, or all; `normalbench list` shows them.
+        storage: Storages, comma-separated, or all; `normalbench list` shows them. Any split of bytes is one too: rgb8_12_12.
         gpu: GPUs, comma-separated, or all: rx480 (Radeon RX 480), vega64 (Radeon RX Vega 64), rx5700xt (Radeon RX 5700 XT), rx6800xt (Radeon RX 6800 XT), rx7900xtx (Radeon RX 7900 XTX), series_x (Xbox Series X), steam_deck (Steam Deck), hd530 (HD Graphics 530, two channels of DDR4-2133), iris_xe (Iris Xe of a Core i7-1185G7, LPDDR4x-4266), a770 (Arc A770), rtx2080 (GeForce RTX 2080), rtx3080 (GeForce RTX 3080), rtx4090 (GeForce RTX 4090), rtx5090 (GeForce RTX 5090). NAME:memory=400 changes a rate; known: lanes, clock (GHz), memory (GB/s), cache (MB), cached (GB/s). A family with these is a GPU of that family.
         size: WIDTHxHEIGHT of the G-buffer, comma-separated.
         reads: Passes that read and decode each pixel's normal, comma-separated.
         overdraw: How often each pixel's normal is encoded and written.
         cache_share: The share of the last-level cache that normals may have, 0 to 1.
         shared: Something else uses the rest of each texel: bytes are those of a code's own bits.
+        define: Shader files: macros, NAME or NAME=VALUE.
+        prelude: Shader files: files that are put in front.
+        include: Shader files: where includes lie: FOLDER, or NAME=FOLDER of NAME/file.
+        language: Shader files: hlsl, slang, glsl or wgsl. Default: by the ending.
+        all_pairs: Shader files: each encoder that its decoder undoes, not one.
         on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
@@ -390,6 +502,11 @@ def effects(
     repeats: int = ...,
     seed: int = ...,
     flip: bool = ...,
+    define: Names | None = ...,
+    prelude: Names | None = ...,
+    include: Names | None = ...,
+    language: Names | None = ...,
+    all_pairs: bool = ...,
     on: str | None = ...,
 ) -> Rows:
     """How much of a code's error arrives in effects that read the G-buffer: ambient occlusion and others.
@@ -412,6 +529,11 @@ def effects(
         repeats: Frames that times are taken over; of render, 0 takes none.
         seed: The random seed of uniform sets, points and scenes.
         flip: FLIP as well, a perceptual difference; a second a row.
+        define: Shader files: macros, NAME or NAME=VALUE.
+        prelude: Shader files: files that are put in front.
+        include: Shader files: where includes lie: FOLDER, or NAME=FOLDER of NAME/file.
+        language: Shader files: hlsl, slang, glsl or wgsl. Default: by the ending.
+        all_pairs: Shader files: each encoder that its decoder undoes, not one.
         on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
@@ -430,6 +552,11 @@ def motion(
     size: Names = ...,
     lights: int = ...,
     seed: int = ...,
+    define: Names | None = ...,
+    prelude: Names | None = ...,
+    include: Names | None = ...,
+    language: Names | None = ...,
+    all_pairs: bool = ...,
     on: str | None = ...,
 ) -> Rows:
     """How much a code's error changes from frame to frame while the camera or an object turns.
@@ -438,7 +565,7 @@ def motion(
 
     Args:
         encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
-        storage: Storages, comma-separated, or all; `normalbench list` shows them.
+        storage: Storages, comma-separated, or all; `normalbench list` shows them. Any split of bytes is one too: rgb8_12_12.
         rounding: nearest, truncate, truncate_half; comma-separated, or all.
         space: view, world: the space that normals are encoded in; comma-separated, or all. Of several spaces a code is measured in those that it is made for.
         moves: camera, object: what turns; comma-separated, or all.
@@ -450,6 +577,11 @@ def motion(
         size: WIDTHxHEIGHT of the image.
         lights: Point lights.
         seed: The random seed of uniform sets, points and scenes.
+        define: Shader files: macros, NAME or NAME=VALUE.
+        prelude: Shader files: files that are put in front.
+        include: Shader files: where includes lie: FOLDER, or NAME=FOLDER of NAME/file.
+        language: Shader files: hlsl, slang, glsl or wgsl. Default: by the ending.
+        all_pairs: Shader files: each encoder that its decoder undoes, not one.
         on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 

@@ -25,6 +25,7 @@ from ....encodings.codecs.files import CatalogueError
 from ....reports.charts.plots import PlotError
 from ...ground.machine.posix import alarm
 from ...ground.options.code import CodeOptions
+from ...ground.options.option import Sources
 from ...ground.output.errors import MissingError, UsageError, tell, told
 from ...ground.output.progress import ending
 from ...ground.output.writing import abandon_output, check_is_folder, write
@@ -32,7 +33,7 @@ from ...run.workers.words import check_place
 from ...tables.registry import TABLES
 from ...tables.table import Group
 from ..run_options import RunOptions
-from .commands import OnOption, add_tables, command_with
+from .commands import OnOption, add_tables, command_with, with_options
 from .device_commands import add_devices
 from .formats import Format, FormatOption, format_of
 from .typed import added_up, check_begins_with_command
@@ -114,7 +115,6 @@ def list_command(
     write(listing(what), format_of(format, output), output, SPARED, by="kind")
 
 
-@app.command(rich_help_panel=Group.OWN)
 def doctor(
     file: Annotated[
         Path | None, typer.Argument(help="A file with an encoding of yours: GLSL, HLSL, Slang or WGSL.")
@@ -135,22 +135,24 @@ def doctor(
     ] = None,
     format: FormatOption = None,
     output: PlainOutput = None,
+    **sources: Any,
 ) -> int:
     """What this machine has; or what is likely wrong with an encoding, with exit status 1 if anything is.
 
     Without a file: versions, cores, the GL device and how it rounds. With one: what its encode and decode do to
     directions before any storage.
     """
-    if file is None and plot is None and not storage and not domain:
+    if file is None and plot is None and not any((storage, domain, *sources.values())):
         from ...keep.machine import examine
 
         write(examine(), format_of(format, output), output)
         return 0
     from ..examine import examine_encoding
 
-    return examine_encoding(file, plot, format_of(format, output), output, storage, domain)
+    return examine_encoding(file, plot, format_of(format, output), output, storage, domain, sources)
 
 
+app.command(rich_help_panel=Group.OWN)(with_options(Sources, doctor))
 add_tables(app, TABLES.values())
 
 
@@ -321,9 +323,13 @@ def _is_delicate(frame: FrameType | None) -> bool:
 
 
 def _say_unless_ending(what: sys.UnraisableHookArgs) -> None:
-    """What a callback swallowed: nothing to be said of what the next step raises again."""
+    """What a callback swallowed: what was to end the program is raised again, since a worker that waits for its next
+    job has no next step that would do so."""
     if not any(what.exc_value is by for by in ending):
         sys.__unraisablehook__(what)
+        return
+    number = signal.SIGTERM if isinstance(what.exc_value, SystemExit) else signal.SIGINT
+    alarm.call_later(AGAIN_S, lambda later: _end(number, later))
 
 
 def main() -> int:

@@ -74,6 +74,13 @@ def command_with(group: type, command: Callable[..., int], **ends: Any) -> Calla
     return with_parameters(call, typed)
 
 
+def with_options(group: type, command: Callable[..., int]) -> Callable[..., int]:
+    """A command that takes the options of a dataclass as well, by their names in Python."""
+    own = inspect.signature(command, eval_str=True).parameters.values()
+    typed = [one for one in own if one.kind is not inspect.Parameter.VAR_KEYWORD]
+    return with_parameters(command, [*typed, *map(parameter_of, fields_of(group).values())])
+
+
 def _made(group: type, typed: dict[str, Any]) -> Any:
     """Typed values as a dataclass of options."""
     return group(**{name: typed[name] for name in fields_of(group)})
@@ -90,7 +97,8 @@ def parameter_of(field: Field, panel: str = MEASURED) -> inspect.Parameter:
         more |= {"parser": _whole_number, "metavar": "<int>"}
     if field.name in NAMES:
         more |= {"autocompletion": completion_of(field.name)}
-    shown = Annotated[field.type, typer.Option(option.flag, help=option.help, **more)]
+    flags = [one for one in (option.letter, option.flag) if one]
+    shown = Annotated[field.type, typer.Option(*flags, help=option.help, **more)]
     return inspect.Parameter(field.name, kind, default=field.default, annotation=shown)
 
 

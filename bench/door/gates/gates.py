@@ -11,12 +11,12 @@ from typing import Any
 from ....encodings.codecs.files import file_toml
 from ...ground.options.option import fields_of
 from ...ground.output.errors import UsageError
-from ...keep.runs import read_run
-from ...shaders.languages.words import files_in
-from ...tables.table import Role, Row, Table
+from ...keep.runs import Done, read_run
+from ...shaders.languages.words import files_in, split_names
+from ...tables.table import UNEXPECTED, Role, Row, Table
 from .baseline import Baseline, NoRowError, entry, write_baseline
 from .limits import Limit, limits_on, split_limits
-from .measured import Found, located, measured, table_named, with_their_options
+from .measured import USUAL, Found, located, measured, table_named, with_their_options
 
 MAX_GATES = 1000
 BASELINE = "matches_baseline"
@@ -50,7 +50,7 @@ class Gate:
             UsageError: a file that is in the folder of the shell only.
         """
         for name, value in self.files().items():
-            for word in map(str.strip, value.split(",")):
+            for word in split_names(value, self.folder):
                 there = files_in(word, self.folder)
                 # A name without an ending may be one of the catalogue's.
                 lost = [path for path in files_in(word) if Path(path).suffix and path not in there]
@@ -94,7 +94,7 @@ def _gate(place: str, values: dict[str, Any], folder: Path) -> Gate:
         for name, value in values.items():
             if not isinstance(value, str | int | float):
                 raise UsageError(f"{name} is {value!r}; it must be a text or a number")
-        table = table_named(values.pop("table", "quality"))
+        table = table_named(values.pop("table", USUAL))
         options, limits = split_limits(values, table, may_lack=named is not None)
         for limit in limits:
             limit.check(table)
@@ -140,16 +140,25 @@ def _rows_of_run(run: Path) -> Measure:
                 raise UsageError(
                     f"{gate.place}: no row of {name} in {run} has {option} {gate.options[option]!r}; there are {there}"
                 )
-        found = [row for row in tables[name] if all(_is(row.get(n), v) for n, v in gate.options.items())]
-        if not found:
+        rows = [row for row in _finished(done, gate, run) if all(_is(row.get(n), v) for n, v in gate.options.items())]
+        if not rows:
             asked = ", ".join(f"{option} {value!r}" for option, value in gate.options.items())
             raise UsageError(f"{gate.place}: {run} has rows with each of {asked}, but none with all of them")
-        rows = gate.table.work.finish(found)
         for limit in gate.limits:
             _check_was_measured(gate, limit, rows, run)
         return [Found(row, lambda: None) for row in rows]
 
     return rows
+
+
+def _finished(done: Done, gate: Gate, run: Path) -> list[Row]:
+    """The rows of a gate's table. Raises UsageError where another version wrote them."""
+    name = gate.table.name
+    try:
+        return done.finished_rows(name)
+    except UNEXPECTED as error:
+        again = f"measure them again: normalbench run --tables {name}"
+        raise UsageError(f"{gate.place}: the rows of {name} in {run} are not those of this version; {again}") from error
 
 
 def _check_was_measured(gate: Gate, limit: Limit, rows: list[Row], run: Path) -> None:

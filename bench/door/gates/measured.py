@@ -9,15 +9,19 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
-from ...ground.choose import names_a_file
+from ...ground.choose import names_a_file, unknown_name
 from ...ground.options.option import checked_options, fields_of
 from ...ground.output.errors import UsageError, noting_what_is_left_out
 from ...measures.metrics.totals import Worst
-from ...run.measuring import Nothing, asked, measured_steps
-from ...shaders.languages.words import file_of, files_in, names_an_encoder, twin_of, with_files
+from ...run.measuring import Nothing, asked
+from ...run.measuring import measured as find_measured
+from ...shaders.languages.words import INCLUDE, file_of, files_in, names_an_encoder, split_names, twin_of, with_files
 from ...tables.registry import TABLES
 from ...tables.table import Role, Row, Step, Table
 from .limits import Limit
+
+# The table of a gate that names none.
+USUAL = next(table.name for table in TABLES.values() if table.is_usual)
 
 
 @dataclass(frozen=True)
@@ -47,8 +51,10 @@ class Found:
 
 def table_named(name: Any) -> Table:
     """A table by its name. Raises UsageError."""
-    if not isinstance(name, str) or name not in TABLES:
+    if not isinstance(name, str):
         raise UsageError(f"unknown table {name!r}; known: {', '.join(TABLES)}")
+    if name not in TABLES:
+        raise unknown_name("table", [name], TABLES)
     return TABLES[name]
 
 
@@ -69,10 +75,10 @@ def measured(table: Table, values: Mapping[str, Any], usual: Mapping[str, Any] |
     # What is named and not there would pass unseen; of "all" some never fit.
     if left_out and not any(str(value) == "all" for value in given.values()):
         raise UsageError(f"a row that is asked for cannot be measured: {left_out[0]}")
-    steps = measured_steps(ask, Nothing())
+    done = find_measured(ask, Nothing())
     # By name: a finished row may be another object.
-    step_of = {table.name_of(row): step for step, rows in zip(ask.steps, steps, strict=True) for row in rows}
-    rows = named_rows(table, given, table.work.finish([row for rows in steps for row in rows]))
+    step_of = {table.name_of(row): step for step, rows in zip(ask.steps, done.kept, strict=True) for row in rows}
+    rows = named_rows(table, given, done.rows)
     return [_found(table, row, step_of[table.name_of(row)], asdict(options)) for row in rows]
 
 
@@ -107,12 +113,19 @@ def _word(value: Any) -> str:
 def located(table: Table, options: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     """Options with the words that are files by their paths from here: they are looked for in a folder."""
     known = fields_of(table.options)
+    placed: Mapping[str, Callable[[Path, str], str]] = {INCLUDE: _root_in}
     return {
-        name: ",".join(path_in(folder, word.strip()) for word in value.split(","))
+        name: ",".join(placed.get(name, path_in)(folder, word) for word in split_names(value, folder))
         if isinstance(value, str) and name in known and known[name].option.files
         else value
         for name, value in options.items()
     }
+
+
+def _root_in(folder: Path, word: str) -> str:
+    """FOLDER or NAME=FOLDER, of a folder as it is seen from another one, by its path from here."""
+    name, mark, root = word.rpartition("=")
+    return f"{name}{mark}{os.path.relpath(folder / root)}"
 
 
 def path_in(folder: Path, word: str) -> str:
@@ -138,7 +151,7 @@ def single(table: Table, given: Mapping[str, Any]) -> dict[str, Any]:
 
 def _is_in_glsl_only(names: str) -> bool:
     """Whether one of the names is a file with a user's encoder without a Python twin."""
-    words = [word.strip() for word in names.split(",") if names_an_encoder(word.strip())]
+    words = [word for word in split_names(names) if names_an_encoder(word)]
     return any(names_a_file(str(file_of(word))) and not names_a_file(str(twin_of(word))) for word in words)
 
 

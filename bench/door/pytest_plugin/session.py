@@ -20,7 +20,7 @@ from ...tables.table import Row, Table
 from ..gates.baseline import Baseline, checked_tolerances, entry
 from ..gates.gates import WRITER
 from ..gates.limits import Limit, limit, limits_on, not_a_limit, split_limits
-from ..gates.measured import Found, located, measured, single, table_named, with_their_options
+from ..gates.measured import USUAL, Found, located, measured, single, table_named, with_their_options
 from .own_options import REQUIRE_GL, SESSION, WRITE_BASELINE, baseline_path, destination, mirrored
 
 P = ParamSpec("P")
@@ -113,7 +113,7 @@ class Measured:
         """
         if not limits:
             raise UsageError('no limit given; add for example psnr_db="at least 47.5"')
-        self.hold(_limit(column, text) for column, text in limits.items())
+        self.hold(_checked_limit(column, text) for column, text in limits.items())
 
     def hold(self, limits: Iterable[Limit]) -> None:
         """Every row keeps every limit; see assert_that."""
@@ -176,7 +176,7 @@ class Measured:
             self.session.lacking(MissingError(found_device()[1]))
 
 
-def _limit(column: str, text: Any) -> Limit:
+def _checked_limit(column: str, text: Any) -> Limit:
     found = limit(column, text)
     if not found:
         raise not_a_limit(column, text)
@@ -217,7 +217,7 @@ class Normalbench:
         """What a marker says. Raises AssertionError for a row that does not keep it, UsageError where it is misused."""
         if positional:
             raise UsageError(f"the marker normalbench takes options and limits by name, not {positional[0]!r}")
-        table = table_named(values.get("table", "quality"))
+        table = table_named(values.get("table", USUAL))
         options, limits = split_limits({name: value for name, value in values.items() if name != "table"}, table)
         self.hold(table, options, limits)
 

@@ -1,28 +1,35 @@
 """Codecs on arrays, NumPy's or JAX's, of shape (..., 3).
 
-The functions can be jitted, and differentiated where the maths is: rounding has no slope, decoding has.
+The functions can be jitted, and differentiated where the maths is: rounding has no slope, decoding has. Those of a
+user's shader file without a Python twin are run by OpenGL, and cannot.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 
 from ....encodings.catalogue import ENCODINGS
 from ....encodings.codecs.codec import Codec
 from ....encodings.codecs.encoding import Encoding
-from ....encodings.storages.storage import Storage
+from ....encodings.storages.storage import ROUNDINGS, Storage
 from ....encodings.vec import Vec2, Vec3, Vec4, from_array, to_array
+from ....gbuffer.codecs.codec_passes import exact_values
+from ....gbuffer.gl.device import device
 from ...ground.output.errors import UsageError
+from ...shaders.code.twin import has_twin
 from ...subjects.codecs.names import codecs_named
 
 # Where the view position is not given, the viewer looks along -z.
 AHEAD = (0.0, 0.0, -1.0)
 CODES = {2: Vec2, 3: Vec3, 4: Vec4}
+NORMAL = 3
 # Integers with the bits of a float, by its size.
 BITS = {16: (jnp.float16, jnp.uint16), 32: (jnp.float32, jnp.uint32)}
 
@@ -66,17 +73,44 @@ def encoding(
 
 
 def codec_of(codec: Codec | str) -> Codec:
-    """A codec, or the one that "encoding/storage" or "encoding/storage/rounding" names. Raises UsageError."""
+    """A codec, or the one that "encoding/storage" or "encoding/storage/rounding" names; an encoding may be a file.
+
+    Raises:
+        UsageError: there is none.
+        MissingError: a user's shader has no Python twin, and there is no GL device.
+    """
     if isinstance(codec, Codec):
         found = codec
     else:
-        words = codec.split("/")
-        if len(words) not in (2, 3):
+        before, _, last = codec.rpartition("/")
+        before, rounding = (before, last) if last in ROUNDINGS else (codec, "nearest")
+        name, _, storage = before.rpartition("/")
+        if not (name and storage):
             raise UsageError(f'codec {codec!r}: name an encoding and a storage, such as "octahedral/rg8"')
-        (found,) = codecs_named(words[0], words[1], words[2] if len(words) > 2 else "nearest")
+        (found,) = codecs_named(name, storage, rounding)
     if found.misfit:
         raise UsageError(f"{found.name}: {found.misfit}")
-    return found
+    return found if has_twin(found.encoding) else replace(found, encoding=_by_gl(found.encoding))
+
+
+def _by_gl(encoding: Encoding) -> Encoding:
+    """An encoding whose two functions OpenGL runs, on arrays."""
+    gl = device()
+
+    def run(side: int, given: Any, view: Vec3) -> Any:
+        shape = jnp.broadcast_shapes(*(jnp.shape(one) for one in (*given, *view)))
+        rows, views = (_rows_of_four(vector, shape) for vector in (given, view))
+        made = exact_values(gl, encoding, rows, views, rows)[side]
+        size = NORMAL if side else encoding.components
+        return CODES[size](*(jnp.asarray(made[:, at]).reshape(shape) for at in range(size)))
+
+    return replace(encoding, encode=lambda n, view: run(0, n, view), decode=lambda code, view: run(1, code, view))
+
+
+def _rows_of_four(vector: Any, shape: tuple[int, ...]) -> np.ndarray:
+    """A vector of arrays as float32 rows of four numbers, (count, 4)."""
+    columns = [np.broadcast_to(np.asarray(one, np.float32), shape).ravel() for one in vector]
+    return np.stack([*columns, *[np.zeros_like(columns[0])] * (4 - len(columns))], axis=1)
 
 
 def encode(codec: Codec | str, normals: Any, view: Any = None) -> Codes:
@@ -94,7 +128,7 @@ def encode(codec: Codec | str, normals: Any, view: Any = None) -> Codes:
         UsageError: there is no such codec, or an array of another shape.
     """
     chosen, n = codec_of(codec), _planes("normals", normals)
-    stored = chosen.stored(n, _view(view, n))
+    stored = chosen.stored(n, _view_or_ahead(view, n))
     integers = [_integer(chosen, component, c) for component, c in enumerate(stored)]
     return Codes(jnp.stack(list(stored), axis=-1), jnp.stack(integers, axis=-1))
 
@@ -121,7 +155,7 @@ def decode(codec: Codec | str, codes: Any, view: Any = None) -> Any:
     if values.ndim < 1 or values.shape[-1] != size:
         raise UsageError(f"codes have shape {values.shape}; {chosen.name} needs (..., {size})")
     code = CODES[size](*(values[..., i] for i in range(size)))
-    return to_array(chosen.encoding.decode(code, _view(view, Vec3(code.x, code.x, code.x))))
+    return to_array(chosen.encoding.decode(code, _view_or_ahead(view, Vec3(code.x, code.x, code.x))))
 
 
 def _planes(what: str, array: Any) -> Vec3:
@@ -131,7 +165,7 @@ def _planes(what: str, array: Any) -> Vec3:
     return from_array(array)
 
 
-def _view(view: Any, like: Vec3) -> Vec3:
+def _view_or_ahead(view: Any, like: Vec3) -> Vec3:
     if view is not None:
         return _planes("view positions", view)
     return Vec3(*(jnp.full_like(like.x, component) for component in AHEAD))

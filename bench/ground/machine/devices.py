@@ -9,9 +9,11 @@ from typing import Any
 
 import jax
 
+from ....gbuffer.environment.prefilter import keep_levels_by
 from ....gbuffer.gl.device import Device, NoDeviceError, device
 from ..output import cache
 from ..output.errors import MissingError
+from ..output.kept_arrays import kept_arrays
 from .posix.system_files import processor_lines
 
 
@@ -69,4 +71,5 @@ def require_device() -> Device:
     gl, missing = found_device()
     if not gl:
         raise MissingError(missing)
+    keep_levels_by(kept_arrays)
     return gl

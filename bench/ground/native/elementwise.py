@@ -189,7 +189,7 @@ def _converted(equation: Any, value: str) -> str:
     return f"({c_type(target)}){value}"
 
 
-def _selected(_: Any, which: str, *cases: str) -> str:
+def _choice_text(_: Any, which: str, *cases: str) -> str:
     if len(cases) != 2:
         raise NotElementwiseError("a choice of more than two")
     return f"{which} ? {cases[1]} : {cases[0]}"
@@ -241,7 +241,7 @@ OTHERS: Mapping[str, Callable[..., str]] = MappingProxyType(
         "neg": lambda _, value: f"-{value}",
         "not": _inverted,
         "round": _rounded,
-        "select_n": _selected,
+        "select_n": _choice_text,
         "shift_left": partial(_shifted, "<<", "u"),
         "shift_right_arithmetic": partial(_shifted, ">>", ""),
         "shift_right_logical": partial(_shifted, ">>", "u"),

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from .option import Names, Option
+from .option import Names, Option, Sources
 
 
 @dataclass(frozen=True, kw_only=True)
-class CodeOptions:
+class CodeOptions(Sources):
     """Which codecs, in which languages."""
 
     codec: Annotated[str, Option("CODEC", f"Encodings or files, {Names}.", files=True)] = "octahedral"

@@ -39,7 +39,7 @@ def whole_number(text: str | int) -> int:
     raise ValueError(f"{text} is not a whole number, such as 1000, 1e6, 4M or 2^22")
 
 
-def in_range(option: str, value: int, low: int, high: int) -> None:
+def in_range(option: str, value: float, low: float, high: float) -> None:
     """Raises UsageError where an option's value is out of range."""
     if not low <= value <= high:
         raise UsageError(f"{option} {value}: from {low} to {high}")

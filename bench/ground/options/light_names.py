@@ -20,12 +20,12 @@ def light_buffers_named(names: str) -> list[LightCodec]:
         UsageError: an unknown name, or a range that is none or that the encoding does not have.
     """
     words = dict.fromkeys(name.strip() for name in names.split(","))
-    ranged = {word: _ranged(word) for word in words if ":" in word}
+    ranged = {word: _ranged_codec(word) for word in words if ":" in word}
     chosen = choose("light buffer", names, {**LIGHT_BUFFERS, **ranged})
     return list({codec.name: codec for codec in chosen}.values())
 
 
-def _ranged(word: str) -> LightCodec:
+def _ranged_codec(word: str) -> LightCodec:
     name, _, text = word.partition(":")
     known = {name: codec for name, codec in LIGHT_BUFFERS.items() if codec.encoding.ranged}
     codec = known.get(name)

@@ -9,6 +9,7 @@ from ....encodings.storages.depth_storage import DEPTH_STORAGES
 from ....encodings.storages.storage import FRAME_STORAGES, MOTION_STORAGES, STORAGES
 from ....gbuffer.effects.catalogue import EFFECTS
 from ....gbuffer.effects.effect import Choice, Number
+from ....gbuffer.environment.catalogue import ENVIRONMENTS
 from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.pipelines import PIPELINES
 from ....gbuffer.scenes.catalogue import SCENES
@@ -127,6 +128,10 @@ def _effects() -> list[Row]:
     ]
 
 
+def _environments() -> list[Row]:
+    return [_row("environment", one.name, one.title) for one in ENVIRONMENTS.values()]
+
+
 def _scenes() -> list[Row]:
     return [_row("scene", scene.name, scene.title) for scene in SCENES.values()]
 
@@ -150,6 +155,7 @@ KINDS = {
     "pipelines": _pipelines,
     "effects": _effects,
     "scenes": _scenes,
+    "environments": _environments,
     "lights": _light_buffers,
 }
 

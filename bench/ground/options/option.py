@@ -27,19 +27,24 @@ class Option:
         help: a sentence.
         files: whether its words may be files.
         in_run: whether `run` takes it too, for every table that has an option of this name in `run`.
+        letter: a short way to type it: "-D".
     """
 
     flag: str
     help: str
     files: bool = False
     in_run: bool = False
+    letter: str = ""
 
 
 Names = "comma-separated, or all; `normalbench list` shows them"
 Encodings = Annotated[
     str, Option("--encoding", f"Encodings or files of GLSL, HLSL, Slang or WGSL, {Names}.", files=True, in_run=True)
 ]
-StorageNames = Annotated[str, Option("--storage", f"Storages, {Names}.", in_run=True)]
+StorageNames = Annotated[
+    str,
+    Option("--storage", f"Storages, {Names}. Any split of bytes is one too: rgb8_12_12.", in_run=True),
+]
 Roundings = Annotated[
     str, Option("--rounding", "nearest, truncate, truncate_half; comma-separated, or all.", in_run=True)
 ]
@@ -71,13 +76,45 @@ Arithmetics = Annotated[
     str,
     Option(
         "--arithmetic",
-        "What codes are computed in: float (32 bits), half (every step rounded to 16 bits); comma-separated, or all.",
+        "What codes are computed in: float (32 bits), half (every step rounded to 16 bits), or declared: float, and "
+        "half as well for a file that declares half, min16float, float16_t or mediump; comma-separated, or all.",
         in_run=True,
     ),
 ]
 Repeats = Annotated[int, Option("--repeats", "Frames that times are taken over; of render, 0 takes none.")]
 Images = Annotated[Path | None, Option("--images", "Write pictures into this folder.")]
 Plot = Annotated[Path | None, Option("--plot", "Draw the table into this PNG, SVG or PDF file.")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sources:
+    """How users' files of encodings are read; comma-separated.
+
+    Attributes:
+        define: macros.
+        prelude: files that are put in front.
+        include: folders in which includes are searched.
+        language: what the files are written in, whatever their names end in.
+        all_pairs: whether each encoder of a file whose decoder undoes it has a row.
+    """
+
+    define: Annotated[
+        str | None, Option("--define", "Shader files: macros, NAME or NAME=VALUE.", in_run=True, letter="-D")
+    ] = None
+    prelude: Annotated[
+        str | None, Option("--prelude", "Shader files: files that are put in front.", files=True, in_run=True)
+    ] = None
+    include: Annotated[
+        str | None,
+        Option("--include", "Shader files: where includes lie: FOLDER, or NAME=FOLDER of NAME/file.", True, True),
+    ] = None
+    language: Annotated[
+        str | None,
+        Option("--language", "Shader files: hlsl, slang, glsl or wgsl. Default: by the ending.", in_run=True),
+    ] = None
+    all_pairs: Annotated[
+        bool, Option("--all-pairs", "Shader files: each encoder that its decoder undoes, not one.", in_run=True)
+    ] = False
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,17 +7,17 @@ from functools import partial
 from pathlib import Path
 
 from ....encodings.codecs.files import called
-from ....gbuffer.scenes.catalogue import SCENES, SceneMaker
+from ....gbuffer.scenes.catalogue import FILMIC, SCENES, SceneMaker
 from ....gbuffer.scenes.files.mesh_file import MeshFile
 from ....gbuffer.scenes.files.read import FRAMES, READERS, file_scene, read_mesh_file
-from ....gbuffer.scenes.files.source import SceneFileError
+from ....gbuffer.scenes.files.source import MissingPackageError, SceneFileError
 from ..choose import choose_or_read
-from ..output.errors import UsageError, tell
+from ..output.errors import MissingError, UsageError, tell
 
 MAX_POWER = 2048
 
 
-def scenes_named(names: str) -> list[SceneMaker]:
+def scene_makers_named(names: str) -> list[SceneMaker]:
     """The scenes that comma-separated names stand for: those of the catalogue, or mesh files.
 
     Raises:
@@ -29,7 +29,8 @@ def scenes_named(names: str) -> list[SceneMaker]:
         file = mesh_file(path)
         notes[path] = file.notes
         name = called(path.name)
-        return SceneMaker(name, f"the meshes of {name}", partial(file_scene, file), FRAMES, exposure=None)
+        shown = FILMIC if file.is_metal_rough else "none"
+        return SceneMaker(name, f"the meshes of {name}", partial(file_scene, file), FRAMES, None, shown)
 
     made = choose_or_read("scene", names, SCENES, READERS, scene_of)
     say_notes(notes)
@@ -51,9 +52,11 @@ def powers_named(numbers: str) -> list[float]:
 
 
 def mesh_file(path: Path) -> MeshFile:
-    """A mesh file. Raises UsageError."""
+    """A mesh file. Raises UsageError, and MissingError where a package that would unpack it is not installed."""
     try:
         return read_mesh_file(path)
+    except MissingPackageError as error:
+        raise MissingError(str(error)) from error
     except SceneFileError as error:
         raise UsageError(str(error)) from error
 

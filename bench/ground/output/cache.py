@@ -15,6 +15,7 @@ import shutil
 import stat
 import tempfile
 from collections.abc import Callable
+from contextlib import suppress
 from errno import EACCES
 from pathlib import Path
 from typing import Any
@@ -167,21 +168,22 @@ def _digest(value: Any) -> str:
 
 
 def write(key: str, value: dict[str, Any]) -> None:
-    """Keep a value. Readers see the old file or the new one; a folder that cannot be written is no error."""
-    if is_off():
-        return
-    path = _path(key)
-    try:
-        make_folder(path.parent)
-        with tempfile.NamedTemporaryFile("w", dir=path.parent, encoding="utf-8", delete=False) as file:
-            try:
-                json.dump({"key": key, "digest": _digest(value), "value": value}, file)
-                file.close()
-                Path(file.name).replace(path)
-            finally:
-                Path(file.name).unlink(missing_ok=True)
-    except OSError:
-        return
+    """Keep a value; a folder that cannot be written is no error."""
+    if not is_off():
+        with suppress(OSError):
+            put(_path(key), json.dumps({"key": key, "digest": _digest(value), "value": value}).encode())
+
+
+def put(path: Path, data: bytes) -> None:
+    """Put a file of this user's into the cache: readers see the old one or the new one. Raises OSError."""
+    make_folder(path.parent)
+    with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
+        try:
+            file.write(data)
+            file.close()
+            Path(file.name).replace(path)
+        finally:
+            Path(file.name).unlink(missing_ok=True)
 
 
 def _path(key: str) -> Path:

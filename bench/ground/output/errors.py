@@ -10,7 +10,7 @@ from contextvars import ContextVar
 
 # Digits that nobody reads to their end, and how many of them are shown.
 LONG_NUMBER, DIGITS = re.compile(r"\d{25,}"), 6
-# What a reason says of an encoding that is written for shaders alone.
+# What `lacks_twin` finds in a reason.
 NO_TWIN = "has no Python twin"
 # Letters of a line: what a word of thousands would make of it is not a message.
 LONGEST = 1500
@@ -52,6 +52,11 @@ def noting_what_is_left_out() -> Iterator[list[str]]:
         _noted.reset(token)
     for line in lines:
         tell(f"left out: {line}")
+
+
+def lacks_twin(reason: str) -> bool:
+    """Whether a row has no figures because its encoding is written for shaders alone."""
+    return NO_TWIN in reason
 
 
 class UsageError(Exception):

@@ -35,7 +35,7 @@ def check_writable(path: Path, makes_folder: bool = False) -> None:
             return
         _check_own(target_of(path))
         # Asked of what it will be called while it is written, so that a name that is too long is noticed.
-        _partial(path).exists()
+        partial_of(path).exists()
     except OSError as error:
         raise UsageError(f"cannot write {path}: {error.strerror or error}") from error
     folder = target_of(path).parent
@@ -51,7 +51,7 @@ def _check_own(path: Path) -> None:
         raise UsageError(f"{path} belongs to the run in its folder; name another file")
 
 
-def _partial(path: Path) -> Path:
+def partial_of(path: Path) -> Path:
     """What a file or folder is called while it is being written; no two processes share it."""
     return path.with_name(f".{path.name}.{os.getpid()}.partial")
 
@@ -85,15 +85,15 @@ def is_special(path: Path) -> bool:
     return path.exists() and not path.is_file()
 
 
-def _clear_away(path: Path) -> None:
-    """What processes that were killed have left of a file."""
+def clear_away(path: Path) -> None:
+    """Take away what processes that were killed have left of a file or folder. Raises OSError."""
     for partial in path.parent.glob(f".{glob.escape(path.name)}.*.partial"):
         number = partial.name.split(".")[-2]
-        if number.isdecimal() and not _runs(int(number)):
-            partial.unlink(missing_ok=True)
+        if number.isdecimal() and not _is_running(int(number)):
+            shutil.rmtree(partial) if partial.is_dir() else partial.unlink(missing_ok=True)
 
 
-def _runs(process: int) -> bool:
+def _is_running(process: int) -> bool:
     try:
         os.kill(process, 0)
     except ProcessLookupError:
@@ -113,10 +113,10 @@ def whole_file(path: Path) -> Iterator[Path]:
         UsageError: it cannot be written.
     """
     path = target_of(path)
-    partial = path if is_special(path) else _partial(path)
+    partial = path if is_special(path) else partial_of(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        _clear_away(path)
+        clear_away(path)
         yield partial
         if partial != path:
             partial.replace(path)

@@ -42,7 +42,7 @@ def common() -> dict[str, Any]:
         "numbers": NUMBERS,
         "stride": STRIDE,
         "hash": {"shifts": normals.SHIFTS, "factors": normals.FACTORS, "starts": starts},
-        "hard": {"count": len(given), "data": _text(given, "<f4")},
+        "hard": {"count": len(given), "data": _base64_text(given, "<f4")},
         "sums": {domain: sums(domain) for domain in DOMAINS},
     }
 
@@ -77,10 +77,10 @@ def checks(codec: Codec) -> dict[str, Any]:
         OSError: the encoding's files cannot be read.
     """
     key = kept.key_of("live", codec.name, codec.encoding.fingerprint, repr(codec.storage), sources())
-    return kept.kept(key, lambda: _made(codec))
+    return kept.kept(key, lambda: _codec_checks(codec))
 
 
-def _made(codec: Codec) -> dict[str, Any]:
+def _codec_checks(codec: Codec) -> dict[str, Any]:
     n, view = normals.normals(codec.encoding.domain)
     made = reference_of(codec, n, view, compiled=False)
     codes = ordered(codec, made)
@@ -89,9 +89,9 @@ def _made(codec: Codec) -> dict[str, Any]:
     angles = np.where(np.isfinite(angles), angles, 180.0)
     return {
         "normals": sums(codec.encoding.domain)[0],
-        "groups": _text(group_sums(codes), "<u4"),
-        "numbers": _text(np.array([checksum(number) for number in codes.T], np.uint32), "<u4"),
-        "sample": _text(codes[::STRIDE], "<i4"),
+        "groups": _base64_text(group_sums(codes), "<u4"),
+        "numbers": _base64_text(np.array([checksum(number) for number in codes.T], np.uint32), "<u4"),
+        "sample": _base64_text(codes[::STRIDE], "<i4"),
         "mean_deg": float(angles.mean()),
         "max_deg": float(angles.max()),
     }
@@ -117,5 +117,5 @@ def group_sums(codes: np.ndarray) -> np.ndarray:
     return weighted.sum(axis=(1, 2), dtype=np.uint32)
 
 
-def _text(values: np.ndarray, kind: str) -> str:
+def _base64_text(values: np.ndarray, kind: str) -> str:
     return base64.b64encode(np.ascontiguousarray(values, kind).tobytes()).decode("ascii")

@@ -97,14 +97,14 @@ def write_live(codecs: Iterable[Codec], folder: Path) -> None:
     written."""
     for codec in dict.fromkeys(codecs):
         try:
-            made = {**program(codec), "checks": _checks(codec)}
+            made = {**program(codec), "checks": _checks_or_none(codec)}
         except NotLiveError as error:
             made = {"encoding": codec.encoding.name, "storage": codec.storage.name, "left_out": str(error)}
         with whole_file(folder / file_name(codec)) as partial:
             partial.write_text(json.dumps(made), encoding="utf-8")
 
 
-def _checks(codec: Codec) -> Record | None:
+def _checks_or_none(codec: Codec) -> Record | None:
     """What its codes must be; None where the emulation cannot say it."""
     try:
         return checks.checks(codec)
@@ -112,7 +112,7 @@ def _checks(codec: Codec) -> Record | None:
         return None
 
 
-def _current(record: Record) -> Record:
+def _current_record(record: Record) -> Record:
     """A record whose checks are of the normals that the page makes; without them where they are of others."""
     found = record["checks"]
     is_whole = found and checks.is_whole(found, record["domain"], len(record["channels"]))
@@ -130,7 +130,7 @@ def read_live(folder: Path) -> tuple[list[Record], dict[str, str]]:
             if isinstance(record, dict) and isinstance(record.get("left_out"), str):
                 left_out[f"{record.get('encoding')} {record.get('storage')}"] = record["left_out"]
             else:
-                found.append(_current(KEPT.validate_python(record)))
+                found.append(_current_record(KEPT.validate_python(record)))
         except (OSError, ValueError, RecursionError, ValidationError):
             left_out[name] = "its file is damaged"
     return found, left_out

@@ -33,12 +33,12 @@ def hashed(words: np.ndarray) -> np.ndarray:
     return mixed
 
 
-def _uniform(words: np.ndarray) -> np.ndarray:
+def _uniform_numbers(words: np.ndarray) -> np.ndarray:
     """Numbers in [-1, 1) from the upper 24 bits of hashed words, exact in float32."""
     return (hashed(words) >> np.uint32(8)).astype(np.float32) * np.float32(2.0**-23) - np.float32(1)
 
 
-def _random(index: np.ndarray) -> np.ndarray:
+def _random_normals(index: np.ndarray) -> np.ndarray:
     """Uniform unit normals, float32 of shape (count, 3); the same for the same index.
 
     G. Marsaglia, "Choosing a Point from the Surface of a Sphere" (1972): the first (a, b) with s = a^2 + b^2 < 1 gives
@@ -49,7 +49,7 @@ def _random(index: np.ndarray) -> np.ndarray:
     open_[:] = True
     while open_.any():
         word = np.uint32(NORMALS) + np.uint32(PER_TRY) * (turn[open_] * np.uint32(COUNT) + index[open_])
-        a[open_], b[open_] = _uniform(word), _uniform(word + np.uint32(1))
+        a[open_], b[open_] = _uniform_numbers(word), _uniform_numbers(word + np.uint32(1))
         turn += 1
         open_ = a * a + b * b >= one
     s = a * a + b * b
@@ -61,9 +61,9 @@ def _at_length_1(vectors: np.ndarray) -> np.ndarray:
     return (vectors / np.linalg.norm(vectors, axis=1, keepdims=True)).astype(np.float32)
 
 
-def _lines() -> np.ndarray:
+def _fold_normals() -> np.ndarray:
     """Normals on the planes where maps fold, x = 0 and |x| = |y| for every pair of axes, and next to those of zeros."""
-    points, found = _random(np.arange(ON_LINES, dtype=np.uint32)).astype(np.float64), []
+    points, found = _random_normals(np.arange(ON_LINES, dtype=np.uint32)).astype(np.float64), []
     for one, other in PAIRS:
         for value in BESIDE:
             found.append(points.copy())
@@ -74,7 +74,7 @@ def _lines() -> np.ndarray:
     return _at_length_1(np.concatenate(found))
 
 
-def _neighbours(n: np.ndarray) -> np.ndarray:
+def _neighbour_normals(n: np.ndarray) -> np.ndarray:
     """Normals with one component one float32 up or down; next to 0 a number that stays normal where it is multiplied,
     because devices may flush subnormal ones."""
     found = []
@@ -92,7 +92,7 @@ def hard() -> np.ndarray:
     float32 of shape (count, 3)."""
     known = directions()[:-RANDOM]
     diagonals = known[-26:]
-    return np.concatenate([known, _neighbours(diagonals), _lines()])
+    return np.concatenate([known, _neighbour_normals(diagonals), _fold_normals()])
 
 
 @cache
@@ -103,8 +103,8 @@ def normals(domain: str) -> tuple[np.ndarray, np.ndarray]:
         domain: as an encoding's.
     """
     given = hard()
-    n = np.concatenate([given, _random(np.arange(len(given), COUNT, dtype=np.uint32))])
-    view = _views()
+    n = np.concatenate([given, _random_normals(np.arange(len(given), COUNT, dtype=np.uint32))])
+    view = _view_positions()
     if domain == "hemisphere":
         n[:, 2] = np.abs(n[:, 2])
     if domain == "view":
@@ -114,10 +114,10 @@ def normals(domain: str) -> tuple[np.ndarray, np.ndarray]:
     return n, view
 
 
-def _views() -> np.ndarray:
+def _view_positions() -> np.ndarray:
     """Positions in front of a viewer: x and y in [-1, 1), z in [-3, -1/2)."""
     index = np.arange(COUNT * PER_VIEW, dtype=np.uint32).reshape(COUNT, PER_VIEW)
-    view = _uniform(np.uint32(VIEWS) + index)
+    view = _uniform_numbers(np.uint32(VIEWS) + index)
     view[:, 2] = view[:, 2] * np.float32(1.25) - np.float32(1.75)
     return view
 

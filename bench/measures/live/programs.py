@@ -55,15 +55,15 @@ def program(codec: Codec) -> Record:
         "rounding": codec.rounding,
         "domain": encoding.domain,
         "source": code.body,
-        "text": "" if is_catalogues(encoding) else _read(own),
+        "text": "" if is_catalogues(encoding) else _file_text(own),
         "sign_bits": code.interface.sign_bits,
         "takes_view": code.interface.takes_view,
-        "tables": {name: _table(table) for name, table in code.interface.tables.items()},
-        **_stored(codec, code),
+        "tables": {name: _table_record(table) for name, table in code.interface.tables.items()},
+        **_code_record(codec, code),
     }
 
 
-def _read(own: Path) -> str:
+def _file_text(own: Path) -> str:
     """A user's file. Raises NotLiveError."""
     try:
         return own.read_text(encoding="utf-8", errors="replace")
@@ -71,7 +71,7 @@ def _read(own: Path) -> str:
         raise NotLiveError(f"{own} cannot be read") from error
 
 
-def _stored(codec: Codec, code: Code) -> Record:
+def _code_record(codec: Codec, code: Code) -> Record:
     """Where the numbers of a code lie."""
     storage, channels = codec.storage, Channels(codec)
     return {
@@ -89,7 +89,7 @@ def _stored(codec: Codec, code: Code) -> Record:
     }
 
 
-def _table(table: np.ndarray) -> Record:
+def _table_record(table: np.ndarray) -> Record:
     height, width, channels = table.shape
     data = base64.b64encode(np.ascontiguousarray(table, "<f4").tobytes()).decode("ascii")
     return {"width": width, "height": height, "channels": channels, "data": data}

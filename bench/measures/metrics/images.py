@@ -22,12 +22,12 @@ def squared_error(image: np.ndarray, reference: np.ndarray) -> tuple[float, int]
     return float(np.mean(difference**2)), int(broken.sum())
 
 
-def require_flip() -> None:
-    """Raises MissingError where FLIP cannot be measured."""
+def require_flip(what: str = "--flip") -> None:
+    """Raises MissingError where FLIP cannot be measured, which `what` needs."""
     try:
         import flip_evaluator  # noqa: F401 # asked for, not used
     except ImportError as error:
-        raise MissingError(f"--flip needs flip-evaluator ({error}); pip install flip-evaluator") from error
+        raise MissingError(f"{what} needs flip-evaluator ({error}); pip install flip-evaluator") from error
 
 
 def flip(image: np.ndarray, reference: np.ndarray) -> np.ndarray:

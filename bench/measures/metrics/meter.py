@@ -79,7 +79,7 @@ class Decoded(NamedTuple):
     covered: Any
 
 
-def _blocks(chunk):
+def _chunk_in_rows(chunk):
     return jax.tree.map(lambda a: a.reshape(-1, ROWS, SUM_LANES), chunk)
 
 
@@ -114,7 +114,7 @@ def _traced_scan(chunk: Decoded):
 
     zero, whole = jnp.zeros(SUM_LANES, jnp.float64), jnp.zeros(SUM_LANES, jnp.int64)
     start = Figures(zero, whole, zero, zero, whole, zero.astype(jnp.float32))
-    found, bins = jax.lax.scan(step, start, _blocks(chunk))
+    found, bins = jax.lax.scan(step, start, _chunk_in_rows(chunk))
     figures = [*(total.sum().astype(jnp.float64) for total in found[:-1]), found.largest.max().astype(jnp.float64)]
     return jnp.stack(figures), tally(bins), bins.ravel()
 

@@ -110,11 +110,12 @@ def drawn_pixels(
     there = np.flatnonzero((position[..., 2] != 0) & (direction[..., 3] != HAIR))
     lot = np.random.default_rng(seed).permutation(there)[:pixels]
     return Pixels(
-        *_in_world(scene, position.reshape(-1, 4)[lot, :3], direction.reshape(-1, 4)[lot, :3]), visibility.ravel()[lot]
+        *_rays_in_world(scene, position.reshape(-1, 4)[lot, :3], direction.reshape(-1, 4)[lot, :3]),
+        visibility.ravel()[lot],
     )
 
 
-def _in_world(scene: Scene, position: np.ndarray, direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _rays_in_world(scene: Scene, position: np.ndarray, direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     to_world = np.linalg.inv(scene.view.matrix())
     nearer = position.astype(np.float64) * (1 - NEARER)
     return nearer @ to_world[:3, :3].T + to_world[:3, 3], direction.astype(np.float64) @ to_world[:3, :3].T

@@ -101,7 +101,7 @@ class RayCaster:
             seed: of the directions.
         """
         rng, blocks = np.random.default_rng(seed), []
-        for first, count in _blocks(len(positions), max(BLOCK // rays, 1)):
+        for first, count in _block_ranges(len(positions), max(BLOCK // rays, 1)):
             n = normals[first : first + count]
             directions = cosine_directions(n, rays, rng)
             origins = np.broadcast_to(positions[first : first + count, None], directions.shape)
@@ -112,7 +112,7 @@ class RayCaster:
         return Visible(*(np.concatenate(each) for each in zip(*blocks, strict=True)))
 
 
-def _blocks(total: int, most: int) -> Iterator[tuple[int, int]]:
+def _block_ranges(total: int, most: int) -> Iterator[tuple[int, int]]:
     yield from ((first, min(most, total - first)) for first in range(0, total, most))
 
 

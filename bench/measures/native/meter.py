@@ -60,7 +60,7 @@ class _Chunks:
 
 
 @cache
-def _row() -> ctypes.CDLL:
+def _row_library() -> ctypes.CDLL:
     """The library of row.c, the same for all codecs."""
 
     def errors_of(n: Vec3, decoded: Vec3) -> tuple:
@@ -92,7 +92,7 @@ class NativeMeter:
         text = source(HERE / "decode.c", function, [c_type(FLOAT)] * len(self._given), block=BLOCK)
         self._library = library(text, "decode")
         decode = ctypes.cast(self._library.decode, ctypes.c_void_p)
-        self._codec, self._row = ctypes.byref(_Codec(decode, address(self._given))), _row()
+        self._codec, self._row_library = ctypes.byref(_Codec(decode, address(self._given))), _row_library()
 
     @property
     def compiler(self) -> str:
@@ -103,7 +103,7 @@ class NativeMeter:
         """The statistics of chunks, as `Meter.parts` gives them; JAX's device is of no concern."""
         figures, counts = np.zeros(len(Figures._fields)), np.zeros(BINS + 1, np.uint32)
         chunks = _Chunks([load() for load in loads])
-        self._row.row(self._codec, *chunks.given, address(figures), address(counts))
+        self._row_library.row(self._codec, *chunks.given, address(figures), address(counts))
         found = Figures(*figures.tolist())
         worst = None if is_smaller(found.largest, met_deg) else self._worst(chunks, found.largest, counts)
         return [(found, counts.astype(np.int64), worst)]
@@ -113,5 +113,5 @@ class NativeMeter:
         number = bin_of(largest)
         found, least = np.empty((counts[number], 6), np.float32), ctypes.c_float(lower_edge(number))
         room = ctypes.c_size_t(len(found))
-        have = self._row.in_bin(self._codec, *chunks.given, least, number, room, address(found))
+        have = self._row_library.in_bin(self._codec, *chunks.given, least, number, room, address(found))
         return worst_of(found[:have, :3], found[:have, 3:])

@@ -32,7 +32,7 @@ def ahead(like) -> Vec3:
     return Vec3(jnp.zeros_like(like), jnp.zeros_like(like), jnp.full_like(like, -1.0))
 
 
-def _toward(v: Vec3) -> Vec3:
+def _unit_or_z(v: Vec3) -> Vec3:
     """At length 1; +z where it is zero or no number."""
     length2 = dot(v, v)
     is_direction = (length2 > 0.0) & jnp.isfinite(length2)
@@ -68,15 +68,15 @@ class _Programs:
         self.chords = jax.jit(self._chords)
         self.codes = jax.jit(lambda n, *scales: jnp.stack(self._codec(scales).stored(Vec3(*n), ahead(n[0]))))
         self.stored = jax.jit(lambda code, *scales: jnp.stack(self._codec(scales).store(self._code(*code))))
-        self.corners = jax.jit(self._corners)
+        self.corners = jax.jit(self._corner_chords)
 
     def _codec(self, scales: tuple[Scale, ...]) -> Codec:
         return Codec(self._encoding, fixed(self._like, scales), self._rounding)
 
     def _normals(self, code, *_: Scale):
-        return jnp.stack(_toward(self._encoding.decode(*self._seen(code))))
+        return jnp.stack(_unit_or_z(self._encoding.decode(*self._code_and_rays(code))))
 
-    def _seen(self, code) -> tuple[Vec2 | Vec3, Vec3]:
+    def _code_and_rays(self, code) -> tuple[Vec2 | Vec3, Vec3]:
         """A code and the eye rays that it is decoded for."""
         return self._code(*code), ahead(code[0])
 
@@ -97,12 +97,12 @@ class _Programs:
         code = self._encoding.encode(n, ahead(n.z))
         around = codec.around(type(code)(*(jnp.broadcast_to(c, n.z.shape) for c in code)))
         stored = codec.store(self._code(*(jnp.stack(each) for each in zip(*around, strict=True))))
-        decoded = self._encoding.decode(*self._seen(stored))
+        decoded = self._encoding.decode(*self._code_and_rays(stored))
         miss = decoded - Vec3(*(c[None] for c in n))
         nearest = jnp.argmin(dot(miss, miss), axis=0, keepdims=True)
         return Vec3(*(jnp.take_along_axis(c, nearest, axis=0)[0] for c in decoded))
 
-    def _corners(self, edges, numbers, others):
+    def _corner_chords(self, edges, numbers, others):
         u, v = self.free
 
         def at(across, along) -> list:

@@ -78,12 +78,12 @@ def held(codec: Codec, domain: str | None, s: Statistics, sup_deg: float | None)
     if not is_measurable(least):
         return row
     return row | {
-        "reached_mean_percent": _share(least.mean_deg, s.angle_mean_deg),
-        "reached_rms_percent": _share(least.rms_deg, s.angle_rms_deg),
-        "reached_max_percent": _share(least.max_deg, s.angle_max_deg if sup_deg is None else sup_deg),
+        "reached_mean_percent": _percent_of(least.mean_deg, s.angle_mean_deg),
+        "reached_rms_percent": _percent_of(least.rms_deg, s.angle_rms_deg),
+        "reached_max_percent": _percent_of(least.max_deg, s.angle_max_deg if sup_deg is None else sup_deg),
         "below_limit": broken(codec.codes, AREAS[domain], s),
     }
 
 
-def _share(least: float, figure: float) -> float:
+def _percent_of(least: float, figure: float) -> float:
     return 100 * least / figure if figure else math.inf

@@ -61,7 +61,9 @@ def worst_frame(codec: FrameCodec) -> WorstFrame:
         with jax.enable_x64(True):
             return np.asarray(program(frames[:4], frames[4]))
 
-    best, moved = highest(Ground(moves, _around, _radians, _degrees, LANES), _worst_of(moves), LANES, FIRST_SIZES)
+    best, moved = highest(
+        Ground(moves, _frames_around, _radians, _degrees, LANES), _worst_of(moves), LANES, FIRST_SIZES
+    )
     x, y, z, w, hand = (float(c) for c in best.places[:, 0])
     return WorstFrame(_degrees(best.chords[0]), (x, y, z, w), hand, moved)
 
@@ -97,7 +99,7 @@ def _worst_of(moves: Callable[[np.ndarray], np.ndarray]) -> Starts:
     return reduce(add, on_all_cores(block, range(0, SPREAD, BLOCK))).best(LANES)
 
 
-def _around(frames: np.ndarray, sizes: np.ndarray, step: int) -> np.ndarray:
+def _frames_around(frames: np.ndarray, sizes: np.ndarray, step: int) -> np.ndarray:
     """WAYS tangent frames around each, turned about axes all around, by four angles; shape (5, WAYS, count)."""
     way, lane = np.arange(WAYS)[:, None], np.arange(len(sizes))[None, :]
     index = way + WAYS * step + 0.5 * lane

@@ -54,18 +54,18 @@ def odd_codes(codec: Codec, is_half: bool = False) -> OddCodes | None:
     exact, numbers = ExactCodec(codec, is_half), _Numbers(codec)
     is_used = np.zeros(codec.codes, bool)
     tables = sides(exact)
-    for index in on_all_cores(partial(_made_within, exact, numbers, tables), _starts(codec.codes)):
+    for index in on_all_cores(partial(_made_within, exact, numbers, tables), _index_blocks(codec.codes)):
         is_used[index] = True
     samples = min(MOST_SAMPLES, SAMPLES_A_CODE * codec.codes)
     for index in on_all_cores(lambda make: numbers.index(exact.codes(make())), spread(samples, is_half)):
         is_used[index] = True
-    stays = np.concatenate(list(on_all_cores(partial(_comes_back, exact, numbers), _starts(codec.codes))))
-    distinct = _distinct(exact, numbers)
+    stays = np.concatenate(list(on_all_cores(partial(_comes_back, exact, numbers), _index_blocks(codec.codes))))
+    distinct = _distinct_count(exact, numbers)
     unused = codec.codes - int(is_used.sum())
     return OddCodes(unused, codec.codes - distinct, int((is_used & ~stays).sum()))
 
 
-def _starts(count: int) -> Iterator[np.ndarray]:
+def _index_blocks(count: int) -> Iterator[np.ndarray]:
     return (np.arange(start, min(start + BLOCK, count)) for start in range(0, count, BLOCK))
 
 
@@ -88,9 +88,9 @@ class _Numbers:
 
     def index(self, codes: np.ndarray) -> np.ndarray:
         """The indices of stored codes, shape (components, count)."""
-        return np.ravel_multi_index([self._place(i, c) for i, c in enumerate(codes)], self.shape, mode="clip")
+        return np.ravel_multi_index([self._nearest_index(i, c) for i, c in enumerate(codes)], self.shape, mode="clip")
 
-    def _place(self, component: int, c: np.ndarray) -> np.ndarray:
+    def _nearest_index(self, component: int, c: np.ndarray) -> np.ndarray:
         table = self.tables[component]
         if self._is_even[component]:
             return np.rint((c - table[0]) * (1.0 / (table[1] - table[0]))).astype(np.int64)
@@ -104,7 +104,7 @@ def _made_within(exact: ExactCodec, numbers: _Numbers, tables: list[np.ndarray],
         left = np.flatnonzero(~found)
         if not len(left):
             break
-        normals = exact.normals(_points(exact, numbers, tables, index[left], where))
+        normals = exact.normals(_code_points(exact, numbers, tables, index[left], where))
         makes = numbers.index(exact.codes(normals)) == index[left]
         found[left] = makes & (normals[2] >= 0.0) if exact.is_half else makes
     return index[found]
@@ -117,7 +117,9 @@ def _stencil(exact: ExactCodec) -> list[tuple[int, ...]]:
     return every if len(exact.free) < 3 else [where for where in every if len({abs(side) for side in where}) == 1]
 
 
-def _points(exact: ExactCodec, numbers: _Numbers, tables: list[np.ndarray], index: np.ndarray, where) -> np.ndarray:
+def _code_points(
+    exact: ExactCodec, numbers: _Numbers, tables: list[np.ndarray], index: np.ndarray, where
+) -> np.ndarray:
     code = numbers.codes(index)
     places = numbers.places(index)
     for component, side in zip(exact.free, where, strict=True):
@@ -132,7 +134,7 @@ def _comes_back(exact: ExactCodec, numbers: _Numbers, index: np.ndarray) -> np.n
     return numbers.index(exact.codes(normals).astype(np.float64)) == index
 
 
-def _distinct(exact: ExactCodec, numbers: _Numbers) -> int:
+def _distinct_count(exact: ExactCodec, numbers: _Numbers) -> int:
     """How many directions the codes stand for."""
     keys = np.empty((len(OFFSETS), exact.codec.codes), np.uint64)
 
@@ -141,7 +143,7 @@ def _distinct(exact: ExactCodec, numbers: _Numbers) -> int:
         found = [np.floor(place + offset).astype(np.int64).view(np.uint64) for offset in OFFSETS]
         return index, np.stack([(box * MIX[:, None]).sum(axis=0, dtype=np.uint64) for box in found])
 
-    for index, found in on_all_cores(boxes, _starts(exact.codec.codes)):
+    for index, found in on_all_cores(boxes, _index_blocks(exact.codec.codes)):
         keys[:, index] = found
     keys.sort(axis=1)
     return int((np.diff(keys, axis=1) != 0).sum(axis=1).min()) + 1

@@ -65,7 +65,7 @@ def worst_case(codec: Codec, is_half: bool = False) -> Worst:
     # Compiling and the hull of the codes do not hold Python's lock, so a second thread finds the corners meanwhile.
     with ThreadPoolExecutor(1) as pool:
         corners = pool.submit(_worst_corners, exact, way, count) if way else None
-        blocks = itertools.chain(((block,) for block in spread(samples, is_half)), _special(is_half))
+        blocks = itertools.chain(((block,) for block in spread(samples, is_half)), _special_starts(is_half))
         starts = _worst_of(exact, blocks, count)
     ours = corners.result() if corners else None
     starts = starts + ours if ours else starts
@@ -93,7 +93,7 @@ def _worst_of(exact: ExactCodec, blocks: Iterable[Sequence[Callable[[], np.ndarr
         parts = [part() for part in block]
         ends = np.cumsum([part.shape[1] for part in parts])
         chords = np.split(exact.chords(np.concatenate(parts, axis=1)), ends[:-1])
-        return reduce(add, map(_peaks, chords, parts))
+        return reduce(add, map(_peak_starts, chords, parts))
 
     best = Starts(np.empty(0), np.empty((3, 0)))
     for found in on_all_cores(peaks, blocks):
@@ -101,7 +101,7 @@ def _worst_of(exact: ExactCodec, blocks: Iterable[Sequence[Callable[[], np.ndarr
     return best
 
 
-def _peaks(chords: np.ndarray, normals: np.ndarray) -> Starts:
+def _peak_starts(chords: np.ndarray, normals: np.ndarray) -> Starts:
     """Some of the worst of normals, from all over them."""
     largest, index = cells.column_peaks(chords, cells.KEPT)
     return Starts(largest, normals[:, index])
@@ -113,35 +113,37 @@ def spread(count: int, is_half: bool) -> Iterator:
     def block(start: int) -> np.ndarray:
         index = np.arange(start, start + BLOCK) + 0.5
         z, turn = (np.modf(index * step)[0] for step in (0.7548776662466927, 0.5698402909980532))
-        return _on_sphere(z if is_half else 2.0 * z - 1.0, 2.0 * np.pi * turn)
+        return _sphere_points(z if is_half else 2.0 * z - 1.0, 2.0 * np.pi * turn)
 
     return (partial(block, start) for start in range(0, count, BLOCK))
 
 
-def _on_sphere(z: np.ndarray, angle: np.ndarray) -> np.ndarray:
+def _sphere_points(z: np.ndarray, angle: np.ndarray) -> np.ndarray:
     r = np.sqrt(1.0 - z * z)
     return np.stack([np.cos(angle) * r, np.sin(angle) * r, z])
 
 
-def _special(is_half: bool) -> Iterator:
+def _special_starts(is_half: bool) -> Iterator:
     """Where codes are folded, cut or singular: great circles between axes and diagonals, both sides of them; the rim of
     a hemisphere, closely; and rings around the axes. Nearer than 1e-4 to a pole even float64 cancels in
     some encodings, which are then not the exact map."""
-    circle = _on_sphere(np.zeros(BLOCK // 4), np.arange(BLOCK // 4) * (8 * np.pi / BLOCK))
+    circle = _sphere_points(np.zeros(BLOCK // 4), np.arange(BLOCK // 4) * (8 * np.pi / BLOCK))
     diagonals = [(1, s, 0) for s in (1, -1)] + [(1, 0, s) for s in (1, -1)] + [(0, 1, s) for s in (1, -1)]
     offsets = [circle + np.array([[0.0], [0.0], [offset]]) for offset in (0.0, 1e-9, -1e-9)]
-    circles = [partial(_about, across, near) for across in [*np.eye(3), *np.array(diagonals)] for near in offsets]
+    circles = [
+        partial(_moved_to_axis, across, near) for across in [*np.eye(3), *np.array(diagonals)] for near in offsets
+    ]
     yield from (circles[start : start + 4] for start in range(0, len(circles), 4))
     height = np.cos(np.repeat(np.geomspace(1e-4, 1.0, 256), 64))
-    ring = _on_sphere(height, np.arange(len(height)) * (np.pi / 32))
-    yield from ([partial(_about, axis, ring), partial(_about, -axis, ring)] for axis in np.eye(3))
+    ring = _sphere_points(height, np.arange(len(height)) * (np.pi / 32))
+    yield from ([partial(_moved_to_axis, axis, ring), partial(_moved_to_axis, -axis, ring)] for axis in np.eye(3))
     for start in range(16 if is_half else 0):
         angle = (np.arange(BLOCK) + start / 16) * (2 * np.pi / BLOCK)
-        yield [partial(_on_sphere, np.zeros(BLOCK), angle)]
+        yield [partial(_sphere_points, np.zeros(BLOCK), angle)]
 
 
-def _about(axis: np.ndarray, around_z: np.ndarray) -> np.ndarray:
-    """Unit normals about +z turned to another axis."""
+def _moved_to_axis(axis: np.ndarray, around_z: np.ndarray) -> np.ndarray:
+    """Unit normals that lie around +z, turned to lie around another axis."""
     axis = axis / np.linalg.norm(axis)
     least = np.eye(3)[np.argmin(np.abs(axis))]
     x = np.cross(least, axis)

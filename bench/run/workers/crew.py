@@ -1,4 +1,4 @@
-"""The workers of a scheduler: who is there, who may measure, and who is busy with what."""
+"""The workers that a carrier reaches: who is there, who may measure, and who is busy with what."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from ...ground.output.errors import MissingError, UsageError, leave_out
+from ...ground.output.errors import MissingError, leave_out
 from .about import About
 from .admission import Admission
-from .link import LOST, Flight, Link
+from .carrier import LOST, Carrier, Flight
 from .tasks import probe
 
 # How often workers are looked for, and how long there may be none, in seconds.
@@ -29,21 +29,17 @@ class Crew:
     """Workers, each with one task at a time.
 
     Args:
-        address: of the scheduler.
+        carrier: who brings them tasks.
         own: what this process says of itself.
-        look_after: starts again what has ended on this machine; whether that was the scheduler.
 
     Attributes:
         admission: the workers that may measure.
-        generation: how often the scheduler was lost.
-
-    Raises:
-        UsageError: nobody answers.
+        generation: how often the carrier lost all of them at once, as with a scheduler.
     """
 
-    def __init__(self, address: str, own: About, look_after: Callable[[], bool] = lambda: False):
+    def __init__(self, carrier: Carrier, own: About):
         self.admission, self.generation = Admission(own), 0
-        self._link, self._look_after = Link(address), look_after
+        self._carrier = carrier
         self._flights: dict[str, Flight] = {}
         self._refused: set[str] = set()
         self._seen_at = self._looked_at = time.monotonic()
@@ -65,19 +61,19 @@ class Crew:
     def send(self, address: str, what: Any, function: Callable[..., Any], *arguments: Any) -> None:
         """Have an idle worker call a function; `arrival` brings `what` back with the answer."""
         self._flights[address] = flight = Flight(address, what)
-        self._link.send(flight, function, *arguments)
+        self._carrier.send(flight, function, *arguments)
 
     def arrival(self) -> tuple[str, Any, Any] | None:
         """A worker, what it was sent, and its answer; None where none comes for a while.
 
         An answer that was lost on the way is LOST. So is what a worker had that is gone: see `lost`.
         """
-        flight = self._link.next_arrival(LOOK_S)
+        flight = self._carrier.next_arrival(LOOK_S)
         if not flight or self._flights.get(flight.address) is not flight:
             return None
-        answer = self._link.answer(flight)
+        answer = self._carrier.answer(flight)
         # What is gone with its worker is seen when that is looked for.
-        if answer is LOST and flight.address not in (self._link.workers() or ()):
+        if answer is LOST and flight.address not in (self._carrier.workers() or ()):
             return None
         del self._flights[flight.address]
         if flight.what is not PROBING:
@@ -94,18 +90,17 @@ class Crew:
         was lost, and not with the scheduler.
 
         Raises:
-            UsageError: the scheduler is gone and does not come back.
+            UsageError: the scheduler is gone and does not come back, or workers of this machine do not stay.
             MissingError: no worker was there for a minute.
         """
         if time.monotonic() - self._looked_at < LOOK_S:
             return []
-        is_lost = self._look_after() or not self._link.is_there
-        found = self._start_again() if is_lost else self._looked_for()
+        found = self._looked_for()
         self._looked_at = time.monotonic()
         if len(self.admission) or self._flights:
             self._seen_at = self._looked_at
         elif self._looked_at - self._seen_at > PATIENCE_S:
-            raise MissingError(f"--on {self._link.address}: no worker may measure; start one: normalbench worker")
+            raise MissingError(f"--on {self._carrier.address}: no worker may measure; start one: normalbench worker")
         return [(what, is_fault) for what, is_fault in found if what is not PROBING]
 
     def _looked_for(self) -> list[tuple[Any, bool]]:
@@ -113,7 +108,7 @@ class Crew:
         began = time.monotonic()
         if began < self._ask_at:
             return []
-        there = self._link.workers()
+        there = self._carrier.workers()
         took = time.monotonic() - began
         self._ask_at = began + took + min(PAUSES * took, LONGEST_S)
         return self._start_again() if there is None else self._gone(there)
@@ -128,7 +123,8 @@ class Crew:
         for address in (set(self.admission) | self._flights.keys()) - there.keys():
             self.admission.lose(address)
             if flight := self._flights.pop(address, None):
-                self._link.forget(flight)
+                # Who carries it forgets it.
+                flight.carried = None
                 found.append((flight.what, True))
         for address in there.keys() - self._flights.keys() - set(self.admission) - self._refused:
             if there[address]:
@@ -146,13 +142,5 @@ class Crew:
         for address in set(self.admission):
             self.admission.lose(address)
         self.generation += 1
-        until = time.monotonic() + PATIENCE_S
-        while not self._link.connect():
-            self._look_after()
-            if time.monotonic() > until:
-                raise UsageError(f"--on {self._link.address}: the scheduler is gone and does not come back")
+        self._carrier.connect()
         return found
-
-    def close(self) -> None:
-        """End the connection."""
-        self._link.close()

@@ -1,4 +1,4 @@
-"""The connection to a scheduler: workers that are there, tasks sent to one of them, and answers as they come.
+"""The connection to a scheduler of dask, which carries tasks to workers on any machine.
 
 Whatever the connection does, nothing here raises but `connect`: a task whose answer does not come is lost, and the pool
 sends it again.
@@ -14,34 +14,18 @@ import uuid
 import warnings
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass, field
 from typing import Any
 
 from ...ground.output.errors import UsageError
-from .worker import RESOURCE, check_certificates, quiet
+from .carrier import LOST, Carrier, Flight
+from .worker import PATIENCE_S, RESOURCE, check_certificates, quiet
 
 CONNECT_S, ANSWER_S, LOOK_S = 5.0, 120.0, 1.0
 # Whose exceptions say that something was lost.
 DASK = ("distributed", "asyncio", "concurrent", "tornado")
 
 
-@dataclass(eq=False)
-class Flight:
-    """A task under way: to which worker, and what it is of."""
-
-    address: str
-    what: Any
-    future: Any = field(default=None, repr=False)
-
-
-class Lost:
-    """What is there in place of an answer that does not come."""
-
-
-LOST = Lost()
-
-
-class Link:
+class Link(Carrier):
     """A connection to the scheduler at an address.
 
     Raises:
@@ -51,15 +35,20 @@ class Link:
     def __init__(self, address: str):
         quiet()
         check_certificates("--on", address, "client")
-        self.address = address
-        self._arrived: queue.SimpleQueue[Flight] = queue.SimpleQueue()
+        super().__init__(address)
         self._numbers, self._name = itertools.count(), uuid.uuid4().hex
         self._client: Any = None
-        if not self.connect():
+        if not self._connected():
             raise UsageError(f"--on {address}: nobody answers; start a scheduler there: dask scheduler")
 
-    def connect(self) -> bool:
-        """Connect anew; whether that went well. Tasks that were under way are forgotten."""
+    def connect(self) -> None:
+        until = time.monotonic() + PATIENCE_S
+        while not self._connected():
+            if time.monotonic() > until:
+                raise UsageError(f"--on {self.address}: the scheduler is gone and does not come back")
+
+    def _connected(self) -> bool:
+        """Connect anew; whether that went well."""
         from distributed import Client
 
         self.close()
@@ -73,44 +62,31 @@ class Link:
             return False
         return True
 
-    @property
-    def is_there(self) -> bool:
-        """Whether the scheduler is."""
-        return self._client is not None and self._client.status == "running"
-
     def workers(self) -> dict[str, bool] | None:
-        """The addresses of the workers that are there, and whether each is normalbench's; None where nobody answers."""
         try:
+            if self._client.status != "running":
+                return None
             found = self._client.scheduler_info(n_workers=-1)["workers"]
         except Exception:
             return None
         return {address: RESOURCE in one["resources"] for address, one in found.items()}
 
     def send(self, flight: Flight, function: Callable[..., Any], *arguments: Any) -> None:
-        """Have a worker call a function; the flight arrives once there is an answer, or none will come."""
         arrived = self._arrived
         key = f"normalbench-{self._name}-{next(self._numbers)}"
         try:
             with warnings.catch_warnings():
                 # Files are large, and each worker is sent them once.
                 warnings.simplefilter("ignore")
-                flight.future = self._client.submit(
+                flight.carried = self._client.submit(
                     function, *arguments, key=key, workers=[flight.address], pure=False, retries=0
                 )
-            flight.future.add_done_callback(lambda _: arrived.put(flight))
+            flight.carried.add_done_callback(lambda _: arrived.put(flight))
         except Exception:
             arrived.put(flight)
 
-    def next_arrival(self, seconds: float) -> Flight | None:
-        """A flight that has arrived; None where none does in time."""
-        with suppress(queue.Empty):
-            return self._arrived.get(timeout=seconds)
-        return None
-
     def answer(self, flight: Flight) -> Any:
-        """What a flight brings; LOST where that was lost on the way, as with the worker that has it; an exception where
-        it was none of the connection's, and would come again."""
-        future, flight.future = flight.future, None
+        future, flight.carried = flight.carried, None
         until = time.monotonic() + ANSWER_S
         while future is not None and time.monotonic() < until:
             try:
@@ -124,15 +100,7 @@ class Link:
                 return LOST if isinstance(error, OSError) or type(error).__module__.startswith(DASK) else error
         return LOST
 
-    def forget(self, flight: Flight) -> None:
-        """Take no answer from a flight any more."""
-        with suppress(Exception):
-            if flight.future is not None:
-                flight.future.cancel()
-        flight.future = None
-
     def close(self) -> None:
-        """End the connection."""
         client, self._client = self._client, None
         if client is not None:
             with suppress(Exception), warnings.catch_warnings():

@@ -1,109 +1,81 @@
-"""A scheduler and worker processes on this machine. Whichever of them ends is started again."""
+"""Worker processes of this machine, reached through pipes. Whichever of them ends is started again."""
 
 from __future__ import annotations
 
-import subprocess
-import tempfile
-from typing import IO
+import itertools
+from collections.abc import Callable
+from functools import partial
+from typing import Any
 
-from ...ground.machine.children import environment, python
-from ...ground.machine.posix.processes import OWN_GROUP
-from ...ground.output.errors import UsageError, tell
-from .worker import ENCRYPTED
+from ...ground.machine.memory import keep_what_is_freed
+from ...ground.output.errors import UsageError
+from ..piped import Piped, Send
+from .carrier import Carrier, Flight
 
-START_S, END_S = 60.0, 5.0
 # Workers that end by themselves, one for each that there should be, this often: none will stay.
 MOST_FAILURES = 3
 
 
-class Process:
-    """A process that ends when this one does, or is told to."""
-
-    def __init__(self, module: str, *words: str):
-        self._errors: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 # as long as the process
-        self.popen = subprocess.Popen(
-            python(f"{__package__}.{module}", *words),
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=self._errors,
-            # Nothing of them leaves this machine, and certificates may name another one.
-            env=environment() | {ENCRYPTED: "False"},
-            **OWN_GROUP,
-            text=True,
-        )
-
-    @property
-    def is_there(self) -> bool:
-        return self.popen.poll() is None
-
-    @property
-    def said(self) -> str:
-        """The last line that it wrote to standard error."""
-        self._errors.seek(0)
-        lines = self._errors.read().decode(errors="replace").strip().splitlines()
-        return lines[-1].strip() if lines else f"exit status {self.popen.poll()}"
-
-    def first_line(self) -> str:
-        assert self.popen.stdout
-        return self.popen.stdout.readline().strip()
-
-    def end(self) -> None:
-        """Ask it to end; `wait` sees to it that it does."""
-        self.popen.terminate()
-
-    def wait(self) -> None:
-        try:
-            self.popen.wait(END_S)
-        except subprocess.TimeoutExpired:
-            self.popen.kill()
-            self.popen.wait()
-        for stream in filter(None, (self.popen.stdin, self.popen.stdout, self._errors)):
-            stream.close()
-
-
-class LocalProcesses:
-    """So many workers and their scheduler.
-
-    Raises:
-        UsageError: they do not start.
-    """
+class LocalWorkers(Carrier):
+    """Some worker processes, which are ended with `close`."""
 
     def __init__(self, count: int):
+        super().__init__(f"local:{count}")
+        self._names = (f"local {number}" for number in itertools.count(1))
+        self._workers: dict[str, Piped] = {}
+        # What each was sent last.
+        self._flights: dict[str, Flight] = {}
         self._failures = 0
-        self.scheduler = Process("scheduler")
-        self.workers: list[Process] = []
         try:
-            self.address = self.scheduler.first_line()
-            if not self.address:
-                self.scheduler.popen.wait(START_S)
-                raise UsageError(f"--on local: the scheduler does not start: {self.scheduler.said}")
-            self.workers += [Process("worker", self.address) for _ in range(count)]
+            for _ in range(count):
+                self._start()
         except BaseException:
             self.close()
             raise
 
-    def look_after(self) -> bool:
-        """Start again what has ended; whether that was the scheduler. Raises UsageError where nothing stays."""
-        self.workers = [one if one.is_there else self._again(one) for one in self.workers]
-        if self.scheduler.is_there:
-            return False
-        tell("the scheduler was lost; another one is started")
-        self.scheduler.wait()
-        self.scheduler = Process("scheduler", self.address.rpartition(":")[2])
-        return True
+    def workers(self) -> dict[str, bool]:
+        for name, worker in list(self._workers.items()):
+            if worker.status is not None:
+                self._start_again(self._workers.pop(name))
+        return dict.fromkeys(self._workers, True)
 
-    def _again(self, ended: Process) -> Process:
-        said, status = ended.said, ended.popen.returncode
-        ended.wait()
-        self._failures += status > 0
-        if self._failures >= MOST_FAILURES * len(self.workers):
-            raise UsageError(f"--on local: the workers do not stay: {said}")
-        return Process("worker", self.address)
+    def _start(self) -> None:
+        name = next(self._names)
+        self._workers[name] = Piped(_begin, partial(self._take, name))
+
+    def _start_again(self, ended: Piped) -> None:
+        said = ended.wait()
+        self._failures += (ended.status or 0) > 0
+        if self._failures >= MOST_FAILURES * (len(self._workers) + 1):
+            last = said[-1].strip() if said else f"exit status {ended.status}"
+            raise UsageError(f"--on {self.address}: the workers do not stay: {last}")
+        self._start()
+
+    def send(self, flight: Flight, function: Callable[..., Any], *arguments: Any) -> None:
+        if worker := self._workers.get(flight.address):
+            self._flights[flight.address] = flight
+            worker.call(_answer, function, *arguments)
+
+    def _take(self, name: str, answer: Any) -> None:
+        if flight := self._flights.get(name):
+            flight.carried = answer
+            self._arrived.put(flight)
 
     def close(self) -> None:
-        """End all of them."""
-        processes = [*self.workers, self.scheduler]
-        for one in processes:
-            one.end()
-        for one in processes:
-            one.wait()
+        for worker in self._workers.values():
+            worker.end()
+        for worker in self._workers.values():
+            worker.wait()
+
+
+def _begin(send: Send) -> None:  # noqa: ARG001 # as of all that a process calls
+    """What takes seconds is done before anybody waits for it."""
+    from .tasks import probe
+
+    keep_what_is_freed()
+    probe()
+
+
+def _answer(send: Send, function: Callable[..., Any], *arguments: Any) -> None:
+    """What a function returns."""
+    send(function(*arguments))

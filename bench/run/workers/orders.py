@@ -14,7 +14,7 @@ from typing import Any
 from ...ground.options.words import given_in
 from ...ground.output.errors import UsageError, noting_what_is_left_out
 from ...keep.plain import key_text
-from ...shaders.languages.words import files_in, with_files
+from ...shaders.languages.words import file_of, files_in, parts_of, with_files
 from ...tables.table import Row, Step
 from ..measuring import Asked, companions, file_digest, words_of
 
@@ -51,7 +51,7 @@ class Order:
     def as_typed(self, value: Any) -> Any:
         """A value of a row or a key with files as the user named them."""
         if isinstance(value, str):
-            for own, typed in self.typed.items():
+            for own, typed in sorted(self.typed.items(), key=lambda one: -len(one[0])):
                 value = value.replace(own, typed)
             return value
         if isinstance(value, dict):
@@ -80,21 +80,38 @@ class Packing:
     def packed(self, word: str) -> str:
         """A word as a worker is to read it; the files that it names are collected, with their companions."""
         others: dict[str, str] = {}
-        for typed in files_in(word):
-            path = Path(typed)
-            folder = self._place(path)
-            for one in (path, *companions(path)):
-                self.files[os.path.normpath(folder / os.path.relpath(one, path.parent))] = one
-            others |= {typed: str(folder / path.name)} if folder != path.parent else {}
+        for part in parts_of(word):
+            path = file_of(part)
+            read, named = [path, *companions(part)], files_in(part)
+            folder = self._place(path, [*read, *map(Path, named)])
+            self.files |= {os.path.normpath(folder / os.path.relpath(one, path.parent)): one for one in read}
+            # What else it names lies as far from it as here.
+            moved = {one: os.path.normpath(folder / os.path.relpath(one, path.parent)) for one in named}
+            if folder != path.parent:
+                others |= moved
+                self.typed |= {place: one for one, place in moved.items()}
         return with_files(word, others)
 
-    def _place(self, path: Path) -> Path:
-        """The folder of a worker that stands for a file's."""
-        if not path.is_absolute() and ".." not in path.parts:
+    def _place(self, path: Path, read: Sequence[Path]) -> Path:
+        """The folder of a worker that stands for a file's.
+
+        Args:
+            read: what is read with it: none of that may lie above the folders of a worker.
+        """
+        if os.pardir not in path.parts and all(map(_is_below, read)):
             return path.parent
+        above = os.path.commonpath(
+            [os.path.normpath((one.parent if one.is_file() else one).absolute()) for one in read]
+        )
         own = Path(ELSEWHERE) / hashlib.sha256(os.fsencode(path.parent.absolute())).hexdigest()[:12]
+        own /= os.path.relpath(path.parent.absolute(), above)
         self.typed[str(own)] = str(path.parent)
         return own
+
+
+def _is_below(path: Path) -> bool:
+    """Whether a file lies in this folder or below it, as it is named."""
+    return not path.is_absolute() and os.pardir not in Path(os.path.normpath(path)).parts
 
 
 @dataclass(frozen=True, eq=False)

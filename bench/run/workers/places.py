@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from ..measuring import HERE, Here
+from .carrier import Carrier
+from .local import LocalWorkers
 from .words import Local, place_named, require_dask
 
 if TYPE_CHECKING:
@@ -19,51 +21,29 @@ def place(on: str | None) -> Iterator[Here | Pool]:
 
     Raises:
         UsageError: a word that names no place, or an address where nobody answers.
-        MissingError: dask.distributed is not installed.
+        MissingError: dask.distributed is not installed, which an address needs.
     """
     if on is None:
         yield HERE
         return
+    carrier = _carrier(on)
+    try:
+        # Imported while workers start.
+        from .about import about
+        from .crew import Crew
+        from .pool import Pool
+
+        yield Pool(Crew(carrier, about()))
+    finally:
+        carrier.close()
+
+
+def _carrier(on: str) -> Carrier:
     named = place_named(on)
-    require_dask()
     if isinstance(named, Local):
-        with _local(named.count) as pool:
-            yield pool
-        return
-    with _crew(named.text) as pool:
-        yield pool
+        return LocalWorkers(named.count)
+    require_dask()
+    # It imports dask, which nothing else needs.
+    from .link import Link
 
-
-@contextmanager
-def _local(count: int) -> Iterator[Pool]:
-    from dask import config
-
-    from .local import LocalProcesses
-
-    processes = LocalProcesses(count)
-    # Its defaults are part of dask's configuration from now on: imported below, they would be gone with the setting.
-    import distributed  # noqa: F401
-
-    try:
-        # They listen on this machine alone.
-        with (
-            config.set({"distributed.comm.require-encryption": False}),
-            _crew(processes.address, processes.look_after) as pool,
-        ):
-            yield pool
-    finally:
-        processes.close()
-
-
-@contextmanager
-def _crew(address: str, look_after: Callable[[], bool] = lambda: False) -> Iterator[Pool]:
-    # Imported while workers start.
-    from .about import about
-    from .crew import Crew
-    from .pool import Pool
-
-    crew = Crew(address, about(), look_after)
-    try:
-        yield Pool(crew)
-    finally:
-        crew.close()
+    return Link(named.text)

@@ -14,9 +14,9 @@ from ...ground.output.writing import whole_file
 from ...tables.table import Role, Row, Step, Table, Tick
 from ..measuring import HERE, Asked
 from . import tasks
+from .carrier import LOST
 from .chunks import MOST_LOST, Chunk, Group, Line, Waiting
 from .crew import Crew
-from .link import LOST
 from .orders import PICTURES, Order, Parcel, parcels_of, step_name
 
 # How long a worker may be missing that can measure a step before this process does, in seconds.

@@ -11,13 +11,13 @@ import traceback
 from collections import OrderedDict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cache
 from pathlib import Path
 
+from ...ground.output.cache import folder_of_this_process
 from ...ground.output.errors import MissingError, UsageError, told
 from ...tables.registry import TABLES
 from ...tables.table import Measured, Row, Step
-from ..measuring import Asked, asked, with_parts
+from ..measuring import Asked, asked_together, with_parts
 from .about import About, about
 from .orders import PICTURES, Order, check_paths
 
@@ -145,7 +145,7 @@ def _laid_down(order: Order | str) -> Laid | None:
 
 def _made(order: Order) -> Laid:
     check_paths(order.files)
-    folder = Path(tempfile.mkdtemp(prefix="order-", dir=own_folder())).resolve()
+    folder = Path(tempfile.mkdtemp(prefix="order-", dir=folder_of_this_process())).resolve()
     typed = folder / "typed"
     typed.mkdir()
     for name, data in order.files.items():
@@ -156,14 +156,8 @@ def _made(order: Order) -> Laid:
     outputs = replace(table.outputs(), **({PICTURES: folder / PICTURES} if order.pictures else {}))
     # The process that asks has said what is left out.
     with _in_folder(folder), _listening():
-        asks = [asked(table, table.options(**values), outputs) for values in order.options]
-    return Laid(order, folder, asks[0], {order.name_of(step): step for ask in asks for step in with_parts(ask.steps)})
-
-
-@cache
-def own_folder() -> Path:
-    """A folder for this process alone; `worker.main` takes it away."""
-    return Path(tempfile.mkdtemp(prefix="normalbench-worker-"))
+        ask = asked_together(table, [table.options(**values) for values in order.options], outputs)
+    return Laid(order, folder, ask, {order.name_of(step): step for step in with_parts(ask.steps)})
 
 
 @contextlib.contextmanager

@@ -49,8 +49,9 @@ def place_named(word: str) -> Local | Address:
 def check_place(on: str | None) -> None:
     """Raises UsageError or MissingError for what `--on` cannot say; None will do."""
     if on is not None:
-        place_named(on)
-        require_dask()
+        named = place_named(on)
+        if isinstance(named, Address):
+            require_dask()
 
 
 def checked_address(option: str, word: str) -> str:
@@ -65,4 +66,4 @@ def checked_address(option: str, word: str) -> str:
 def require_dask() -> None:
     """Raises MissingError where dask.distributed is not installed."""
     if find_spec("distributed") is None:
-        raise MissingError("workers need dask.distributed; pip install 'normalbench[workers]'")
+        raise MissingError("workers of a scheduler need dask.distributed; pip install 'normalbench[workers]'")

@@ -1,7 +1,5 @@
 """A worker: joins a scheduler of dask, and measures what it is sent, one task at a time in the main thread.
 
-    python -m normalbench.bench.run.workers.worker tcp://HOST:PORT
-
 Where the scheduler goes away, the worker waits for it to come back. What it compiled stays.
 """
 
@@ -9,12 +7,8 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import os
 import queue
-import shutil
-import signal
 import socket
-import sys
 import tempfile
 import threading
 import time
@@ -22,11 +16,10 @@ import warnings
 from collections.abc import Callable
 from concurrent.futures import Executor, Future
 from contextlib import suppress
-from types import FrameType
-from typing import Any, NoReturn
+from typing import Any
 from urllib.parse import urlsplit
 
-from ...ground.machine.memory import keep_what_is_freed, look_for_garbage_seldom
+from ...ground.machine.memory import keep_what_is_freed
 from ...ground.output.errors import UsageError, tell
 from .words import checked_address, require_dask
 
@@ -38,19 +31,10 @@ HTTP = "127.0.0.1:0"
 TLS, ENCRYPTED = "DASK_DISTRIBUTED__COMM__TLS__", "DASK_DISTRIBUTED__COMM__REQUIRE_ENCRYPTION"
 # How long a worker waits for its scheduler, and how often it asks, in seconds.
 PATIENCE_S, AGAIN_S = 60.0, 0.5
+# How long a worker sleeps at most while it waits for a job.
+LOOKS_S = 1.0
 
 Job = tuple["Future[Any]", Callable[..., Any], tuple[Any, ...], dict[str, Any]]
-
-
-# What dask writes into, which goes with the process however it ends by itself.
-DASK_FOLDER = "normalbench-dask-"
-_folders: list[str] = []
-
-
-def own_dask_folder() -> str:
-    """A folder for what dask writes; `end_now` takes it away."""
-    _folders.append(tempfile.mkdtemp(prefix=DASK_FOLDER))
-    return _folders[-1]
 
 
 class MainThread(Executor):
@@ -70,7 +54,7 @@ class MainThread(Executor):
 
     def serve(self) -> None:
         """Run jobs until `end`."""
-        while job := self._jobs.get():
+        while job := self._next_job():
             future, function, arguments, named = job
             if not future.set_running_or_notify_cancel():
                 continue
@@ -78,6 +62,12 @@ class MainThread(Executor):
                 future.set_result(function(*arguments, **named))
             except Exception as error:
                 future.set_exception(error)
+
+    def _next_job(self) -> Job | None:
+        # A signal that another thread was given does not wake this one, which alone can act on it: it looks by itself.
+        while True:
+            with suppress(queue.Empty):
+                return self._jobs.get(timeout=LOOKS_S)
 
     def end(self) -> None:
         """Take no further jobs."""
@@ -87,10 +77,10 @@ class MainThread(Executor):
 class Connection(threading.Thread):
     """Keeps the worker joined to its scheduler; ends the main thread's work where that is gone for good."""
 
-    def __init__(self, address: str, executor: MainThread, patience: float):
+    def __init__(self, address: str, executor: MainThread):
         super().__init__(daemon=True)
-        self._address, self._executor, self._patience = address, executor, patience
-        self.joined, self.said = False, ""
+        self._address, self._executor = address, executor
+        self.joined = False
 
     def run(self) -> None:
         asyncio.run(self._joined_again_and_again())
@@ -98,34 +88,30 @@ class Connection(threading.Thread):
 
     async def _joined_again_and_again(self) -> None:
         seen = time.monotonic()
-        while time.monotonic() - seen < self._patience:
-            try:
+        while time.monotonic() - seen < PATIENCE_S:
+            with suppress(Exception):
                 await self._join()
                 seen = time.monotonic()
-            except Exception as error:
-                self.said = str(error).strip() or type(error).__name__
             await asyncio.sleep(AGAIN_S)
 
     async def _join(self) -> None:
         from distributed import Worker
 
-        with tempfile.TemporaryDirectory(prefix=DASK_FOLDER) as folder:
-            _folders.append(folder)
-            worker = Worker(
-                self._address,
-                host=interface_towards(self._address),
-                nthreads=1,
-                executor=self._executor,
-                resources={RESOURCE: 1},
-                local_directory=folder,
-                memory_limit=0,
-                dashboard=False,
-                dashboard_address=HTTP,
-                death_timeout=AGAIN_S * 10,
-            )
-            async with worker:
-                self.joined = True
-                await worker.finished()
+        worker = Worker(
+            self._address,
+            host=interface_towards(self._address),
+            nthreads=1,
+            executor=self._executor,
+            resources={RESOURCE: 1},
+            local_directory=tempfile.gettempdir(),
+            memory_limit=0,
+            dashboard=False,
+            dashboard_address=HTTP,
+            death_timeout=AGAIN_S * 10,
+        )
+        async with worker:
+            self.joined = True
+            await worker.finished()
 
 
 def check_certificates(option: str, address: str, role: str) -> None:
@@ -173,20 +159,19 @@ def interface_towards(address: str) -> str:
     return f"[{found}]" if family == socket.AF_INET6 else found
 
 
-def serve(address: str, patience: float = PATIENCE_S) -> bool:
+def serve(address: str) -> bool:
     """Join a scheduler and measure until it is gone; whether it was there at all."""
-    from .tasks import own_folder, probe
+    from .tasks import probe
 
     keep_what_is_freed()
-    # What takes seconds is done before anybody waits for it.
-    probe()
-    executor = MainThread()
-    connection = Connection(address, executor, patience)
-    connection.start()
-    try:
+    # What it and dask write goes with it; dask may be writing as it ends.
+    with tempfile.TemporaryDirectory(prefix="normalbench-", ignore_cleanup_errors=True) as tempfile.tempdir:
+        # What takes seconds is done before anybody waits for it.
+        probe()
+        executor = MainThread()
+        connection = Connection(address, executor)
+        connection.start()
         executor.serve()
-    finally:
-        shutil.rmtree(own_folder(), ignore_errors=True)
     return connection.joined
 
 
@@ -218,36 +203,3 @@ def quiet() -> None:
     for name in ("asyncio", "distributed", *logging.root.manager.loggerDict):
         if name.partition(".")[0] in ("asyncio", "distributed"):
             logging.getLogger(name).setLevel(logging.CRITICAL)
-
-
-def end_with_parent() -> None:
-    """End this process once its standard input ends, which it does when the process that started it ends."""
-
-    def wait() -> None:
-        with suppress(OSError):
-            while os.read(0, 1):
-                pass
-        end_now()
-
-    threading.Thread(target=wait, daemon=True).start()
-
-
-def end_now(*_: int | FrameType | None) -> NoReturn:
-    """End this process at once, whatever it computes."""
-    tasks = sys.modules.get(f"{__package__}.tasks")
-    for folder in [*_folders, *([tasks.own_folder()] if tasks else [])]:
-        shutil.rmtree(folder, ignore_errors=True)
-    os._exit(0)
-
-
-def main(words: list[str]) -> None:
-    """A worker that another process of normalbench started."""
-    look_for_garbage_seldom()
-    signal.signal(signal.SIGTERM, end_now)
-    end_with_parent()
-    quiet()
-    serve(words[0], patience=float("inf"))
-
-
-if __name__ == "__main__":
-    main(sys.argv[1:])

@@ -68,21 +68,21 @@ class Channel:
         return f"clamp(trunc({x} * {self.integer}.5), -{self.scale}, {self.scale})"
 
     @property
-    def _word(self) -> str:
+    def _word_name(self) -> str:
         return "bits" if self.is_across else "texel" + (f".{FIELDS[self.first // WORD]}" if self.words > 1 else "")
 
     @property
     def read(self) -> str:
         """Its bits, from the word that holds them."""
         shift = self.first if self.is_across else self.first % WORD
-        moved = f"{self._word} >> {shift}" if shift else self._word
-        return f"({moved} & {self.mask})" if self.bits < WORD else self._word
+        moved = f"{self._word_name} >> {shift}" if shift else self._word_name
+        return f"({moved} & {self.mask})" if self.bits < WORD else self._word_name
 
     @property
     def signed(self) -> str:
         """Its bits as the highest of a word."""
         shift = WORD - self.bits - self.first % WORD
-        return f"{self._word} << {shift}" if shift else self._word
+        return f"{self._word_name} << {shift}" if shift else self._word_name
 
     @property
     def placed(self) -> str:
@@ -120,7 +120,7 @@ class Channels:
                 FIELDS[at],
                 storage.kind,
                 storage.bits[at],
-                self._first(at),
+                self._first_bit(at),
                 storage.scale(at),
                 self.codec.rounding_of(at),
                 storage.is_packed,
@@ -129,11 +129,11 @@ class Channels:
             for at in range(count)
         ]
 
-    def _first(self, at: int) -> int:
+    def _first_bit(self, at: int) -> int:
         bits = self.codec.storage.bits
         return BYTE * self.bytes - sum(bits[: at + 1]) if self.codec.storage.is_packed else sum(bits[:at])
 
-    def _texel(self, word: int) -> str:
+    def _texel_text(self, word: int) -> str:
         return " | ".join(c.placed for c in self.channels if c.first // WORD == word) or "0u"
 
     @property
@@ -169,26 +169,26 @@ class Channels:
             "layout": self.layout,
             "rule": self.rule,
             "target": self.codec.storage.target.title,
-            "texels": [self._texel(word) for word in range(self.words)],
-            **(self._across() if self.codec.storage.is_packed else {}),
+            "texels": [self._texel_text(word) for word in range(self.words)],
+            **(self._across_fields() if self.codec.storage.is_packed else {}),
         }
 
-    def _across(self) -> dict[str, Any]:
+    def _across_fields(self) -> dict[str, Any]:
         """What the template is given of numbers that are laid across bytes."""
         count = self.bytes
         shifts = [(BYTE * (count - 1 - at), BYTE * at) for at in range(count)]
         return {
             "bits_of": " | ".join(c.placed for c in self.channels),
-            "bytes_of": " | ".join(_moved(_byte("bits", high), low) for high, low in shifts),
-            "joined": " | ".join(_moved(_byte("texel", low), high) for high, low in shifts),
-            "target_bytes": [f"float({_byte('texel', low)})" for _, low in shifts] + ["0.0"] * (4 - count),
-            "from_bytes": " | ".join(_moved(f"bytes.{FIELDS[at]}", low) for at, (_, low) in enumerate(shifts)),
+            "bytes_of": " | ".join(_shifted_text(_byte_text("bits", high), low) for high, low in shifts),
+            "joined": " | ".join(_shifted_text(_byte_text("texel", low), high) for high, low in shifts),
+            "target_bytes": [f"float({_byte_text('texel', low)})" for _, low in shifts] + ["0.0"] * (4 - count),
+            "from_bytes": " | ".join(_shifted_text(f"bytes.{FIELDS[at]}", low) for at, (_, low) in enumerate(shifts)),
         }
 
 
-def _byte(word: str, shift: int) -> str:
+def _byte_text(word: str, shift: int) -> str:
     return f"({word} >> {shift} & 255u)" if shift else f"({word} & 255u)"
 
 
-def _moved(value: str, shift: int) -> str:
+def _shifted_text(value: str, shift: int) -> str:
     return f"{value} << {shift}" if shift else value

@@ -23,7 +23,7 @@ from ..translator.numpy_writer import NumpyWriter
 from ..translator.reduce import reduced
 from ..translator.tree import Program, TranslationError
 from ..translator.wgsl_writer import WgslWriter
-from ..translator.writer import Writer
+from ..translator.writer import PUBLIC, Writer
 from .channels import TEMPLATE, Channels
 
 ROOT = Path(__file__).with_name("codec.glsl")
@@ -50,7 +50,6 @@ class Language:
     has_preprocessor: bool = True
 
 
-ROUNDS = "Without -fno-fast-math the compiler rounds otherwise."
 LANGUAGES: Mapping[str, Language] = MappingProxyType(
     {
         "hlsl": Language("HLSL", ".hlsl", HlslWriter, "For shader model 5 and later."),
@@ -58,7 +57,9 @@ LANGUAGES: Mapping[str, Language] = MappingProxyType(
         "glsl": Language("GLSL", ".glsl", GlslWriter, "For GLSL 4.3 and later, and for Vulkan."),
         "essl": Language("GLSL ES", ".essl", EsslWriter, "For GLSL ES 3.1 and later."),
         "wgsl": Language("WGSL", ".wgsl", WgslWriter, "For WebGPU.", has_preprocessor=False),
-        "msl": Language("Metal", ".metal", MslWriter, f"For Metal 2 and later. {ROUNDS}"),
+        "msl": Language(
+            "Metal", ".metal", MslWriter, "For Metal 2 and later. Without -fno-fast-math the compiler rounds otherwise."
+        ),
         "c": Language("C", ".h", CWriter, "For C99. Compile with -ffp-contract=off: fused products round otherwise."),
         "python": Language(
             "Python, NumPy",
@@ -97,6 +98,6 @@ def program_of(codec: Codec, prefix: str) -> Program:
         # At the place in the file that it was included from.
         raise TranslationError(source.explain(re.sub(r"^(\d+):\d+: ", r"0:\1: ", str(error)))) from error
     encode = "nearest_encode" if encoding.is_precise else str(defines["ENCODE"])
-    roots = {encode: "encode", str(defines["DECODE"]): "decode"}
-    roots |= {name: name for name in ("pack", "unpack", "to_target", "from_target")}
+    own = {"encode": encode, "decode": str(defines["DECODE"])}
+    roots = {own.get(name, name): name for name in PUBLIC}
     return reduced(program, roots, prefix, encoding.prefix)

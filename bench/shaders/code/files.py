@@ -47,10 +47,10 @@ class Code:
         mark = LANGUAGES[self.language].mark
         wrapped = (textwrap.wrap(said, WIDTH, subsequent_indent="  ", break_on_hyphens=False) or [""] for said in head)
         comment = "".join(f"{mark} {line}".rstrip() + "\n" for lines in wrapped for line in lines)
-        return f"{comment}\n{self._guarded}"
+        return f"{comment}\n{self._guarded_text}"
 
     @property
-    def _guarded(self) -> str:
+    def _guarded_text(self) -> str:
         """The text, which languages with a preprocessor take once however often it is included."""
         if not LANGUAGES[self.language].has_preprocessor:
             return self.body
@@ -90,11 +90,11 @@ def code_of(codec: Codec, language: str, prefix: str = "") -> Code:
         sizes: dict[str, tuple[int, int, int]] = {name: table.shape for name, table in interface.tables.items()}
         body = writer(prefix, sizes).program(program)
     except TranslationError as error:
-        raise UsageError(_untranslatable(codec, str(error))) from error
+        raise UsageError(_untranslatable_reason(codec, str(error))) from error
     return Code(codec, language, prefix, body, interface)
 
 
-def _untranslatable(codec: Codec, said: str) -> str:
+def _untranslatable_reason(codec: Codec, said: str) -> str:
     """Why a file is not translated; the place is in the user's file where that is GLSL."""
     encoding = codec.encoding
     if encoding.source is None or not is_translated(encoding.source):

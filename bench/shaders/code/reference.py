@@ -86,7 +86,7 @@ def reference_of(codec: Codec, n: np.ndarray, view: np.ndarray, compiled: bool =
     texels = code.astype(np.float64) * 0.5 + 0.5 if codec.storage.is_biased else code
     integers = np.stack([_integers(c, texels[:, at]) for at, c in enumerate(channels.channels)], axis=1)
     words = _words(channels, integers)
-    stored = _stored(codec, channels, integers, code)
+    stored = _stored_numbers(codec, channels, integers, code)
     if by_device is None:
         read = VECTORS[stored.shape[1]](*(jnp.asarray(number) for number in stored.T))
         decoded = _array(made(codec.encoding.decode)(read, view_planes))
@@ -112,7 +112,7 @@ def _by_device(codec: Codec, n: np.ndarray, view: np.ndarray) -> tuple[np.ndarra
     return found.codes.reshape(COUNT, 4)[:, :size].copy(), found.normals.reshape(COUNT, 3)
 
 
-def _stored(codec: Codec, channels: Channels, integers: np.ndarray, code: np.ndarray) -> np.ndarray:
+def _stored_numbers(codec: Codec, channels: Channels, integers: np.ndarray, code: np.ndarray) -> np.ndarray:
     """The numbers that bits stand for, each product and sum rounded: a compiler may round the two of them once."""
     stored = code.copy()
     for at, channel in enumerate(channels.channels):

@@ -32,10 +32,10 @@ def dds(table: np.ndarray) -> bytes:
 
 def header(tables: Mapping[str, np.ndarray]) -> str:
     """Tables as arrays of C: row by row, the channels of a texel next to each other."""
-    return "\n".join([*(_array(name, tables[name]) for name in sorted(tables))])
+    return "\n".join([*(_array_text(name, tables[name]) for name in sorted(tables))])
 
 
-def _array(name: str, table: np.ndarray) -> str:
+def _array_text(name: str, table: np.ndarray) -> str:
     height, width, channels = table.shape
     rows = ("    " + ", ".join(f"{number!s}f" for number in row.ravel()) + "," for row in table)
     size = f"{height} rows of {width} texels of {channels} {'number' if channels == 1 else 'numbers'}"

@@ -28,7 +28,7 @@ def by_wgsl(codec: Codec) -> Iterator[Trip]:
         MissingError: wgpu or a Vulkan driver is missing; what to install.
         ShaderError: half arithmetic or a chain, or the device refuses the file; one line.
     """
-    code = _written(codec)
+    code = _wgsl_code(codec)
     with folder() as place:
         path = place / code.name
         path.write_text(code.body, encoding="utf-8")
@@ -44,7 +44,7 @@ def by_wgsl(codec: Codec) -> Iterator[Trip]:
             yield trip
 
 
-def _written(codec: Codec) -> Code:
+def _wgsl_code(codec: Codec) -> Code:
     if codec.encoding.before:
         raise ShaderError(f"{codec.name}: a chain of codecs is not written in WGSL; measure it by jax")
     if codec.encoding.is_half:

@@ -16,7 +16,7 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
-from .compiler import Compiler, DriverError, MissingDriverError, loaded
+from .compiler import Compiler, DriverError, MissingDriverError, loaded_files
 
 
 def own_output() -> Any:
@@ -36,12 +36,12 @@ def compiled(driver: Any, job: dict[str, Any], planes: int) -> dict[str, Any]:
     return {"kernels": kernels}
 
 
-def main(compiler: Callable[[], Any] = Compiler, fingerprints: Callable[[], dict[str, str]] = loaded) -> int:
+def main(compiler: Callable[[], Any] = Compiler, fingerprints: Callable[[], dict[str, str]] = loaded_files) -> int:
     """Compile every job that standard input holds.
 
     Args:
         compiler: makes a driver, with what `Compiler` has.
-        fingerprints: which files the driver consists of, as `loaded`.
+        fingerprints: which files the driver consists of, as `loaded_files`.
     """
     given = json.load(sys.stdin)
     out = own_output()

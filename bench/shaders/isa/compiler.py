@@ -35,7 +35,7 @@ class MissingDriverError(DriverError):
     """What is not installed; one line that names the package."""
 
 
-def _vulkan() -> Any:
+def _vulkan_module() -> Any:
     try:
         return import_module("vulkan")
     except ImportError as error:
@@ -50,7 +50,7 @@ def _vulkan() -> Any:
 HEAD = 4096
 
 
-def loaded() -> dict[str, str]:
+def loaded_files() -> dict[str, str]:
     """The files of the driver, and of the LLVM that disassembles for it, as they are loaded here, and their
     fingerprints; none where the system does not say what a process has loaded.
 
@@ -58,7 +58,7 @@ def loaded() -> dict[str, str]:
         MissingDriverError: there is no Vulkan loader.
         DriverError: the loader takes no driver.
     """
-    _instance(_vulkan())
+    _instance(_vulkan_module())
     return {path: fingerprint(Path(path)) for path in system_files.loaded() if Path(path).name.startswith(DRIVERS)}
 
 
@@ -100,7 +100,7 @@ class Compiler:
     """
 
     def __init__(self):
-        self._vk = vk = _vulkan()
+        self._vk = vk = _vulkan_module()
         physical = self._physical_device()
         properties = vk.vkGetPhysicalDeviceProperties(physical)
         self.device = str(properties.deviceName)
@@ -109,7 +109,7 @@ class Compiler:
         extensions = {e.extensionName for e in vk.vkEnumerateDeviceExtensionProperties(physical, None)}
         if EXTENSION not in extensions:
             raise DriverError(f"{self.device} (Mesa {self.version}) lacks {EXTENSION}")
-        self._has_halves = bool(self._halves(physical).shaderFloat16)
+        self._has_halves = bool(self._half_features(physical).shaderFloat16)
         # Whether targets are stated by a render pass, for a driver that has nothing newer.
         self._has_passes = False
         self._device = self._logical_device(physical)
@@ -122,7 +122,7 @@ class Compiler:
         except (vk.VkError, IndexError) as error:
             raise DriverError(f"the Vulkan driver offers no device: {type(error).__name__}") from error
 
-    def _halves(self, physical: Any) -> Any:
+    def _half_features(self, physical: Any) -> Any:
         """What the device computes in 16 bits."""
         vk = self._vk
         halves = vk.VkPhysicalDeviceShaderFloat16Int8Features()
@@ -171,7 +171,7 @@ class Compiler:
             raise DriverError(f"{self.device} computes no shaders in 16 bits")
         self._layout = self._layout or self._pipeline_layout(planes)
         try:
-            made = self._compute(code) if stage == "compute" else self._graphics(code, vertex)
+            made = self._compute_pipeline(code) if stage == "compute" else self._graphics_pipeline(code, vertex)
             bit = vk.VK_SHADER_STAGE_COMPUTE_BIT if stage == "compute" else vk.VK_SHADER_STAGE_FRAGMENT_BIT
             kernels = [self._kernel(made, i, width) for i, stages, width in self._executables(made) if stages & bit]
         except vk.VkError as error:
@@ -199,7 +199,7 @@ class Compiler:
         )
         return vk.vkCreatePipelineLayout(self._device, vk.VkPipelineLayoutCreateInfo(pSetLayouts=[chosen]), None)
 
-    def _stage(self, bit: int, code: bytes) -> Any:
+    def _shader_stage(self, bit: int, code: bytes) -> Any:
         vk = self._vk
         module = vk.vkCreateShaderModule(
             self._device, vk.VkShaderModuleCreateInfo(codeSize=len(code), pCode=code), None
@@ -207,25 +207,25 @@ class Compiler:
         return vk.VkPipelineShaderStageCreateInfo(stage=bit, module=module, pName="main")
 
     @property
-    def _capture(self) -> int:
+    def _capture_flags(self) -> int:
         vk = self._vk
         representations = vk.VK_PIPELINE_CREATE_CAPTURE_INTERNAL_REPRESENTATIONS_BIT_KHR
         return vk.VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR | representations
 
-    def _compute(self, code: bytes) -> Any:
+    def _compute_pipeline(self, code: bytes) -> Any:
         vk = self._vk
-        stage = self._stage(vk.VK_SHADER_STAGE_COMPUTE_BIT, code)
-        info = vk.VkComputePipelineCreateInfo(flags=self._capture, stage=stage, layout=self._layout)
+        stage = self._shader_stage(vk.VK_SHADER_STAGE_COMPUTE_BIT, code)
+        info = vk.VkComputePipelineCreateInfo(flags=self._capture_flags, stage=stage, layout=self._layout)
         return vk.vkCreateComputePipelines(self._device, None, 1, [info], None)[0]
 
-    def _graphics(self, code: bytes, vertex: bytes) -> Any:
+    def _graphics_pipeline(self, code: bytes, vertex: bytes) -> Any:
         """A pipeline into float targets, which numbers reach as they are: a conversion is the storage's own cost.
 
         Each part has a name for as long as the call lasts: the bindings do not hold what a structure points to.
         """
         vk = self._vk
-        stages = [self._stage(vk.VK_SHADER_STAGE_VERTEX_BIT, vertex)]
-        stages += [self._stage(vk.VK_SHADER_STAGE_FRAGMENT_BIT, code)]
+        stages = [self._shader_stage(vk.VK_SHADER_STAGE_VERTEX_BIT, vertex)]
+        stages += [self._shader_stage(vk.VK_SHADER_STAGE_FRAGMENT_BIT, code)]
         formats = [vk.VK_FORMAT_R32G32B32A32_SFLOAT] * TARGETS
         targets = vk.VkPipelineRenderingCreateInfo(colorAttachmentCount=TARGETS, pColorAttachmentFormats=formats)
         render_pass = self._render_pass(formats) if self._has_passes else None
@@ -244,7 +244,7 @@ class Compiler:
         info = vk.VkGraphicsPipelineCreateInfo(
             pNext=None if self._has_passes else targets,
             renderPass=render_pass,
-            flags=self._capture,
+            flags=self._capture_flags,
             pStages=stages,
             pVertexInputState=attributes,
             pInputAssemblyState=assembly,

@@ -72,10 +72,10 @@ def kind(one: Instruction) -> str:
         raise ValueError(f"unknown instruction {one.name}")
     if one.lanes == 1:
         return "scalar"
-    return "conversion" if one.name in _CONVERSIONS or _converts(one) else "other_alu"
+    return "conversion" if one.name in _CONVERSIONS or _is_conversion(one) else "other_alu"
 
 
-def _converts(one: Instruction) -> bool:
+def _is_conversion(one: Instruction) -> bool:
     """Whether it moves between floats and integers, or between floats of two sizes."""
     types = _TYPE.findall(one.operands.split("{")[0])
     if one.name != "mov" or len(types) < 2:

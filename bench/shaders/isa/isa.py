@@ -177,7 +177,7 @@ def _driver_version(library: str) -> str:
         variables = _variables(first, first)
     except NullDeviceError as error:
         return str(error)
-    with child(variables, _driver(library, threading.Event()), _given({})) as (lines, why):
+    with child(variables, _driver(library, threading.Event()), _job_fields({})) as (lines, why):
         line = lines() or {}
         if "device" in line and library == NVRTC:
             return line["version"]
@@ -315,7 +315,7 @@ def _answers(
 ) -> Iterator[str | Failure | tuple[str, Outcome]]:
     """What one child says: the key of a job that it begins, a key and its outcome, and in the end why it ended."""
     facts: dict[str, str] = {}
-    with child(variables, driver, _given(jobs, is_gl(driver.path))) as (lines, why):
+    with child(variables, driver, _job_fields(jobs, is_gl(driver.path))) as (lines, why):
         while (line := lines()) is not None:
             if "missing" in line or ("failed" in line and "key" not in line):
                 yield Failure(line.get("missing") or line["failed"], "missing" in line)
@@ -331,7 +331,7 @@ def _answers(
         yield Failure(why())
 
 
-def _given(jobs: Mapping[str, Job], of_gl: bool = False) -> dict[str, Any]:
+def _job_fields(jobs: Mapping[str, Job], of_gl: bool = False) -> dict[str, Any]:
     """Jobs as a child takes them."""
     return {"planes": PLANES, "jobs": [_as_json(key, job, of_gl) for key, job in jobs.items()]}
 

@@ -33,13 +33,13 @@ class NullDeviceError(Exception):
 
 def library(source: Path | None = None) -> Path:
     """The shared library of a source, Intel's by default, that stands for a GPU. Raises NullDeviceError."""
-    folder, source = _folder(), source or SOURCE
+    folder, source = _library_folder(), source or SOURCE
     stem = f"{source.stem}-{kept.key_of(source.read_bytes(), SHARED.read_bytes(), platform.machine())[:16]}"
-    sound = (path for path in sorted(folder.glob(f"{stem}-*.so")) if path.name == _name(stem, path))
-    return next(sound, None) or _built(folder, stem, source)
+    sound = (path for path in sorted(folder.glob(f"{stem}-*.so")) if path.name == _library_name(stem, path))
+    return next(sound, None) or _built_library(folder, stem, source)
 
 
-def _folder() -> Path:
+def _library_folder() -> Path:
     """Where libraries are built that processes can load."""
     try:
         return kept.folder_to_execute_from()
@@ -53,7 +53,7 @@ def variables(words: str) -> dict[str, str]:
     return preloaded(library()) | {SAID: words}
 
 
-def _name(stem: str, path: Path) -> str:
+def _library_name(stem: str, path: Path) -> str:
     """What a library is called, by what it holds; the name of no file where it cannot be read, or others may have
     written it."""
     try:
@@ -62,7 +62,7 @@ def _name(stem: str, path: Path) -> str:
         return ""
 
 
-def _built(folder: Path, stem: str, source: Path) -> Path:
+def _built_library(folder: Path, stem: str, source: Path) -> Path:
     if not shutil.which(COMPILER):
         raise NullDeviceError(NO_COMPILER, is_missing=True)
     try:
@@ -71,7 +71,7 @@ def _built(folder: Path, stem: str, source: Path) -> Path:
         with tempfile.TemporaryDirectory(dir=folder) as made:
             whole = Path(made) / "library.so"
             _compile(whole, source)
-            path = folder / _name(stem, whole)
+            path = folder / _library_name(stem, whole)
             whole.replace(path)
             return path
     except OSError as error:

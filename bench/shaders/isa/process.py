@@ -21,8 +21,8 @@ from .driver_files import environment, is_gl
 CHILD: Sequence[str] = python("normalbench.bench.shaders.isa.child")
 # For a driver of GL, which the loader of Vulkan does not know.
 GL_CHILD: Sequence[str] = python("normalbench.bench.shaders.isa.terascale.child")
-# Of one job, and of a driver that starts: a thousand times what they take.
-SECONDS = 10.0
+# Of one job, and of a driver that starts: far more than they take, on a busy machine as well.
+SECONDS = 60.0
 
 Lines = Callable[[], dict[str, Any] | None]
 
@@ -93,7 +93,7 @@ class _Heard:
             return f"the driver did not answer within {SECONDS:g} s"
         status = process.wait(SECONDS)
         errors.seek(0)
-        return _why(status, errors.read().decode(errors="replace"))
+        return _end_reason(status, errors.read().decode(errors="replace"))
 
 
 def _parsed(line: str | None) -> dict[str, Any] | None:
@@ -111,7 +111,7 @@ def _read(stream: Any, lines: queue.Queue[str | None]) -> None:
     lines.put(None)
 
 
-def _why(status: int, errors: str) -> str:
+def _end_reason(status: int, errors: str) -> str:
     """How a child ended, and the last that it or its driver said."""
     how = f"signal {name}" if (name := signal_name(status)) else f"status {status}"
     last = [line.strip() for line in errors.splitlines() if line.strip()]

@@ -70,10 +70,10 @@ def title(said: str) -> str:
 def titles() -> str:
     """The compiler and the optimiser that counts are by, in a few words. Raises MissingError as `compiler`."""
     optimiser = version(OPTIMISER)
-    return title(compiler()) + (f", {OPTIMISER} {_number(optimiser)}" if optimiser else "")
+    return title(compiler()) + (f", {OPTIMISER} {_version_number(optimiser)}" if optimiser else "")
 
 
-def _number(said: str) -> str:
+def _version_number(said: str) -> str:
     """The first word of a version that is a number: "SPIRV-Tools v2023.1 v2022.4 ..." """
     return next((word for word in said.split() if word.strip("v")[:1].isdigit()), said.splitlines()[0])
 
@@ -93,7 +93,7 @@ def compiled(source: Source, stage: str, counted: bool = True) -> Module:
     found = _as_module(kept.read(key))
     if found:
         return found
-    binary = _by_glslang(source, stage)
+    binary = _glslang_binary(source, stage)
     optimised = _optimised(binary) if optimiser else None
     module = Module(binary, _count(optimised) if optimised else None)
     if optimised or not optimiser:
@@ -115,7 +115,7 @@ def _is_spirv(binary: bytes) -> bool:
     return len(binary) > 4 * HEADER and len(binary) % 4 == 0 and binary.startswith(MAGIC)
 
 
-def _by_glslang(source: Source, stage: str) -> bytes:
+def _glslang_binary(source: Source, stage: str) -> bytes:
     # A file without a name: nothing is left of it, however this process ends.
     with tempfile.TemporaryFile() as out:
         options = ["--stdin", "-S", stage, "-V", "--auto-map-bindings", "-o", name_of(out)]
@@ -149,7 +149,7 @@ def _run(command: list[str], given: bytes, *files: int) -> subprocess.CompletedP
         raise ToolError(f"{command[0]} took longer than {SECONDS} s") from error
 
 
-def _words(binary: bytes) -> list[int]:
+def _module_words(binary: bytes) -> list[int]:
     return list(struct.unpack(f"<{len(binary) // 4}I", binary))
 
 
@@ -163,7 +163,7 @@ def _instructions(words: list[int]) -> Iterator[tuple[int, int]]:
 
 def _asking_to_unroll(binary: bytes) -> bytes:
     """The module with the hint to unroll on every loop, which GLSL has no word for without an extension."""
-    words = _words(binary)
+    words = _module_words(binary)
     for place, opcode in _instructions(words):
         if opcode == LOOP_MERGE:
             words[place + 3] = words[place + 3] & ~DONT_UNROLL | UNROLL
@@ -173,7 +173,7 @@ def _asking_to_unroll(binary: bytes) -> bytes:
 def _count(binary: bytes) -> int | None:
     """Instructions from each OpFunction to its OpFunctionEnd; None with a loop among them."""
     inside, count = False, 0
-    for _, opcode in _instructions(_words(binary)):
+    for _, opcode in _instructions(_module_words(binary)):
         if opcode == LOOP_MERGE:
             return None
         inside = inside or opcode == FUNCTION

@@ -1,9 +1,10 @@
 """A user's file translated, in a process that may hang or die.
 
-    python -m normalbench.bench.shaders.languages.child FOLDER FILE LANGUAGE [ENCODE DECODE]
+    python -m normalbench.bench.shaders.languages.child FOLDER WORD LANGUAGE
 
-FOLDER is an empty one to work in. LANGUAGE is the one whose compiler reads the file; empty for its own. Prints a line
-of JSON: `error`, what is wrong with the file; `missing`, what to install; else what `Translated` has.
+FOLDER is an empty one to work in. WORD names the file: see `words.py`. LANGUAGE is what reads it, a name of `BY_NAME`;
+empty for its own. Prints a line of JSON: `error`, what is wrong with the file, `pairs`, the names of several, and
+`alone`, what is known of an encoder or a decoder alone; `missing`, what to install; else what `Translated` has.
 """
 
 from __future__ import annotations
@@ -11,85 +12,236 @@ from __future__ import annotations
 import json
 import re
 import sys
+from collections.abc import Collection, Sequence
+from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from ....encodings.codecs.files import called
 from ...ground.machine import children
 from ...ground.output.errors import MissingError, UsageError
-from . import programs
-from .language import Language, also_read_by, language_of
-from .pairs import NORMAL, Function, NoPairError, Pair, pair_of
+from . import programs, slang
+from .blocks import programs_of
+from .items import functions_in, reached, words_of
+from .language import BY_NAME, GLSLANG, Language, language_of, name_of
+from .pairs import (
+    NO_PAIR,
+    NORMAL,
+    Function,
+    NoPairError,
+    Pair,
+    SeveralPairsError,
+    alone,
+    packed_pairs,
+    pair_of,
+    role,
+    speaks_of_normals,
+)
 from .plain import NotPlainError, plain
-from .programs import TranslationError, has_halves
+from .programs import Read, TranslationError
 from .source import Source
 from .tools import ToolError
-from .words import TRANSLATED
+from .wiring import Wiring, candidates, wired, wiring_of
+from .words import file_of, functions_of
 
-READ_BY = "it is read by {}'s compiler, as the compiler of {} does not read it"
-IN_32_BITS = "half and min16float are computed in 32 bits; --arithmetic half computes in 16"
+_A = {"uint": "a uint", "int": "an int", "float": "a float"}
+# What compilers say of a name that nothing defines.
+_UNKNOWN = re.compile(r"undefined identifier|unknown variable|no matching overloaded function")
+_UNDEFINED = re.compile(r"undefined identifier '(\w+)'")
+BY_MACRO = "; a macro that is not there is given by -D or --prelude"
+WHICH = "what is measured is {}"
+MOST_NAMED, MOST_OTHERS = 12, 4
 
 
-def answer(path: Path, asked: tuple[str, str] | None, folder: Path, by: str = "") -> dict[str, Any]:
+def answer(word: str | Path, folder: Path, by: str = "") -> dict[str, Any]:
     """What there is to say of a file; see above."""
+    path = file_of(word)
     try:
-        return _by_whoever_reads_it(path, asked, folder, by)
+        return _facts_of_a_program(word, folder, by)
     except (UsageError, TranslationError) as error:
-        return {"error": str(error)}
-    except (NoPairError, NotPlainError, ToolError) as error:
+        return {"error": f"{error}{BY_MACRO}" if _UNKNOWN.search(str(error)) else str(error)}
+    except SeveralPairsError as error:
+        return {"error": f"{path}: {error}", "pairs": list(error.named)}
+    except NoPairError as error:
+        return {"error": f"{path}: {error}"} | ({"alone": dict(error.alone)} if error.alone else {})
+    except (NotPlainError, ToolError) as error:
         return {"error": f"{path}: {error}"}
     except MissingError as error:
         return {"missing": f"{path}: {error}"}
 
 
-def _by_whoever_reads_it(path: Path, asked: tuple[str, str] | None, folder: Path, by: str) -> dict[str, Any]:
-    """By the compiler of its own language, or by another one that reads that language where the first does not."""
-    try:
-        return _translated(path, asked, folder, by)
-    except (TranslationError, NoPairError) as error:
-        other = "" if by else also_read_by(path)
-        if not other:
-            raise
+def _facts_of_a_program(word: str | Path, folder: Path, by: str) -> dict[str, Any]:
+    """Of the first program of a file that has an encoder and its decoder. Raises what is said of the others."""
+    errors: list[Exception] = []
+    for source in programs_of(Source(word)):
         try:
-            found = _translated(path, asked, folder, other)
-        except (TranslationError, NoPairError, NotPlainError, ToolError, MissingError):
-            raise error from None
-        return found | {"notes": [*found["notes"], READ_BY.format(other, TRANSLATED[path.suffix.lower()])]}
+            return _translation_facts(source, functions_of(word), folder, by)
+        except (TranslationError, NoPairError) as error:
+            errors.append(error)
+    # What is wrong with a pair says more than that there is none.
+    raise min(errors, key=lambda error: NO_PAIR in str(error))
 
 
-def _translated(path: Path, asked: tuple[str, str] | None, folder: Path, by: str) -> dict[str, Any]:
-    source, language = Source(path), language_of(path, by)
-    pair = pair_of(language.functions(language.preprocessed(source, folder)), asked, path.name)
-    name = _name(path, pair, asked)
+def _translation_facts(source: Source, asked: tuple[str, str] | None, folder: Path, by: str) -> dict[str, Any]:
+    path = source.path
+    found = language_of(source.word, by).read(source, folder)
+    try:
+        pair, text, named = _pair_and_text(found, asked, path)
+    except SeveralPairsError:
+        raise
+    except NoPairError as error:
+        # A function that could be one of the two is the reason, if its compiler refuses it.
+        if why := next((why for name, why in found.refused.items() if name in (asked or ()) or role(name)), ""):
+            raise TranslationError(why) from None
+        if one := alone(found.functions):
+            with suppress(TranslationError, NotPlainError, ToolError):
+                error.alone = _pair_facts(found, one, "", folder, by)
+        raise
+    notes = [
+        *(f"it is read without an include: {line}" for line in found.source.missing),
+        *_read_with(source),
+        *([WHICH.format(named)] if text or not (asked or speaks_of_normals(pair)) else []),
+        *_others(found.functions, pair),
+    ]
+    facts = _pair_facts(found, pair, text, folder, by, asked) | {"named": named}
+    by_glslang = f"it is read by {GLSLANG} alone, as {slang.COMPILER} does not read it"
+    return facts | {"notes": [*([by_glslang] if facts["read_by"] == GLSLANG else []), *notes]}
+
+
+def _pair_facts(
+    found: Read, pair: Pair, text: str, folder: Path, by: str, asked: tuple[str, str] | None = None
+) -> dict[str, Any]:
+    """What `Translated` has of two functions, or of one alone.
+
+    Args:
+        text: what stands behind the user's own.
+    """
+    name = _row_name(found.source, pair, asked)
     prefix = "user_" + re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")
+    source = found.source.with_text(reached(found.source.text + text, (pair.encode.name, pair.decode.name)))
+    # Where an overload that is refused was meant, another one or a built-in function would do something else.
+    used = words_of(source.text) if found.refused else set()
+    if why := next((why for name, why in found.refused.items() if name in used), ""):
+        raise TranslationError(why)
+    try:
+        by, texts = _texts_by_whoever_reads_it(source, by, pair, prefix, folder)
+    except TranslationError as error:
+        # What was cut out for another reason is not defined for that one.
+        unknown = _UNDEFINED.search(str(error))
+        why = found.lost.get(unknown[1], "") if unknown else ""
+        raise TranslationError(why or str(error)) from None
     return {
         "name": name,
         "prefix": prefix,
         "components": pair.components,
-        "notes": [IN_32_BITS] if has_halves(source) else [],
-        "texts": _texts(source, language, pair, prefix, folder),
+        "packed": pair.encode.kind if pair.is_packed else "",
+        "notes": [],
+        "texts": texts,
+        "text": source.text,
         "functions": [(one.name, one.takes_view) for one in (pair.encode, pair.decode)],
+        "read_by": by,
+        "named": pair.named,
     }
 
 
-def _name(path: Path, pair: Pair, asked: tuple[str, str] | None) -> str:
-    """What rows call it: NAME of NAME_encode and NAME_decode, as in GLSL; else the file's name."""
+def _pair_and_text(found: Read, asked: tuple[str, str] | None, path: Path) -> tuple[Pair, str, str]:
+    """The pair that is measured; the text of its two functions, where they call others; and how it is asked for."""
+    one, other = wirings = [wiring_of(text) for text in asked] if asked else (Wiring(""), Wiring(""))
+    names = (one.function, other.function) if asked else None
+    if not (one.is_plain and other.is_plain):
+        return _wired_pair(wirings, found)
+    own = functions_in(found.source.own_text)
+    try:
+        pair = pair_of(found.functions, names, path.name, own)
+        # The file's own come before those that it includes.
+        several = [] if names or {pair.encode.name, pair.decode.name} & set(own) else _own_candidates(found, own)
+        if not several:
+            return pair, "", pair.named
+    except SeveralPairsError:
+        raise
+    except NoPairError:
+        several = candidates([one for one in found.functions if not names or one.name in names])
+        if not several:
+            raise
+    if len(several) == 1:
+        return _wired_pair(several[0], found)
+    raise SeveralPairsError(path.name, [":".join(map(str, wirings)) for wirings in several])
+
+
+def _own_candidates(found: Read, own: Collection[str]) -> list[tuple[Wiring, Wiring]]:
+    return candidates([one for one in found.functions if one.name in own])
+
+
+def _wired_pair(wirings: Sequence[Wiring], found: Read) -> tuple[Pair, str, str]:
+    text, pair = wired(wirings, found.functions)
+    return pair, text, ":".join(map(str, wirings))
+
+
+def _texts_by_whoever_reads_it(source: Source, by: str, pair: Pair, prefix: str, folder: Path) -> tuple[str, list[str]]:
+    """What has read the two functions, if not the compiler of their language; and they as texts."""
+    try:
+        return by, _function_texts(source, language_of(source.word, by), pair, prefix, folder)
+    except TranslationError:
+        if by or name_of(source.word) != "HLSL":
+            raise
+        with suppress(TranslationError, NotPlainError, ToolError, MissingError):
+            return GLSLANG, _function_texts(source, BY_NAME[GLSLANG], pair, prefix, folder)
+        raise
+
+
+def _others(found: Sequence[Function], pair: Pair) -> list[str]:
+    """A line on each other pair, but those of numbers alone: one of 32 bits, or of functions with more parameters."""
+    others = [] if pair.is_packed else packed_pairs(found)
+    packed = {one.named: f", which packs into {_A[one.encode.kind]}," for one in others}
+    wired = dict.fromkeys(f"{one.function}:{other.function}" for one, other in candidates(_but(found, pair)))
+    named = {**dict.fromkeys(wired, ""), **packed}
+    measured = {pair.encode.name.removesuffix("_wired"), pair.decode.name.removesuffix("_wired")}
+    left = {one: what for one, what in named.items() if not measured & set(one.replace("::", "_").split(":"))}
+    return [f"{one}{what} is measured if it is named" for one, what in list(left.items())[:MOST_OTHERS]]
+
+
+def _but(found: Sequence[Function], pair: Pair) -> list[Function]:
+    return [one for one in found if one.name not in (pair.encode.name, pair.decode.name)]
+
+
+def _read_with(source: Source) -> list[str]:
+    """A line on what was read besides the file."""
+    others = [str(path) for path in source.files.values() if path not in source.mains]
+    more = f" and {len(others) - MOST_NAMED} others" if len(others) > MOST_NAMED else ""
+    macros = [f"-D {macro}" for macro in source.settings.defines]
+    said = ", ".join([*macros, *others[:MOST_NAMED]])
+    return [f"it is read with {said}{more}"] if said else []
+
+
+def _row_name(source: Source, pair: Pair, asked: tuple[str, str] | None) -> str:
+    """What rows call it: NAME of NAME_encode and NAME_decode, as in GLSL; else the file's name; and its macros."""
     names = [pair.encode.name.removesuffix("_encode"), pair.decode.name.removesuffix("_decode")]
-    if names[0] == names[1]:
-        return names[0]
-    return called(f"{path.name}:{pair.encode.name}" if asked else path.name)
+    file = source.path.name
+    function = wiring_of(asked[0]).function if asked else pair.encode.name
+    if len(source.mains) > 1:
+        return called(":".join((f"{file}:{function}", source.mains[1].name, *source.settings.defines)))
+    own = names[0] if names[0] == names[1] else f"{file}:{function}" if asked else file
+    return called(":".join((own, *source.settings.defines)))
 
 
-def _texts(source: Source, language: Language, pair: Pair, prefix: str, folder: Path) -> list[str]:
+def _function_texts(source: Source, language: Language, pair: Pair, prefix: str, folder: Path) -> list[str]:
     """The two functions in GLSL, of codes in [-1, 1] and of codes in [0, 1]."""
     sides = {f"{prefix}_e": pair.encode, f"{prefix}_d": pair.decode}
-    made = "".join(plain(language.shader(source, one, folder), name, one.given[0]) for name, one in sides.items())
-    mains = (Function(f"{name}_main", one.result, (one.given[0], NORMAL)) for name, one in sides.items())
+    made = "".join(
+        plain(language.shader(source, one, folder), name, one.takes or f"vec{one.given[0]}")
+        if one.name
+        else f"vec{one.result} {name}_main(vec{one.given[0]} a, vec3 view) {{ return vec{one.result}(0.0); }}\n"
+        for name, one in sides.items()
+    )
+    mains = (replace(one, name=f"{name}_main", given=(one.given[0], NORMAL)) for name, one in sides.items())
     encoder, decoder = mains
+    if pair.is_packed:
+        return [made + programs.packed_pair(prefix, encoder, decoder)] * 2
     return [made + programs.pair(prefix, pair.components, encoder, decoder, is_unit) for is_unit in (False, True)]
 
 
 if __name__ == "__main__":
     children.limit_this_process()
-    work, file, language, *functions = sys.argv[1:]
-    print(json.dumps(answer(Path(file), (functions[0], functions[1]) if functions else None, Path(work), language)))
+    work, word, language = sys.argv[1:]
+    print(json.dumps(answer(word, Path(work), language)))

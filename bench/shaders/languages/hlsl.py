@@ -1,4 +1,4 @@
-"""HLSL to GLSL: glslang makes SPIR-V of it, and SPIRV-Cross makes GLSL of that."""
+"""HLSL to GLSL in another way than Slang's: glslang makes SPIR-V of it, and SPIRV-Cross makes GLSL of that."""
 
 from __future__ import annotations
 
@@ -18,15 +18,6 @@ GIVEN, MADE = "given.hlsl", "made.spv"
 _ERROR = re.compile(rf"^ERROR: {re.escape(GIVEN)}:(\d+): '([^']*)' : (.*)$", re.M)
 
 
-def preprocessed(source: Source, folder: Path) -> str:
-    """A source after its preprocessor. Raises TranslationError, ToolError and MissingError."""
-    (folder / GIVEN).write_text(source.text, encoding="utf-8")
-    options = ["-D", "-E", "-S", "frag", *_defined(source), GIVEN]
-    status, said = tools.run(tools.GLSLANG, options, folder)
-    _check(source, status, said)
-    return said
-
-
 def shader(source: Source, function: Function, folder: Path) -> str:
     """A function of a source as a fragment shader in GLSL: see `plain.py`.
 
@@ -39,7 +30,7 @@ def shader(source: Source, function: Function, folder: Path) -> str:
     # Without names (-g0) no identifier of the user's can be one of GLSL's or of this program's. Not optimised (-Od), a
     # function with an early return stays one, and does not become a loop of one turn.
     options = ["-D", "-e", ENTRY, "-S", "frag", "-V", "--target-env", "vulkan1.1", "-g0", "-Od", "-o", MADE]
-    status, said = tools.run(tools.GLSLANG, [*options, *_defined(source), GIVEN], folder)
+    status, said = tools.run(tools.GLSLANG, [*options, *_define_options(source), GIVEN], folder)
     _check(source, status, said)
     status, said = tools.run(
         tools.SPIRV_CROSS, ["--version", VERSION, "--no-es", "--remove-unused-variables", MADE], folder
@@ -49,7 +40,7 @@ def shader(source: Source, function: Function, folder: Path) -> str:
     return said
 
 
-def _defined(source: Source) -> list[str]:
+def _define_options(source: Source) -> list[str]:
     return [f"-D{macro}" for macro in macros(source)]
 
 

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 
-from . import hlsl, pairs, slang, tools, wgsl
+from ....encodings.codecs.files import file_text
+from . import hlsl, slang, tools, wgsl
 from .pairs import Function
-from .source import Source
-from .words import TRANSLATED
+from .programs import Read
+from .source import Source, without_comments
+from .words import TRANSLATED, file_of, settings_of
+
+GLSL_NAME = "GLSL"
+# What is a type in GLSL, and in no other language that files of its endings have.
+_GLSL = re.compile(r"\b[iub]?vec[234]\b")
 
 
 @dataclass(frozen=True)
@@ -19,39 +26,47 @@ class Language:
 
     Attributes:
         tools: the compilers that it needs.
-        preprocessed: a source, and a folder to work in, to its text without macros.
-        functions: that text to the functions of vectors in it.
+        read: a source, and a folder to work in, to what a compiler reads of it.
         shader: a source, a function of it and a folder to work in, to a fragment shader in GLSL: input 0 is what the
             function is given, input 1 the view-space position, output 0 the result.
+        others: compilers that read what its own refuses, or check what it has read.
     """
 
     tools: tuple[str, ...]
-    preprocessed: Callable[[Source, Path], str]
-    functions: Callable[[str], list[Function]]
+    read: Callable[[Source, Path], Read]
     shader: Callable[[Source, Function, Path], str]
+    others: tuple[str, ...] = ()
 
 
+# A second reader of HLSL, which has the functions of the first.
+GLSLANG = "glslang"
 BY_NAME: Mapping[str, Language] = MappingProxyType(
     {
-        "HLSL": Language(hlsl.TOOLS, hlsl.preprocessed, pairs.functions, hlsl.shader),
-        "Slang": Language(slang.TOOLS, slang.preprocessed, pairs.functions, slang.shader),
-        "WGSL": Language(wgsl.TOOLS, wgsl.preprocessed, wgsl.functions, wgsl.shader),
+        "HLSL": Language((tools.SLANG_LIBRARY,), slang.read, slang.shader, hlsl.TOOLS),
+        GLSLANG: Language((tools.SLANG_LIBRARY, *hlsl.TOOLS), slang.read, hlsl.shader),
+        "Slang": Language((tools.SLANG_LIBRARY,), slang.read, slang.shader),
+        "GLSL": Language((tools.SLANG_LIBRARY,), slang.read_glsl, slang.shader_of_glsl),
+        "WGSL": Language(wgsl.TOOLS, wgsl.read, wgsl.shader),
     }
 )
 
 
-# Languages that the compiler of another one reads as well.
-ALSO_READ_BY: Mapping[str, str] = MappingProxyType({"HLSL": "Slang"})
+def language_of(word: str | Path, by: str = "") -> Language:
+    """The language of a word's file, or what a name says that reads it."""
+    return BY_NAME[by or name_of(word)]
 
 
-def language_of(path: Path, by: str = "") -> Language:
-    """The language of a file by its ending, or by the name of the one whose compiler is to read it."""
-    return BY_NAME[by or TRANSLATED[path.suffix.lower()]]
-
-
-def also_read_by(path: Path) -> str:
-    """Another language whose compiler reads a file; empty where there is none."""
-    return ALSO_READ_BY.get(TRANSLATED[path.suffix.lower()], "")
+def name_of(word: str | Path) -> str:
+    """What the language of a word's file is called: as the word says, by its ending, or by its text where the ending is
+    of several."""
+    path = file_of(word)
+    language = settings_of(word).language or TRANSLATED.get(path.suffix.lower(), GLSL_NAME)
+    if language:
+        return language
+    try:
+        return GLSL_NAME if _GLSL.search(without_comments(file_text(path))) else "HLSL"
+    except (OSError, ValueError):
+        return "HLSL"
 
 
 def require_language(name: str) -> None:

@@ -3,26 +3,73 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any
 
-# Result, name and parameters of a definition.
-_FUNCTION = re.compile(r"(?<![\w.])([A-Za-z_]\w*)\s+([A-Za-z_]\w*)\s*\(([^(){};]*)\)\s*(?::\s*\w+\s*)?\{")
-# Slang's other way to write it: func NAME(n : float3) -> float2.
-_ARROW = re.compile(r"\bfunc\s+(\w+)\s*\(([^(){};]*)\)\s*->\s*(\w+)\s*\{")
-_TYPEDEF = re.compile(r"\btypedef\s+(\w+)\s+(\w+)\s*;")
-_GENERIC = re.compile(r"\bvector\s*<\s*(?:float|half)\s*,\s*([1-4])\s*>")
-_VECTOR = re.compile(r"(?:float|half|min16float|min10float|float16_t|vec)([23])")
-_QUALIFIERS = {"in", "const", "uniform", "precise", "static", "inline"}
 NORMAL = 3
+# One value of 32 bits, and how many numbers it is measured as.
+PACKED, HALVES = ("uint", "int", "float"), 2
 # Of a function's name, in lower case. Those of a decoder are looked for first: "unpack" has "pack" in it, and
 # UnpackNormalOctRectEncode of Unity's HDRP decodes.
 DECODES, ENCODES = ("unpack", "decode", "decompress"), ("pack", "encode", "compress")
 
+# What stands in a name for a code, and a word of a name.
+CODES = ("oct", "hemi", "sphere", "stereo", "uv", "packed", "encoded")
+_WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z0-9]+")
 # In the name of a function that takes or gives a normal, in lower case.
 NORMALS = ("norm", "nrm", "oct", "unitvec", "direction")
+# A word in that of one of colours, depths and the like.
+OF_COLOURS = {"color", "colour", "rgb", "rgbe", "rgbm", "radiance", "irradiance", "luminance", "hdr", "depth", "albedo"}
 
+# What codes of something else than normals are of: words of their functions' names, and the table of the catalogue's.
+OTHERS: Mapping[str, tuple[tuple[str, ...], str]] = MappingProxyType(
+    {
+        "tangent frames": (("frame", "tangent", "tbn"), "frames"),
+        "motion vectors": (("motion", "velocity"), "vectors"),
+    }
+)
+OF_OTHERS = "{} is of {}, not of normals: no table measures a file of these; `normalbench {}` measures the catalogue's"
+
+NO_PAIR = "no encoder and decoder found"
 BY_PARAMETER = "{} returns nothing; write a function that returns what it gives through its parameter"
+
+
+@dataclass(frozen=True)
+class Place:
+    """A number or a vector in what a function is given or gives.
+
+    Attributes:
+        path: how a program names it: s.normalWS of a parameter s; empty for a result as a whole.
+        kind: the type of its numbers: float, uint, int or bool.
+        size: how many there are, 1 to 4.
+    """
+
+    path: str
+    kind: str
+    size: int
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of a function.
+
+    Attributes:
+        name: of it.
+        kind: its type, as HLSL writes it.
+        is_given: whether the function reads it: `in` or `inout`.
+        is_made: whether the function writes it: `out` or `inout`.
+        has_default: whether it need not be given.
+        places: its numbers and vectors.
+    """
+
+    name: str
+    kind: str
+    is_given: bool
+    is_made: bool
+    has_default: bool
+    places: tuple[Place, ...]
 
 
 @dataclass(frozen=True)
@@ -34,12 +81,18 @@ class Function:
         result: how many numbers it gives; 0 where that is no vector of two or three.
         given: how many numbers each of its parameters has, likewise.
         kind: the type of its result, as it is written.
+        takes: the type of its first parameter, if that is one integer or one float of 32 bits; empty for others.
+        parameters: each, if its compiler tells them.
+        results: the numbers and vectors of its result, likewise.
     """
 
     name: str
     result: int
     given: tuple[int, ...]
     kind: str = field(default="", compare=False)
+    takes: str = field(default="", compare=False)
+    parameters: tuple[Parameter, ...] = field(default=(), compare=False)
+    results: tuple[Place, ...] = field(default=(), compare=False)
 
     @property
     def takes_view(self) -> bool:
@@ -66,6 +119,26 @@ class Function:
         return self.kind == "void" and self.given[:1] > (0,)
 
     @property
+    def packs(self) -> bool:
+        """Whether it makes a normal one integer, or one float, of 32 bits."""
+        return self.takes_a_normal and self.kind in PACKED
+
+    @property
+    def unpacks(self) -> bool:
+        """Whether it makes such a one a normal."""
+        return self.result == NORMAL and self.takes in PACKED and self.given[1:] in ((), (NORMAL,))
+
+    @property
+    def given_type(self) -> str:
+        """The type of its first parameter."""
+        return self.takes or f"float{self.given[0]}"
+
+    @property
+    def result_type(self) -> str:
+        """The type of its result."""
+        return self.kind if self.kind in PACKED else f"float{self.result}"
+
+    @property
     def may_decode(self) -> bool:
         """Whether it gives a normal, of a code and of a view-space position if of anything else."""
         return self.result == NORMAL and self.given[:1] > (0,) and self.given[1:] in ((), (NORMAL,))
@@ -80,8 +153,13 @@ class Pair:
 
     @property
     def components(self) -> int:
-        """How many numbers their code has."""
-        return self.encode.result
+        """How many numbers their code has; those of an integer are its two halves."""
+        return HALVES if self.is_packed else self.encode.result
+
+    @property
+    def is_packed(self) -> bool:
+        """Whether their code is one integer or one float of 32 bits, which is stored as it stands."""
+        return self.encode.packs
 
     @property
     def named(self) -> str:
@@ -90,62 +168,49 @@ class Pair:
 
 
 class NoPairError(Exception):
-    """There are no two functions that are an encoder and its decoder, or several such pairs."""
+    """There are no two functions that are an encoder and its decoder.
+
+    Attributes:
+        alone: what is known of the one of the two that is there; empty where none is.
+    """
+
+    alone: Mapping[str, Any] = MappingProxyType({})
 
 
-def functions(text: str) -> list[Function]:
-    """The functions that a preprocessed text in HLSL or Slang defines, outside of structs."""
-    text = _ARROW.sub(_as_in_c, _GENERIC.sub(r"float\1", text))
-    types = {new: old for old, new in _TYPEDEF.findall(text)}
-    found: dict[Function, None] = {}
-    for result, name, parameters in _at_the_top(text):
-        given = tuple(_size(_type_of(one), types) for one in parameters.split(","))
-        found[Function(name, _size(result, types), given, result)] = None
-    return list(found)
+class SeveralPairsError(NoPairError):
+    """There are several such pairs.
+
+    Attributes:
+        named: each, as it is asked for.
+    """
+
+    def __init__(self, file: str, named: Sequence[str]):
+        super().__init__(f"it has several encoders; name one: {', '.join(f'{file}:{one}' for one in named[:6])}")
+        self.named = named
 
 
-def _as_in_c(match: re.Match[str]) -> str:
-    name, parameters, result = match.groups()
-    turned = (" ".join(reversed(one.split(":"))) for one in parameters.split(","))
-    return f"{result} {name}({', '.join(turned)}) {{"
-
-
-def _at_the_top(text: str) -> Iterator[tuple[str, str, str]]:
-    """Result, name and parameters of the definitions that stand in no other."""
-    depth, last = 0, 0
-    for match in _FUNCTION.finditer(text):
-        depth += text.count("{", last, match.start()) - text.count("}", last, match.start())
-        last = match.start()
-        if not depth:
-            yield match[1], match[2], match[3]
-
-
-def _type_of(parameter: str) -> str:
-    """The type of a parameter: `in float3 n : NORMAL` has float3; `inout float3 n` is of none."""
-    words = [word for word in parameter.partition(":")[0].split() if word not in _QUALIFIERS]
-    return words[0] if len(words) == 2 else ""
-
-
-def _size(kind: str, types: dict[str, str]) -> int:
-    """How many numbers a type has; 0 where it is no vector of two or three."""
-    match = _VECTOR.fullmatch(types.get(kind, kind))
-    return int(match[1]) if match else 0
-
-
-def pair_of(found: Sequence[Function], asked: tuple[str, str] | None = None, file: str = "") -> Pair:
+def pair_of(
+    found: Sequence[Function], asked: tuple[str, str] | None = None, file: str = "", own: Collection[str] = ()
+) -> Pair:
     """The pair among functions.
 
     Args:
         file: what messages call the file.
         asked: the names of the two that are meant; None to find them.
+        own: the names of those that the file defines itself, and does not include.
 
     Raises:
-        NoPairError: none fits, or several do; the message names them.
+        NoPairError: none fits.
+        SeveralPairsError: several do; the message names them.
     """
     pairs = [pair for pair in _fitting(found) if asked in (None, (pair.encode.name, pair.decode.name))]
+    packed = [pair for pair in packed_pairs(found) if asked in (None, (pair.encode.name, pair.decode.name))]
     if asked:
-        return _asked(found, asked, pairs)
-    best = sorted(_by_name(pairs) or _by_size(pairs), key=lambda pair: not speaks_of_normals(pair))
+        return _asked(found, asked, [*pairs, *packed])
+    mine = [pair for pair in pairs if pair.encode.name in own and pair.decode.name in own]
+    best = _by_name(mine) or _by_name(pairs) or packed or _by_size(mine) or _by_size(pairs)
+    # Others are of colours or motion.
+    best = [pair for pair in best if speaks_of_normals(pair)] or [pair for pair in best if not speaks_of_others(pair)]
     # Overloads differ in the view alone.
     names = list(dict.fromkeys(pair.named for pair in best))
     if names and (meant := _by_parameter(found, best)):
@@ -153,7 +218,9 @@ def pair_of(found: Sequence[Function], asked: tuple[str, str] | None = None, fil
     if len(names) == 1:
         return best[0]
     if names:
-        raise NoPairError(f"it has several encoders; name one: {', '.join(f'{file}:{one}' for one in names[:6])}")
+        raise SeveralPairsError(file, names)
+    if other := _of_something_else(found):
+        raise NoPairError(other)
     wanted = "float2 (or float3) ENCODE(float3 n) and float3 DECODE(float2 code)"
     raise NoPairError(f"{_none_fits(found)}; the two functions must be {wanted}")
 
@@ -163,6 +230,13 @@ def _fitting(found: Sequence[Function]) -> Iterator[Pair]:
         for decode in (one for one in found if one.may_decode and one.given[0] == encode.result):
             if encode.name != decode.name:
                 yield Pair(encode, decode)
+
+
+def packed_pairs(found: Sequence[Function]) -> list[Pair]:
+    """The pairs whose code is one value of 32 bits, of an encoder and a decoder by their names."""
+    some = [Pair(one, other) for one in found if one.packs for other in found if other.unpacks]
+    alike = [pair for pair in some if pair.encode.kind == pair.decode.takes]
+    return [pair for pair in _by_name(alike) if stem(pair.encode.name) == stem(pair.decode.name)]
 
 
 def _asked(found: Sequence[Function], asked: tuple[str, str], pairs: Sequence[Pair]) -> Pair:
@@ -203,13 +277,37 @@ def speaks_of_normals(pair: Pair) -> bool:
     return any(word in pair.named.lower() for word in NORMALS)
 
 
+def speaks_of_others(pair: Pair) -> bool:
+    """Whether the names of a pair say that it is of something else than normals."""
+    named = f"{pair.encode.name} {pair.decode.name}"
+    is_of_colours = bool(OF_COLOURS & {word.lower() for word in _WORD.findall(named)})
+    is_of_others = any(word in named.lower() for words, _ in OTHERS.values() for word in words)
+    return not speaks_of_normals(pair) and (is_of_colours or is_of_others)
+
+
 def _by_size(pairs: Sequence[Pair]) -> list[Pair]:
-    """Those whose types alone tell encoder and decoder apart."""
-    return [pair for pair in pairs if pair.components != NORMAL]
+    """Those whose types alone tell encoder and decoder apart, and whose names do not say the contrary."""
+    told = [pair for pair in pairs if pair.components != NORMAL]
+    return [pair for pair in told if role(pair.encode.name) != "decode" and role(pair.decode.name) != "encode"]
+
+
+def _ways(name: str) -> tuple[list[str], list[str]] | None:
+    """What a name says that a function makes what of: NormalToOctahedron, oct_from_vec; None where it says neither."""
+    words = [word.lower() for word in _WORD.findall(name)]
+    for between in ("to", "from"):
+        if between in words[1:-1]:
+            at = words.index(between)
+            first, last = words[:at], words[at + 1 :]
+            return (first, last) if between == "to" else (last, first)
+    return None
 
 
 def role(name: str) -> str:
     """What a function is by its name: "encode", "decode", or empty."""
+    if ways := _ways(name):
+        given, made = (any(word.startswith(CODES) for word in one) for one in ways)
+        if given != made:
+            return "decode" if given else "encode"
     lower = name.lower()
     if any(word in lower for word in DECODES):
         return "decode"
@@ -218,7 +316,28 @@ def role(name: str) -> str:
 
 def stem(name: str) -> str:
     """A function's name without what says that it encodes or decodes."""
+    if ways := _ways(name):
+        return " ".join(sorted(" ".join(one) for one in ways))
     return re.sub("|".join((*DECODES, *ENCODES, "_")), "", name.lower())
+
+
+def alone(found: Sequence[Function]) -> Pair | None:
+    """The one function of a file that encodes or decodes, and the other one without a name; None of other files."""
+    encoders = [one for one in found if one.may_encode and role(one.name) == "encode"]
+    decoders = [one for one in found if one.may_decode and role(one.name) == "decode"]
+    if len(encoders) + len(decoders) != 1:
+        return None
+    size = encoders[0].result if encoders else decoders[0].given[0]
+    return Pair(*(encoders or [Function("", size, (NORMAL,))]), *(decoders or [Function("", NORMAL, (size,))]))
+
+
+def _of_something_else(found: Sequence[Function]) -> str:
+    """That a file without a pair is of something else, by the names of its functions; else empty."""
+    named = [one.name for one in found if role(one.name)]
+    for what, (words, table) in OTHERS.items():
+        if name := next((name for name in named if any(word in name.lower() for word in words)), ""):
+            return OF_OTHERS.format(name, what, table)
+    return ""
 
 
 def _none_fits(found: Sequence[Function]) -> str:
@@ -234,4 +353,4 @@ def _none_fits(found: Sequence[Function]) -> str:
         return f"{encoders[0]} has no decoder"
     if decoders and not encoders:
         return f"{decoders[0]} has no encoder"
-    return "no encoder and decoder found"
+    return NO_PAIR

@@ -15,10 +15,15 @@ class NotPlainError(Exception):
 _LEFT_OUT = re.compile(r"^[ \t]*#(?:version|extension|line)\b.*$|^layout\(\w+_major\) (?:uniform|buffer);$", re.M)
 # What SPIRV-Cross writes for [unroll], [branch] and [flatten].
 _HINTS = re.compile(r"^#if defined\(GL_EXT_control_flow_attributes\)$.*?^#endif$", re.M | re.S)
+# What it writes for numbers of 16 bits, which become numbers of 32.
+_HALVES = re.compile(
+    r"^#if defined\(GL_\w+\)$(?:(?!^#endif$).)*?^#error No extension available for FP16.*?^#endif$", re.M | re.S
+)
 _HINT = re.compile(r"\bSPIRV_CROSS_\w+")
 # layout(location = 0) in vec3 _102;
 _VARIABLE = re.compile(
-    r"^layout\(location = (\d+)\)\s+(?:(?:flat|highp|mediump)\s+)*(in|out)\s+(?:(?:highp|mediump)\s+)?(\w+ )(\w+);",
+    r"^(?:flat\s+)?layout\(location = (\d+)\)\s+(?:(?:flat|highp|mediump)\s+)*(in|out)\s+"
+    r"(?:(?:highp|mediump)\s+)?(\w+ )(\w+);",
     re.M,
 )
 # What SPIRV-Cross and Slang call things; a function of GLSL has no such name.
@@ -30,19 +35,19 @@ _HALF = re.compile(r"\bf16(vec|mat)(\d)|\bfloat16_t\b")
 _HALF_NUMBER = re.compile(r"(?<=[\d.])HF\b", re.I)
 
 
-def plain(shader: str, prefix: str, given: int) -> str:
+def plain(shader: str, prefix: str, given: str) -> str:
     """The shader as a function PREFIX_main of PREFIX_0 and view, without a head.
 
     Args:
-        given: how many numbers its first input has; its second has three.
+        given: the type of its first input in GLSL; its second has three numbers.
 
     Raises:
         NotPlainError: it reads something else.
     """
     text = _HALF_NUMBER.sub("", _HALF.sub(lambda match: f"{match[1]}{match[2]}" if match[1] else "float", shader))
-    text = _HINT.sub("", _HINTS.sub("", text))
+    text = _HALVES.sub("", _HINT.sub("", _HINTS.sub("", text)))
     text = _ATTRIBUTE.sub("", _LEFT_OUT.sub("", text))
-    names = {name: _named(place, way) for place, way, _, name in _VARIABLE.findall(text)}
+    names = {name: _parameter_name(place, way) for place, way, _, name in _VARIABLE.findall(text)}
     result = next(kind for _, way, kind, _ in _VARIABLE.findall(text) if way == "out")
     text = _VARIABLE.sub("", text)
     names = {name: called if called == "view" else f"{prefix}_{called}" for name, called in names.items()}
@@ -50,10 +55,10 @@ def plain(shader: str, prefix: str, given: int) -> str:
     if found := _RESOURCE.search(text):
         what = "a texture or a constant buffer" if not found[0].startswith("gl_") else found[0]
         raise NotPlainError(f"its functions read {what}; an encoder has the normal and the view-space position alone")
-    return _function(re.sub(r"\n\s*\n+", "\n", text.strip()), prefix, f"vec{given}", result.strip()) + "\n"
+    return _function_text(re.sub(r"\n\s*\n+", "\n", text.strip()), prefix, given, result.strip()) + "\n"
 
 
-def _function(text: str, prefix: str, given: str, result: str) -> str:
+def _function_text(text: str, prefix: str, given: str, result: str) -> str:
     """A text whose `main`, its last function, gives what it wrote."""
     before, _, main = text.partition("void main()")
     body = re.sub(r"\breturn;", f"return {prefix}_out;", main.strip().removeprefix("{").removesuffix("}"))
@@ -61,5 +66,5 @@ def _function(text: str, prefix: str, given: str, result: str) -> str:
     return f"{before}{head}\n{{\n    {result} {prefix}_out;{body.rstrip()}\n    return {prefix}_out;\n}}"
 
 
-def _named(place: str, way: str) -> str:
+def _parameter_name(place: str, way: str) -> str:
     return ("0", "view")[int(place)] if way == "in" else "out"

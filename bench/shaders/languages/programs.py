@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
+from typing import NamedTuple
 
 from .pairs import Function
 from .source import Source
@@ -16,10 +17,26 @@ ENTRY = "normalbench_entry"
 ENGINE_TYPES: Mapping[str, str] = MappingProxyType({"real": "float", "MaterialFloat": "float"})
 # Types of 16 bits, which are computed in 32.
 HALVES = ("half", "min16float", "min10float", "float16_t")
-_HALF = re.compile(rf"\b(?:{'|'.join(HALVES)})[1-4]?\b")
+_HALF = re.compile(rf"\b(?:(?:{'|'.join(HALVES)})(?:[1-4](?:x[1-4])?)?|f16(?:vec|mat)[2-4]|mediump|lowp)\b")
 # Of HLSL: as slangc has it, and as glslang reads it, whose `?:` is of vectors.
 VERSION, YEAR = "__HLSL_VERSION", "2018"
 SIZES = ("", "2", "3", "4")
+
+
+class Read(NamedTuple):
+    """What a compiler reads of a source.
+
+    Attributes:
+        source: the part of it that is compiled; each line stands where it stood.
+        functions: those of vectors in it.
+        refused: by its name, why a function is not among them.
+        lost: by its name, why a global or a type is not in the source.
+    """
+
+    source: Source
+    functions: Sequence[Function]
+    refused: Mapping[str, str] = MappingProxyType({})
+    lost: Mapping[str, str] = MappingProxyType({})
 
 
 class TranslationError(Exception):
@@ -48,11 +65,33 @@ def pair(name: str, components: int, encoder: Function, decoder: Function, is_un
     return template("pair.glsl", CODE=f"vec{components}", **words)
 
 
+# What a half of 16 bits holds at most, as shaders write it.
+LARGEST = f"{2**16 - 1}.0"
+_BITS: Mapping[str, tuple[str, str]] = MappingProxyType(
+    {
+        "uint": ("{}", "{}"),
+        "int": ("uint({})", "int({})"),
+        "float": ("floatBitsToUint({})", "uintBitsToFloat({})"),
+    }
+)
+
+
+def packed_pair(name: str, encoder: Function, decoder: Function) -> str:
+    """As `pair`, of two functions whose code is one value of 32 bits: its halves are the two numbers."""
+    words = {f"NAME_{side}": f"{name}_{side}" for side in ("encode", "decode", "halves", "whole")}
+    way_out, way_back = _BITS[encoder.kind]
+    words |= {"ENCODED": way_out.format(encoder.called("n")), "LARGEST": LARGEST}
+    words |= {"DECODED": decoder.called(way_back.format(f"{name}_whole(e)"))}
+    return template("packed.glsl", **words)
+
+
 def program(source: Source, function: Function) -> str:
     """A source with an entry point that calls one of its functions."""
     arguments = "normalbench_given, normalbench_view" if function.takes_view else "normalbench_given"
     view = ", [[vk::location(1)]] float3 normalbench_view : TEXCOORD1" if function.takes_view else ""
-    words = {"VIEW": view, "RESULT": f"float{function.result}", "GIVEN": f"float{function.given[0]}"}
+    # What is no float is the same for all of a triangle.
+    given = f"nointerpolation {function.given_type}" if function.takes else function.given_type
+    words = {"VIEW": view, "RESULT": function.result_type, "GIVEN": given}
     return source.text + template("entry.hlsl", FUNCTION=function.name, ARGUMENTS=arguments, **words)
 
 
@@ -68,6 +107,6 @@ def _defines(text: str, name: str) -> bool:
     return bool(re.search(rf"#[ \t]*define[ \t]+{name}\b|\btypedef\s+\w+\s+{name}\b", text))
 
 
-def has_halves(source: Source) -> bool:
-    """Whether it uses types of 16 bits."""
-    return bool(_HALF.search(source.text))
+def has_halves(text: str) -> bool:
+    """Whether a text without comments has numbers of 16 bits."""
+    return bool(_HALF.search(text))

@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import tempfile
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,11 +19,11 @@ from ...ground.machine import children
 from ...ground.machine.posix.processes import DIVIDED_BY_ZERO, OWN_GROUP, signal_name
 from ...ground.output.errors import MissingError
 from . import slang, tools
-from .programs import TranslationError, macros, template
+from .language import GLSL_NAME, name_of
+from .programs import LARGEST, TranslationError, macros, template
 from .source import Source
 from .tools import ToolError
 from .translated import Translated
-from .words import TRANSLATED, file_of
 
 # Of one step: compiling, or running.
 SECONDS = 30.0
@@ -59,8 +60,8 @@ def second_way(path: Path, encoder: Translated, folder: Path) -> Way:
     Raises:
         NoSecondWayError: a compiler is missing or refuses the file.
     """
-    make = _by_naga if TRANSLATED[file_of(path).suffix.lower()] == "WGSL" else _by_cpp
-    run = make(Source(file_of(path)), encoder, folder)
+    make = _naga_runner if name_of(path) == "WGSL" else _cpp_runner
+    run = make(Source(path), encoder, folder)
 
     def way(n: np.ndarray, codes: np.ndarray, view: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         given = np.zeros((len(n), 3, 4), "<f4")
@@ -73,8 +74,10 @@ def second_way(path: Path, encoder: Translated, folder: Path) -> Way:
     return way
 
 
-def _frame(name: str, encoder: Translated) -> str:
+def _program_text(name: str, encoder: Translated) -> str:
     """The program around a file, which calls its two functions."""
+    if encoder.packed and name == "second.hlsl":
+        return _of_halves(encoder)
     size = encoder.components
     words = {"CODE": "xyz"[:size], "ZEROS_E": "0.0, 0.0" if size == 2 else "0.0"}
     for side, (function, takes_view) in zip(("ENCODE", "DECODE"), encoder.functions, strict=True):
@@ -82,13 +85,30 @@ def _frame(name: str, encoder: Translated) -> str:
     return template(name, **words)
 
 
-def _by_cpp(source: Source, encoder: Translated, folder: Path) -> Callable[[int], None]:
+def _of_halves(encoder: Translated) -> str:
+    """The same of two functions whose code is one value of 32 bits."""
+    (pack, is_viewed), (unpack, is_viewed_back) = encoder.functions
+    words = {
+        "PACK": pack,
+        "UNPACK": unpack,
+        "asVALUE": f"as{encoder.packed}",
+        "VIEW": ", float3 view",
+        "LARGEST": LARGEST,
+    }
+    words |= {"GIVEN_E": ", view" * is_viewed, "GIVEN_D": ", view" * is_viewed_back}
+    plain = replace(encoder, packed="", functions=[("normalbench_encode", True), ("normalbench_decode", True)])
+    return template("packed.hlsl", **words) + _program_text("second.hlsl", plain)
+
+
+def _cpp_runner(source: Source, encoder: Translated, folder: Path) -> Callable[[int], None]:
     """Slang's C++ as a program."""
     compiler = shutil.which("c++") or shutil.which("clang++")
     if not compiler:
         raise NoSecondWayError("no compiler of C++ is on the path (Debian: apt-get install g++)")
-    (folder / slang.GIVEN).write_text(source.text + _frame("second.hlsl", encoder), encoding="utf-8")
-    defined = [word for macro in macros(source, slang.TYPES) for word in ("-D", macro)]
+    (folder / slang.GIVEN).write_text(encoder.text + _program_text("second.hlsl", encoder), encoding="utf-8")
+    of_language = list(slang.GLSL) if name_of(source.word) == GLSL_NAME else []
+    used = macros(source.with_text(encoder.text), slang.TYPES)
+    defined = [*of_language, *(word for macro in used for word in ("-D", macro))]
     defined.append("-enable-machine-readable-diagnostics")
     options = ["-target", "cpp", "-entry", ENTRY, "-stage", "compute", "-line-directive-mode", "none"]
     try:
@@ -96,13 +116,13 @@ def _by_cpp(source: Source, encoder: Translated, folder: Path) -> Callable[[int]
     except (MissingError, ToolError) as error:
         raise NoSecondWayError(str(error)) from error
     if status:
-        raise NoSecondWayError(_refused(source, err), is_of_the_file=True)
+        raise NoSecondWayError(_refusal_text(source, err), is_of_the_file=True)
     (folder / "made.cpp").write_text(out + MAIN.read_text(encoding="utf-8"), encoding="utf-8")
     _run([compiler, "-std=c++17", "-O0", "-w", "-ffp-contract=off", "made.cpp", "-o", PROGRAM], folder)
     return lambda count: _run([str(folder / PROGRAM), str(count)], folder)
 
 
-def _refused(source: Source, said: str) -> str:
+def _refusal_text(source: Source, said: str) -> str:
     try:
         slang.check(source, said, 1)
     except TranslationError as error:
@@ -110,9 +130,9 @@ def _refused(source: Source, said: str) -> str:
     return f"{tools.SLANG} does not read it"
 
 
-def _by_naga(source: Source, encoder: Translated, folder: Path) -> Callable[[int], None]:
+def _naga_runner(_: Source, encoder: Translated, folder: Path) -> Callable[[int], None]:
     """The text itself on a Vulkan device, in a process that naga may end."""
-    (folder / "given.wgsl").write_text(source.text + _frame("second.wgsl", encoder), encoding="utf-8")
+    (folder / "given.wgsl").write_text(encoder.text + _program_text("second.wgsl", encoder), encoding="utf-8")
     words = children.python("normalbench.bench.shaders.languages.by_naga", str(folder))
     return lambda _: _run(words, folder, is_of_the_file=True)
 

@@ -1,68 +1,230 @@
-"""Slang to GLSL, by its own compiler."""
+"""Slang, and HLSL and GLSL that others do not read, to GLSL, by Slang's own compiler.
+
+A file of an engine has much that an encoder does not need: other stages, resources, functions of headers that are not
+there. So the compiler is first given the heads of the functions alone. What it refuses of them, and of what is no
+function, is cut out, again and again, until it reads the rest and says which functions there are. Then it is given
+those that the encoder or the decoder needs.
+"""
 
 from __future__ import annotations
 
 import re
+from bisect import bisect_right
+from collections.abc import Callable, Collection, Iterator, Mapping
 from pathlib import Path
 
-from . import tools
+from ..translator.builtins import LIKE_GIVEN, OF_FLOATS
+from .items import Item, blank, blanked, defined_in, functions_in, heads, items, without
 from .pairs import Function
-from .programs import ENGINE_TYPES, ENTRY, HALVES, TranslationError, macros, program, template
+from .programs import ENGINE_TYPES, ENTRY, HALVES, Read, TranslationError, macros, program, template
+from .slang_library import Compiled
 from .source import Source
 
-TOOLS = (tools.SLANG,)
+COMPILER = "Slang's compiler"
 GIVEN = "given.slang"
 # Tab-separated: number, severity, file, line, column, its end, and what is wrong. The span says more than the error.
-_ERROR = re.compile(rf"^\w+\t(?:error|fatal)[^\t]*\t{re.escape(GIVEN)}\t(\d+)\t(\d+)\t\d+\t\d+\t(.*)$", re.M)
-_SPAN = re.compile(rf"^\w+\tspan\t{re.escape(GIVEN)}\t(\d+)\t(\d+)\t\d+\t\d+\t(.*)$", re.M)
+_LINE = rf"\t[^\t]*{re.escape(GIVEN)}\t(\d+)\t(\d+)\t\d+\t\d+\t(.*)$"
+_ERROR, _SPAN = re.compile(rf"^\w+\t(?:error|fatal)[^\t]*{_LINE}", re.M), re.compile(rf"^\w+\tspan{_LINE}", re.M)
 _MIX, MIX = re.compile(r"\bmix(?=\()"), "normalbench_mix_0"
-_OTHER_FILES = re.compile(r"(?<!\w)(?:__)?(?:import|include|implementing)\s+[\w\"]")
-TYPES = {**ENGINE_TYPES, **dict.fromkeys(HALVES, "float")}
+# Words of Slang's that read other files, and that write what stands in a string into the program that is made.
+OTHER_FILES = ("import", "__import", "__include", "implementing", "__exported")
+OTHER_TEXT = (
+    *("__intrinsic_asm", "__target_switch", "__target_intrinsic", "__requirePrelude", "spirv_asm", "__intrinsic_type"),
+    *("__specialized_for_target", "__glsl_extension", "__builtin", "__magic_type", "__intrinsic_op", "__stage_switch"),
+)
+TYPES: Mapping[str, str] = {**ENGINE_TYPES, **dict.fromkeys(HALVES, "float")}
+# Functions of its own.
+OWN_FUNCTIONS = (
+    LIKE_GIVEN | OF_FLOATS | {"select", "saturate", "lerp", "frac", "rsqrt", "mul", "fmod", "mod", "rcp", "any", "all"}
+)
+# A directive that begins or ends a branch.
+_CONDITIONAL = re.compile(r"^[ \t]*#[ \t]*(?:if|ifdef|ifndef|else|elif|endif)\b(?:.*\\\n)*.*$", re.M)
+PART = "normalbench_part_"
+TARGET = (
+    *("-target", "glsl", "-entry", ENTRY, "-stage", "fragment"),
+    *("-profile", "glsl_450", "-line-directive-mode", "none"),
+)
+# Without an entry point, what a file declares is not looked at as closely.
+NO_ENTRY = f"\nfloat4 {ENTRY}() : SV_Target {{ return 0; }}\n"
+# NAME(, but for what says where a resource is bound.
+_CALLED = re.compile(r"\b(?!register\b|packoffset\b|layout\b)([A-Za-z_]\w*)\s*\(")
+# Directives of GLSL that are its compiler's own, and what a stage is given and gives.
+_OWN = re.compile(r"^[ \t]*#[ \t]*(?:version[ \t]+(\d+)|extension|pragma|line)\b.*$", re.M)
+_OF_A_STAGE = re.compile(
+    r"^(?:layout\s*\([^)]*\)\s*)?(?:(?:flat|smooth|noperspective|centroid|highp|mediump|lowp)\s+)*"
+    r"(?:in|out|varying|attribute)\b"
+)
+_LINES = re.compile(r"^[ \t]*#[ \t]*line\b.*$", re.M)
+# What GLSL fills as no other language does: a matrix of one number is a diagonal.
+_DIAGONAL = re.compile(r"\bmat[234](?:x[234])?\s*\(")
 
 
-def preprocessed(source: Source, folder: Path) -> str:
-    """A source after its preprocessor. Raises TranslationError, ToolError and MissingError."""
-    said = _compiled(source, source.text, ["-E"], folder)
-    if found := _OTHER_FILES.search(said):
-        raise TranslationError(f"{source.path}: {found[0].split()[0]} is not read; #include a file next to it")
-    return said
+def read(source: Source, folder: Path) -> Read:
+    """What can be read of a source in HLSL or Slang. Raises TranslationError and MissingError."""
+    _check_words(source)
+    return _readable_part(source, _text_without_lines, folder, ())
 
 
-def shader(source: Source, function: Function, folder: Path) -> str:
+def _check_words(source: Source) -> None:
+    """Raises TranslationError for a source that may read other files, or write the text of another language.
+
+    What is there after macros is what is there before, or what they paste together.
+    """
+    text = source.text.replace("\\\n", "")
+    words = set(re.findall(r"\w+", text))
+    for word in (*OTHER_FILES, *OTHER_TEXT):
+        if word in words or ("##" in text and _is_pasted(word, words)):
+            why = "; #include a file next to it" if word in OTHER_FILES else ""
+            raise TranslationError(f"{source.path}: {word} is not read{why}")
+
+
+def _is_pasted(word: str, parts: Collection[str]) -> bool:
+    """Whether a word is some parts one after another."""
+    return not word or any(_is_pasted(word[len(part) :], parts) for part in parts if word.startswith(part))
+
+
+def read_glsl(source: Source, folder: Path) -> Read:
+    """What can be read of a source in GLSL, which Slang's compiler knows. Raises TranslationError and MissingError."""
+    _check_words(source)
+    return _readable_part(source, _text_of_no_stage, folder, GLSL)
+
+
+def _diagonals(text: str) -> Iterator[int]:
+    """The lines in which a matrix is made of one value."""
+    for match in _DIAGONAL.finditer(text):
+        depth, commas = 1, 0
+        for at in range(match.end(), len(text)):
+            letter = text[at]
+            depth += (letter == "(") - (letter == ")")
+            commas += letter == "," and depth == 1
+            if not depth:
+                break
+        if not commas:
+            yield text.count("\n", 0, match.start()) + 1
+
+
+def _text_of_no_stage(text: str) -> str:
+    """GLSL without what is its own compiler's, and without what a stage is given and gives."""
+    text = _OWN.sub(lambda match: f"#define __VERSION__ {match[1]}" if match[1] else "", text)
+    return without(text, [item for item in items(text) if _OF_A_STAGE.match(text[item.start : item.end].lstrip())])
+
+
+GLSL = ("-allow-glsl",)
+
+
+def _text_without_lines(text: str) -> str:
+    return _LINES.sub("", text)
+
+
+def _readable_part(source: Source, first: Callable[[str], str], folder: Path, options: tuple[str, ...]) -> Read:
+    """The live part of a source without what is refused of it, its bodies aside; and the functions that it has.
+
+    Args:
+        first: its text to the part of it that is looked at.
+    """
+    source = source.without_missing()
+    source = _live_part(source.with_text(first(source.text)), folder, options)
+    refused: dict[str, str] = {}
+    lost: dict[str, str] = {}
+    while (made := _compiled(source, heads(source.text) + NO_ENTRY, (*options, *TARGET), folder)).failed:
+        bad = _refused_items(source, made.said)
+        left = source.with_text(without(source.text, bad))
+        if left.text == source.text:
+            raise TranslationError(_explanation(source, made.said))
+        refused |= {name: why for item, why in bad.items() for name in _names_in_head(source.text, item)}
+        texts = {source.text[item.start : item.end]: why for item, why in bad.items() if not item.function}
+        lost |= {name: why for text, why in texts.items() for name in defined_in(text)}
+        source = left
+    # The library ends the process where it is asked for a function of its own; nobody's encoder is called so.
+    names = [name for name in functions_in(source.text) if name not in OWN_FUNCTIONS]
+    return Read(source, made.functions(names), refused, lost)
+
+
+def _live_part(source: Source, folder: Path, options: tuple[str, ...]) -> Source:
+    """A source without its conditional directives, and without the branches that its preprocessor leaves out."""
+    parts, ends = _CONDITIONAL.split(source.text), [*_CONDITIONAL.findall(source.text), ""]
+    if len(parts) == 1:
+        return source
+    # Of a part that is looked at, the compiler says the warning; it is given directives alone.
+    marked = (
+        f"#warning {PART}{at}.\n{blanked(part)}{end}" for at, (part, end) in enumerate(zip(parts, ends, strict=True))
+    )
+    live = set(re.findall(rf"{PART}\d+\.", _compiled(source, "\n".join(marked), options, folder).said))
+    kept = (part if f"{PART}{at}." in live else blank(part) for at, part in enumerate(parts))
+    return source.with_text("".join(part + blank(end) for part, end in zip(kept, ends, strict=True)))
+
+
+def _names_in_head(text: str, item: Item) -> list[str]:
+    """The names that an item may give a function: that of the one that it defines, else all that stand before (."""
+    before, brace, _ = text[item.start : item.end].partition("{")
+    return [item.name] if item.function else _CALLED.findall(before) if brace else []
+
+
+def _refused_items(source: Source, said: str) -> dict[Item, str]:
+    """The items that messages are of, each with the first message; what a directive says is of none."""
+    starts = [0, *(match.end() for match in re.finditer("\n", source.text))]
+    known = items(source.text)
+    found: dict[Item, str] = {}
+    for number, column, what in _messages(said):
+        line = starts[min(number, len(starts)) - 1]
+        item = known[bisect_right(known, line + column - 1, key=lambda item: item.start) - 1]
+        if item.end > line + column - 1 and not source.text.startswith("#", line):
+            found.setdefault(item, source.explained(number, what, column=column))
+    return found
+
+
+def shader(source: Source, function: Function, folder: Path, options: tuple[str, ...] = ()) -> str:
     """A function of a source as a fragment shader in GLSL: see `plain.py`.
 
     Raises:
         TranslationError: it does not compile.
-        ToolError: the compiler crashes or does not end.
-        MissingError: it is not there.
+        MissingError: the compiler is not there.
     """
-    options = ["-target", "glsl", "-entry", ENTRY, "-stage", "fragment", "-profile", "glsl_450"]
-    made = _compiled(source, program(source, function), [*options, "-line-directive-mode", "none"], folder)
+    made = _compiled(source, program(source, function), (*options, *TARGET), folder)
+    if made.failed:
+        raise TranslationError(_explanation(source, made.said))
     # The suffix is one that `plain.py` takes for a name of Slang's.
-    return template("mix.glsl", MIX=MIX) + _MIX.sub(MIX, made) if _MIX.search(made) else made
+    code = made.code
+    return template("mix.glsl", MIX=MIX) + _MIX.sub(MIX, code) if _MIX.search(code) else code
 
 
-def _compiled(source: Source, text: str, options: list[str], folder: Path) -> str:
-    (folder / GIVEN).write_text(text, encoding="utf-8")
+def shader_of_glsl(source: Source, function: Function, folder: Path) -> str:
+    """As `shader`, of a source in GLSL."""
+    if line := next(_diagonals(source.text), 0):
+        what = "a matrix of one value is read otherwise than GLSL defines it; write out its elements"
+        raise TranslationError(source.explained(line, what))
+    return shader(source, function, folder, GLSL)
+
+
+def _compiled(source: Source, text: str, options: tuple[str, ...], folder: Path) -> Compiled:
+    given = folder / GIVEN
+    given.write_text(text, encoding="utf-8")
     defined = [word for macro in macros(source, TYPES) for word in ("-D", macro)]
-    words = ["-enable-machine-readable-diagnostics", *defined, *options, GIVEN]
-    status, out, err = tools.run_apart(tools.SLANG, words, folder)
-    check(source, err, status)
-    return out
+    # A text without an entry point is checked, and nothing is written of it.
+    target = () if "-target" in options else ("-target", "glsl")
+    return Compiled([str(given), "-enable-machine-readable-diagnostics", *defined, *options, *target])
 
 
 def check(source: Source, said: str, status: int) -> None:
     """Raises TranslationError where Slang's compiler ended with a status and said this."""
     if status:
-        raise TranslationError(_explained(source, said, status))
+        raise TranslationError(_explanation(source, said))
 
 
-def _explained(source: Source, said: str, status: int) -> str:
-    """The first error, at the user's line and column."""
-    error = _ERROR.search(said)
-    if not error:
-        first = " ".join(said.split())[:300] or f"status {status} without a word"
-        return f"{source.path}: {tools.SLANG}: {first}"
-    span = _SPAN.search(said, error.end())
-    number, column, what = (span if span and span[1] == error[1] else error).groups()
-    return source.explained(int(number), what.strip(), column=int(column))
+def _explanation(source: Source, said: str) -> str:
+    """The first error, at the user's line and column; what is refused may be so for want of what is not there."""
+    behind = f" ({source.missing[0]})" if source.missing else ""
+    for number, column, what in _messages(said):
+        return source.explained(number, what, column=column) + behind
+    return f"{source.path}: {COMPILER}: {' '.join(said.split())[:300] or 'it ended without a word'}"
+
+
+def _messages(said: str) -> Iterator[tuple[int, int, str]]:
+    """Line, column and what is wrong there, of each error but that there is no entry point."""
+    errors = list(_ERROR.finditer(said))
+    starts = [error.start() for error in errors]
+    for error, end in zip(errors, [*starts[1:], len(said)], strict=False):
+        span = _SPAN.search(said, error.end(), end)
+        number, column, what = (span if span and span[1] == error[1] else error).groups()
+        if ENTRY not in what:
+            yield int(number), int(column), what.strip().rstrip(".")

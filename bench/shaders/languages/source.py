@@ -2,17 +2,32 @@
 
 from __future__ import annotations
 
+import itertools
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from copy import copy
 from pathlib import Path
 from typing import NamedTuple
 
 from ....encodings.codecs.files import MOST_TEXT, file_text
 from ...ground.output.errors import UsageError
+from .items import blank, defined_in
+from .words import ENDINGS, TRANSLATED, files_of, functions_of, is_file, settings_of
 
-# One that has no end goes to the end of the text, so that every letter is looked at once.
-_COMMENT = re.compile(r'"[^"\n]*"|//[^\n]*|/\*.*?(?:\*/|\Z)', re.S)
-_INCLUDE = re.compile(r'[ \t]*#[ \t]*include[ \t]+(?:"([^"]+)"|<([^>]+)>)[ \t]*')
+# One that has no end goes to the end of the text, so that every letter is looked at once. A long one takes no memory.
+_COMMENT = re.compile(r'"[^"\n]*"|//(?:[^\\\n]++|\\\n?)*+|/\*.*?(?:\*/|\Z)', re.S)
+# Some engines have no marks around the name; in place of one, a macro is a name of no file.
+_INCLUDE = re.compile(r'[ \t]*#[ \t]*include[ \t]*(?:"([^"]+)"|<([^>]+)>|(?<=[ \t])([\w./\\-]+))[ \t]*')
+_CONDITION = re.compile(r"[ \t]*#[ \t]*(if|elif|else|endif)(?:n?def)?\b")
+# What keeps a file from being compiled twice: #pragma once, or all of it in #ifndef NAME and #define NAME.
+_ONCE = re.compile(r"[ \t]*#[ \t]*pragma[ \t]+once[ \t]*")
+_UNLESS = re.compile(r"[ \t]*#[ \t]*(?:ifndef[ \t]+|if[ \t]*![ \t]*defined[ \t]*\(?[ \t]*)(\w+)[ \t]*\)?[ \t]*")
+_MACRO = re.compile(r"[ \t]*#[ \t]*define[ \t]+(\w+)")
+# How often files are included at most, and how many lines they have together: more is a bomb.
+MOST_INCLUDES, MOST_LINES = 2000, 1 << 19
+# How many folders above a file's are searched for what it includes.
+MOST_ABOVE = 8
 # Directives with lines that go on joined, and comments gone.
 _ANY_INCLUDE = re.compile(r"^[ \t]*#[ \t]*include\b", re.M)
 
@@ -36,65 +51,285 @@ def without_comments(text: str) -> str:
 
 def _blank(match: re.Match[str]) -> str:
     is_whole = match[0].startswith("//") or (len(match[0]) > 3 and match[0].endswith("*/"))
-    return re.sub(r"[^\n]", " ", match[0]) if is_whole else match[0]
+    return blank(match[0]) if is_whole else match[0]
+
+
+def _homes() -> Iterator[Path]:
+    """The home folder, as it is named and where its links lead; none where nobody knows it."""
+    with suppress(RuntimeError, OSError):
+        yield from (Path.home(), Path.home().resolve())
+
+
+def _resolved(path: Path) -> Path:
+    """Where a path's links lead; where they lead nowhere, or no file can be named so, the path."""
+    try:
+        return path.absolute().resolve()
+    except (RuntimeError, OSError, ValueError):
+        return path.absolute()
+
+
+def _searched(folder: Path) -> list[Path]:
+    """Where includes are searched: a folder and those above it, up to a repository's, at most eight more; never the
+    home folder, what is above it, or the top of all, but where the file itself lies there."""
+    found, homes = [folder], list(_homes())
+    for above in folder.parents[:MOST_ABOVE]:
+        if (found[-1] / ".git").exists() or any(home.is_relative_to(above) for home in homes) or above == above.parent:
+            break
+        found.append(above)
+    return found
+
+
+def _option_for(name: str) -> str:
+    """The option that gives a file that is not there."""
+    first, _, rest = name.lstrip("/").partition("/")
+    is_virtual = rest and (name.startswith("/") or first == "Packages")
+    return f"--include {f'{first}=' * bool(is_virtual)}FOLDER"
+
+
+# The guard of a file with #pragma once, and of one in a language without a preprocessor.
+_PRAGMA, _NATURE = (-1,), (-2,)
+
+
+def _read(path: Path) -> _Text:
+    """A file. Raises UsageError."""
+    try:
+        bare = without_comments(file_text(path))
+    except (OSError, ValueError) as error:
+        raise UsageError(f"{path}: {error}") from error
+    if "/*" in bare:
+        line = bare.count("\n", 0, bare.index("/*")) + 1
+        raise UsageError(f"{path}:{line}: a comment that begins with /* is not closed")
+    lines = bare.split("\n")
+    found = {at: match[match.lastindex or 0] for at, line in enumerate(lines) if (match := _INCLUDE.fullmatch(line))}
+    if len(_ANY_INCLUDE.findall(bare.replace("\\\n", ""))) != len(found):
+        raise UsageError(f'{path}: an #include is written as #include "FILE", in one line')
+    if TRANSLATED.get(path.suffix.lower()) == "WGSL":
+        return _Text(lines, found, _NATURE)
+    return _Text(lines, found, _PRAGMA if any(map(_ONCE.fullmatch, lines)) else _guard(lines))
+
+
+class _Text(NamedTuple):
+    """A file as it is read.
+
+    Attributes:
+        lines: without comments.
+        includes: by the place of a line, what it includes.
+        guard: the places of the lines that keep it from being compiled twice; empty where nothing does.
+    """
+
+    lines: list[str]
+    includes: dict[int, str]
+    guard: tuple[int, ...]
+
+
+def _guard(lines: list[str]) -> tuple[int, ...]:
+    """The places of #ifndef NAME and its #endif where they hold all of a text; else none."""
+    written = [at for at, line in enumerate(lines) if line.strip()]
+    first = _UNLESS.fullmatch(lines[written[0]]) if len(written) > 2 else None
+    if not first or not re.match(rf"[ \t]*#[ \t]*define[ \t]+{first[1]}\b", lines[written[1]]):
+        return ()
+    depth = 0
+    for at in written:
+        match = _CONDITION.match(lines[at])
+        depth += {"if": 1, "endif": -1}.get(match[1], 0) if match else 0
+        if (not depth and at != written[-1]) or (match and match[1] in ("else", "elif") and depth == 1):
+            return ()
+    return () if depth else (written[0], written[-1])
+
+
+def _defined(lines: list[Line]) -> set[str]:
+    """What stands at the top of lines."""
+    return set(defined_in("".join(f"{line.text}\n" for line in lines)))
+
+
+def _renamed(lines: list[Line], names: set[str], mark: str) -> Iterator[Line]:
+    """Lines in which some names are others."""
+    where = lines[0].path
+    yield from (Line(f"#define {name} {name}_{mark}", where, 1) for name in sorted(names))
+    yield from lines
+    yield from (Line(f"#undef {name}", where, 1) for name in sorted(names))
+
+
+class _Branches:
+    """The branches of #if and #else in which a line stands, each by a number of its own."""
+
+    def __init__(self) -> None:
+        self.now: tuple[int, ...] = ()
+        self._numbers = itertools.count()
+
+    def follow(self, line: str) -> None:
+        """Go past a line."""
+        match = _CONDITION.match(line) if "#" in line else None
+        if not match:
+            return
+        around = self.now if match[1] == "if" else self.now[:-1]
+        self.now = around if match[1] == "endif" else (*around, next(self._numbers))
 
 
 class Source:
-    """A file and what it includes, each file once: from its own folder and the folders below, and from nowhere else.
+    """A file and what it includes: from its own folder and the folders below, from those above it up to that of its
+    repository, and from nowhere else.
+
+    A file is included where its includes say, in each branch; one that guards itself only where it may not have been
+    read yet; one that includes itself not again.
 
     An include of a file that is elsewhere, or not there, becomes an #error: in a branch that is left out it does no
     harm.
 
     Raises:
-        UsageError: a file cannot be read, they are too large together, or they include each other too deep.
+        UsageError: a file cannot be read, they are too large or too many together, or they include each other too deep.
     """
 
-    def __init__(self, path: Path):
-        self.path = path
+    def __init__(self, word: str | Path):
+        self.word = word
+        self.mains = files_of(word)
+        self.path = path = self.mains[0]
+        self.settings = settings_of(word)
         self.files: dict[Path, Path] = {}
-        self._root, self._left = path.absolute().parent.resolve(), MOST_TEXT
+        # The one that is read, and where its includes are searched.
+        self._main = self.path
+        self._folders, self._left = _searched(_resolved(path.parent)), MOST_TEXT
+        self._texts: dict[Path, _Text] = {}
+        self._open: list[Path] = []
+        # By a file that guards itself, the branches in which it has been read.
+        self._read_in: dict[Path, list[tuple[int, ...]]] = {}
+        self._branches, self._count, self._lines_left = _Branches(), 0, MOST_LINES
+        # What may be read: what lies below one of these.
+        self._tops = [self._folders[-1], *(_resolved(Path(root)) for _, root in self.settings.roots)]
         try:
-            self.lines = list(self._expanded(path))
+            self.lines = list(self._all_lines())
         except RecursionError:
             raise UsageError(f"{path}: its #includes are nested too deep") from None
         self.text = "".join(f"{line.text}\n" for line in self.lines)
 
-    def _expanded(self, path: Path) -> Iterator[Line]:
-        text = self._read(path)
-        bare = without_comments(text)
-        if "/*" in bare:
-            line = bare.count("\n", 0, bare.index("/*")) + 1
-            raise UsageError(f"{path}:{line}: a comment that begins with /* is not closed")
-        lines = bare.split("\n")
-        found = [_INCLUDE.fullmatch(line) for line in lines]
-        if len(_ANY_INCLUDE.findall(bare.replace("\\\n", ""))) != sum(map(bool, found)):
-            raise UsageError(f'{path}: an #include is written as #include "FILE", in one line')
-        for number, (line, match) in enumerate(zip(lines, found, strict=True), 1):
-            if match:
-                yield from self._included(path, number, match[1] or match[2])
-            else:
-                yield Line(line.rstrip(), path, number)
+    def _all_lines(self) -> Iterator[Line]:
+        """Those of macros, of preludes and of the file."""
+        for macro in self.settings.defines:
+            name, _, value = macro.partition("=")
+            yield Line(f"#define {name} {value if '=' in macro else 1}", Path("--define"), 1)
+        for prelude in self.settings.preludes:
+            if _resolved(Path(prelude)).suffix.lower() not in ENDINGS:
+                raise UsageError(f"--prelude {prelude}: its name does not end as that of a shader, such as .hlsl")
+            yield from self._expanded(Path(prelude))
+        if len(self.mains) == 1:
+            yield from self._expanded(self.path)
+        else:
+            yield from self._of_two()
 
-    def _read(self, path: Path) -> str:
-        self.files[path.absolute().resolve()] = path
-        try:
-            text = file_text(path)
-        except (OSError, ValueError) as error:
-            raise UsageError(f"{path}: {error}") from error
-        self._left -= len(text)
+    def _of_two(self) -> Iterator[Line]:
+        """The encoder's file and the decoder's, each as if it were alone: what both define gets another name in one."""
+        encode, decode = (name.partition("::")[0] for name in functions_of(self.word) or ("", ""))
+        if encode == decode:
+            raise UsageError(f"{self.word}: both functions are called {encode}; rename one")
+        before = {own: list(branches) for own, branches in self._read_in.items()}
+        first, second = (self._alone(path, before) for path in self.mains)
+        clash = _defined(first) & _defined(second)
+        yield from _renamed(first, clash - {encode}, "of_encoder")
+        # Its macros, guards among them, are none of the decoder's.
+        macros = dict.fromkeys(match[1] for line in first if (match := _MACRO.match(line.text)))
+        yield from (Line(f"#undef {name}", self.path, 1) for name in macros)
+        yield from _renamed(second, clash & {encode}, "of_decoder")
+
+    def _alone(self, path: Path, before: Mapping[Path, list[tuple[int, ...]]]) -> list[Line]:
+        """The lines of one of two files, where some were read before both."""
+        self._main, self._folders = path, _searched(_resolved(path.parent))
+        self._tops.append(self._folders[-1])
+        self._branches.now, self._read_in = (), {own: list(branches) for own, branches in before.items()}
+        return list(self._expanded(path))
+
+    def _expanded(self, path: Path) -> Iterator[Line]:
+        own = _resolved(path)
+        text = self._text_of(own, path)
+        self._take(text)
+        is_once = text.guard == _PRAGMA and bool(self._open)
+        mark = f"normalbench_once_{list(self.files).index(own)}"
+        if is_once:
+            yield from (Line(f"#{word} {mark}", path, 1) for word in ("ifndef", "define"))
+        self._open.append(own)
+        for at, line in enumerate(text.lines):
+            if at in text.includes:
+                yield from self._included(path, at + 1, text.includes[at])
+                continue
+            if at not in text.guard:
+                self._branches.follow(line)
+            yield Line("" if is_once and _ONCE.fullmatch(line) else line.rstrip(), path, at + 1)
+        self._open.pop()
+        if is_once:
+            yield Line("#endif", path, len(text.lines))
+
+    def _take(self, text: _Text) -> None:
+        """Raises UsageError where this is more than is read."""
+        self._left -= sum(map(len, text.lines)) + len(text.lines)
+        self._lines_left -= len(text.lines)
+        self._count += 1
         if self._left < 0:
             raise UsageError(f"{self.path}: with what it includes it is larger than {MOST_TEXT >> 20} MiB")
-        return text
+        if self._lines_left < 0:
+            raise UsageError(f"{self.path}: with what it includes it has more than {MOST_LINES} lines")
+        if self._count > MOST_INCLUDES:
+            raise UsageError(f"{self.path}: its files are included more than {MOST_INCLUDES} times")
+
+    def _text_of(self, own: Path, path: Path) -> _Text:
+        if own not in self._texts:
+            self.files[own] = path
+            self._texts[own] = _read(path)
+        return self._texts[own]
 
     def _included(self, path: Path, number: int, name: str) -> Iterator[Line]:
-        targets = [folder / name for folder in dict.fromkeys((path.parent, self.path.parent))]
-        there = [target for target in targets if target.is_file()]
-        target = next((one for one in there if one.absolute().resolve().is_relative_to(self._root)), None)
+        there = [target for target in self._targets(path, name) if is_file(Path(), str(target))]
+        target = next((one for one in there if self._may_read(_resolved(one))), None)
         if target is None:
-            why = f"lies outside the folder of {self.path.name}; copy it" if there else f"is not next to {path.name}"
-            yield Line("#error not read", path, number, f"{name} {why}")
-        elif target.absolute().resolve() not in self.files:
+            where = f"lies outside the folder of {self._main.name}" if there else f"is not next to {path.name}"
+            yield Line("#error not read", path, number, f"{name} {where}; name its folder by {_option_for(name)}")
+        elif not self._is_read(_resolved(target), target):
             yield from self._expanded(target)
+
+    def _targets(self, path: Path, name: str) -> list[Path]:
+        """Where a file may lie that another one includes."""
+        own = [folder / name for folder in dict.fromkeys((path.parent, self._main.parent))]
+        bare = name.lstrip("/")
+        roots = self.settings.roots
+        rooted = ((virtual, root) for virtual, root in roots if not virtual or bare.startswith(f"{virtual}/"))
+        given = [Path(root) / bare[len(virtual) :].lstrip("/") for virtual, root in rooted]
+        return [*own, *given, *(folder / name for folder in self._folders)]
+
+    def _is_read(self, own: Path, target: Path) -> bool:
+        """Whether a file need not be read again: it is open, or it guards itself and was read wherever this line is."""
+        if own in self._open:
+            return True
+        if not self._text_of(own, target).guard:
+            return False
+        now, before = self._branches.now, self._read_in.setdefault(own, [])
+        if any(now[: len(one)] == one for one in before):
+            return True
+        before.append(now)
+        return False
+
+    def with_text(self, text: str) -> Source:
+        """The same with another text of as many lines, which stand where they stood."""
+        made = copy(self)
+        made.text = text
+        return made
+
+    @property
+    def own_text(self) -> str:
+        """What is left of the lines of the file itself, or of both."""
+        texts = zip(self.text.split("\n"), self.lines, strict=False)
+        return "".join(f"{text}\n" for text, line in texts if line.path in self.mains)
+
+    def without_missing(self) -> Source:
+        """The same without the lines that include what is not there."""
+        texts = zip(self.text.split("\n"), self.lines, strict=False)
+        return self.with_text("".join(f"{'' if line.wrong else text}\n" for text, line in texts))
+
+    @property
+    def missing(self) -> list[str]:
+        """What is wrong with the lines that include what is not there, with their places."""
+        return [f"{line.path}:{line.number}: {line.wrong}" for line in self.lines if line.wrong]
+
+    def _may_read(self, target: Path) -> bool:
+        """Whether a file, whose links are resolved, lies where includes are searched and ends as a shader does."""
+        return any(map(target.is_relative_to, self._tops)) and target.suffix.lower() in ENDINGS
 
     def place(self, number: int) -> tuple[Path, int]:
         """The file and the line of a line of `text`, counted from 1; beyond its end, its last."""
@@ -102,6 +337,7 @@ class Source:
         return line.path, line.number
 
     def _line(self, number: int) -> Line:
+        """The line of a number, or the last one."""
         return self.lines[min(max(number, 1), len(self.lines)) - 1]
 
     def explained(self, number: int, said: str, token: str = "", column: int = 0) -> str:

@@ -10,18 +10,23 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
-from typing import IO, Any
+from typing import Any
 
+from ...ground.machine.children import text_of
 from ...ground.machine.posix.processes import signal_name
 from ...ground.output.errors import MissingError
+from . import slang_library
 
 GLSLANG, SPIRV_CROSS, SLANG = "glslangValidator", "spirv-cross", "slangc"
+# Slang's compiler as a library, which is no program.
+SLANG_LIBRARY = "slang-compiler"
 # What to install.
 MISSING: Mapping[str, str] = MappingProxyType(
     {
         GLSLANG: f"no HLSL: {GLSLANG} is not on the path; install it (Debian: apt-get install glslang-tools)",
         SPIRV_CROSS: f"no HLSL: {SPIRV_CROSS} is not on the path; install it (Debian: apt-get install spirv-cross)",
         SLANG: f"no Slang: {SLANG} is not there; install it (pip install --no-deps slangtorch)",
+        SLANG_LIBRARY: slang_library.MISSING,
     }
 )
 # Python packages that have a tool in their folder bin.
@@ -41,6 +46,8 @@ def path_of(tool: str) -> Path:
     Raises:
         MissingError: one line that says what to install.
     """
+    if tool == SLANG_LIBRARY:
+        return slang_library.path_of_library()
     found = shutil.which(tool) or _in_a_wheel(tool)
     if not found:
         raise MissingError(MISSING[tool])
@@ -75,6 +82,14 @@ def stamp(tool: str) -> str:
     return f"{found} {status.st_size} {status.st_mtime_ns}"
 
 
+def stamp_or_empty(tool: str) -> str:
+    """The same; empty where there is no such tool."""
+    try:
+        return stamp(tool)
+    except MissingError:
+        return ""
+
+
 def run(tool: str, words: Sequence[str], folder: Path) -> tuple[int, str]:
     """A tool's status, and all that it printed: as `run_apart`."""
     status, out, err = run_apart(tool, words, folder)
@@ -99,9 +114,4 @@ def run_apart(tool: str, words: Sequence[str], folder: Path) -> tuple[int, str, 
             raise ToolError(f"{tool} did not end within {SECONDS} s") from error
         if name := signal_name(status):
             raise ToolError(f"{tool} was ended by {name}: this is too much for it")
-        return status, _text(out), _text(err)
-
-
-def _text(file: IO[bytes]) -> str:
-    file.seek(0)
-    return file.read().decode(errors="replace")
+        return status, text_of(out), text_of(err)

@@ -15,13 +15,25 @@ from ...ground.output import cache as kept
 from ...ground.output.errors import MissingError, UsageError
 from ..translator import tree
 from . import tools
-from .language import also_read_by, language_of
+from .language import language_of
 from .source import Source
-from .words import file_of, functions_of
+from .words import file_of
 
 # Of one file: a hundred times what it takes.
 TIME_LIMIT = 60.0
 TEXTS = ("", "-unit")
+
+
+class SeveralEncodersError(UsageError):
+    """A file has several encoders.
+
+    Attributes:
+        pairs: the names of each and its decoder, ENCODE:DECODE.
+    """
+
+    def __init__(self, said: str, pairs: list[str]):
+        super().__init__(said)
+        self.pairs = pairs
 
 
 @dataclass(frozen=True)
@@ -32,59 +44,72 @@ class Translated:
         name: what rows call it.
         prefix: what the names of its GLSL functions begin with.
         components: how many numbers its code has.
+        packed: the type of the one value of 32 bits that its code is, whose halves are its numbers; empty for others.
         notes: what is to be said of it, lines.
         texts: its GLSL; and its GLSL where codes in [0, 1] become [-1, 1] on their way out, and come back.
+        text: the part of the user's file that was compiled.
         functions: encoder and decoder: the name of each in the user's file, and whether it takes the view.
+        named: the two, as they are asked for, ENCODE:DECODE.
+        read_by: what has read it, if not the compiler of its language: see `BY_NAME`.
     """
 
     name: str
     prefix: str
     components: int
+    packed: str
     notes: list[str]
     texts: list[str]
+    text: str
     functions: list[tuple[str, bool]]
+    read_by: str
+    named: str
 
     def glsl(self, is_unit: bool) -> Path:
         """A file with one of the texts, that other processes find as well."""
         return glsl_file(self.prefix, self.texts[is_unit], TEXTS[is_unit])
 
 
+class AloneError(UsageError):
+    """A file has an encoder or a decoder alone.
+
+    Attributes:
+        made: the file, whose other function gives nothing.
+    """
+
+    def __init__(self, said: str, made: Translated):
+        super().__init__(said)
+        self.made = made
+
+
 def translated(word: str | Path, by: str = "") -> Translated:
-    """The encoder that a word names: FILE, or FILE:ENCODE:DECODE.
+    """The encoder that a word names: see `words.py`.
 
     Args:
-        by: another language whose compiler reads the file; empty for its own.
+        by: what reads the file, if not the compiler of its own language: see `BY_NAME`.
 
     Raises:
         UsageError: it cannot be read or translated; one line with the user's file, and line and column if known.
+        SeveralEncodersError: it has several, and none is named.
         MissingError: what to install.
     """
-    path, asked = file_of(word), functions_of(word)
-    source = Source(path)
-    key = kept.key_of("translated", source.text, str(path), *(asked or ()), by, *_stamps(path, by), own())
-    found = _whole(kept.read(key))
+    source = Source(word)
+    read = [str(path) for path in source.files.values()]
+    key = kept.key_of("translated", source.text, str(word), *read, by, *_tool_stamps(word, by), own())
+    found = _translated_or_none(kept.read(key))
     if found is None:
-        found = _whole(made := _by_child(path, asked, by))
+        found = _translated_or_none(made := _by_child(word, by))
         if found is None:
-            raise UsageError(f"{path}: its translation ended without a result")
+            raise UsageError(f"{source.path}: its translation ended without a result")
         kept.write(key, made)
     return found
 
 
-def _stamps(path: Path, by: str) -> list[str]:
-    other = also_read_by(path)
-    also = [_stamp_if_there(tool) for tool in language_of(path, other).tools] if other else []
+def _tool_stamps(word: str | Path, by: str) -> list[str]:
+    language = language_of(word, by)
     try:
-        return [*also, *(tools.stamp(tool) for tool in language_of(path, by).tools)]
+        return [*map(tools.stamp, language.tools), *map(tools.stamp_or_empty, language.others)]
     except MissingError as error:
-        raise MissingError(f"{path}: {error}") from error
-
-
-def _stamp_if_there(tool: str) -> str:
-    try:
-        return tools.stamp(tool)
-    except MissingError:
-        return ""
+        raise MissingError(f"{file_of(word)}: {error}") from error
 
 
 @cache
@@ -95,7 +120,7 @@ def own() -> str:
     return kept.key_of(*(file.read_bytes() for file in files))
 
 
-def _whole(value: dict[str, Any] | None) -> Translated | None:
+def _translated_or_none(value: dict[str, Any] | None) -> Translated | None:
     """What was kept or said; None where it is anything else."""
     try:
         return Translated(**(value or {}))
@@ -103,9 +128,11 @@ def _whole(value: dict[str, Any] | None) -> Translated | None:
         return None
 
 
-def _by_child(path: Path, asked: tuple[str, str] | None, by: str) -> dict[str, Any]:
+def _by_child(word: str | Path, by: str) -> dict[str, Any]:
+    """The answer of the child process that translates a file: its fields, as JSON has them."""
+    path = file_of(word)
     with tempfile.TemporaryDirectory() as folder:
-        command = children.python("normalbench.bench.shaders.languages.child", folder, str(path), by, *(asked or ()))
+        command = children.python("normalbench.bench.shaders.languages.child", folder, str(word), by)
         try:
             done = children.finished(command, TIME_LIMIT)
         except subprocess.TimeoutExpired as error:
@@ -116,36 +143,27 @@ def _by_child(path: Path, asked: tuple[str, str] | None, by: str) -> dict[str, A
         raise UsageError(f"{path}: its translation {children.how_it_ended(done)}") from None
     if "missing" in found:
         raise MissingError(found["missing"])
+    if "pairs" in found:
+        raise SeveralEncodersError(found["error"], found["pairs"])
     if "error" in found:
-        raise UsageError(found["error"])
+        one = _translated_or_none(found.get("alone"))
+        raise AloneError(found["error"], one) if one else UsageError(found["error"])
     return found
 
 
 def glsl_file(name: str, text: str, mark: str = "") -> Path:
     """A file of GLSL that other processes find as well, in the cache."""
-    return _file(f"{name[:40]}-{kept.key_of(text)[:16]}{mark}.glsl", text)
+    return _cached_file(f"{name[:40]}-{kept.key_of(text)[:16]}{mark}.glsl", text)
 
 
-def _file(name: str, text: str) -> Path:
+def _cached_file(name: str, text: str) -> Path:
     """A file of this name and text in the cache; where that cannot be written, in a folder of this process."""
     for folder in (kept.folder() / "translated", None):
         path = (folder or kept.folder_of_this_process()) / name
         try:
             if not kept.is_private(path) or path.read_text(encoding="utf-8") != text:
-                _write(path, text)
+                kept.put(path, text.encode())
             return path
         except (OSError, ValueError):
             continue
     raise UsageError(f"{name}: neither the cache nor a temporary folder can be written")
-
-
-def _write(path: Path, text: str) -> None:
-    """Readers see the old file or the new one."""
-    kept.make_folder(path.parent)
-    with tempfile.NamedTemporaryFile("w", dir=path.parent, encoding="utf-8", delete=False) as file:
-        try:
-            file.write(text)
-            file.close()
-            Path(file.name).replace(path)
-        finally:
-            Path(file.name).unlink(missing_ok=True)

@@ -9,30 +9,32 @@ from ..translator import tree
 from ..translator.glsl_writer import GlslWriter
 from ..translator.reduce import numbered, reduced
 from ..translator.wgsl_parser import read_wgsl
+from .items import blank
 from .pairs import Function
-from .programs import TranslationError, template
+from .programs import Read, TranslationError, template
 from .source import Source
 
 TOOLS = ()
 SIZES = {"vec2": 2, "vec3": 3}
+# What preprocessors of engines add to the language: nothing that is imported is there.
+_IMPORT = re.compile(r"^[ \t]*#(?:import|define_import_path)\b[^\n{]*(?:\{[^}]*\})?[^\n]*$", re.M)
 # 3:14: y is not known here
 _PLACED = re.compile(r"(\d+):(\d+): (.*)", re.S)
 
 
-def preprocessed(source: Source, folder: Path) -> str:  # noqa: ARG001 (no tool works there)
-    """A source as it is, once it can be read. Raises TranslationError."""
-    _checked(source, lambda: read_wgsl(source.text))
-    return source.text
+def read(source: Source, folder: Path) -> Read:  # noqa: ARG001 (no tool works there)
+    """A source with its functions. Raises TranslationError."""
+    if source.settings.defines:
+        raise TranslationError(f"{source.path}: WGSL has no macros; leave out -D")
+    if len(source.mains) > 1:
+        raise TranslationError(f"{source.path}: WGSL in two files is not read; join them")
+    source = source.with_text(_IMPORT.sub(lambda match: blank(match[0]), source.text))
+    return Read(source, [_function(one) for one in _checked(source, lambda: read_wgsl(source.text)).functions])
 
 
-def functions(text: str) -> list[Function]:
-    """The functions of a text that can be read."""
-    return [
-        Function(
-            tree.plain_name(one), SIZES.get(one.kind, 0), tuple(SIZES.get(p.kind, 0) for p in one.parameters), one.kind
-        )
-        for one in read_wgsl(text).functions
-    ]
+def _function(defined: tree.Function) -> Function:
+    given = tuple(SIZES.get(p.kind, 0) for p in defined.parameters)
+    return Function(tree.plain_name(defined), SIZES.get(defined.kind, 0), given, defined.kind)
 
 
 def shader(source: Source, function: Function, folder: Path) -> str:  # noqa: ARG001 (no tool works there)

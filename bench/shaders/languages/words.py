@@ -1,4 +1,5 @@
-"""How a user's encoder is named: a file, and where it has several pairs of functions, the two that are meant.
+"""How a user's encoder is named: a file, where it has several pairs of functions the two that are meant, and how it is
+read: mine.hlsl:EncodeNormal:DecodeNormal:define=QUALITY=2:include=Packages=../library.
 
 Imports nothing heavy: gates read these names before anything is measured.
 """
@@ -6,22 +7,159 @@ Imports nothing heavy: gates read these names before anything is measured.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
+from typing import NamedTuple
+
+from ...ground.choose import split
+from ...ground.options.words import Words, given_in
+from ...ground.output.errors import UsageError
 
 GLSL = ".glsl"
-# The languages that are translated, by what their files end in. A new one is a line here and one in `language.py`.
+# The languages that are translated, by what their files end in; empty where the text has to say. A new one is a line
+# here and one in `language.py`.
 TRANSLATED: Mapping[str, str] = MappingProxyType(
-    {**dict.fromkeys((".hlsl", ".hlsli", ".fx"), "HLSL"), ".slang": "Slang", ".wgsl": "WGSL"}
+    {
+        **dict.fromkeys((".hlsl", ".hlsli", ".fx", ".fxh", ".ush", ".usf", ".cginc", ".azsli", ".shader"), "HLSL"),
+        **dict.fromkeys((".slang", ".sdsl"), "Slang"),
+        **dict.fromkeys((".wgsl", ".wesl"), "WGSL"),
+        **dict.fromkeys((".vert", ".frag", ".comp", ".vsh", ".fsh"), "GLSL"),
+        **dict.fromkeys((".h", ".inc", ".sh"), ""),
+    }
 )
 ENDINGS = (GLSL, *TRANSLATED)
 # Between a codec and the encoding of what comes back from it.
 CHAIN = "+"
-# FILE:ENCODE:DECODE.
-_PAIR = re.compile(
-    rf"(?P<file>.*(?:{'|'.join(map(re.escape, TRANSLATED))})):(?P<encode>\w+):(?P<decode>\w+)", re.I | re.S
+# FILE, FILE:ENCODE:DECODE, and settings behind either.
+_FILE = rf".*?(?:{'|'.join(map(re.escape, ENDINGS))})"
+# A function may have what it is given and gives behind it: see `wiring.py`.
+_FUNCTION = r"(?:\w+::)*\w+(?:\([^()]*\))?(?:->(?:[\w.]+|\([^()]*\)))?"
+DEFINE, PRELUDE, INCLUDE, LANGUAGE, ALL_PAIRS = SETTINGS = ("define", "prelude", "include", "language", "all_pairs")
+_SETTING = rf":({'|'.join(SETTINGS)})=([^:,]*)"
+_WORD = re.compile(
+    rf"(?P<file>{_FILE})(?::(?P<encode>{_FUNCTION}):(?P<decode>{_FUNCTION}))?(?P<settings>(?:{_SETTING})*)", re.I | re.S
 )
+# An encoder and its decoder in two files: FILE:ENCODE,FILE:DECODE.
+_PLAIN = rf"(?:[A-Z]:(?=[\\/]))?[^:,]*?(?:{'|'.join(map(re.escape, ENDINGS))})"
+_TWO = re.compile(
+    rf"(?P<file>{_PLAIN}):(?P<encode>{_FUNCTION}),\s*(?P<other>{_PLAIN}):(?P<decode>{_FUNCTION})"
+    rf"(?P<settings>(?:{_SETTING})*)",
+    re.I | re.S,
+)
+
+
+def _match(word: str | Path) -> re.Match[str] | None:
+    return _TWO.fullmatch(str(word)) or _WORD.fullmatch(str(word))
+
+
+class Settings(NamedTuple):
+    """How a user's file is read.
+
+    Attributes:
+        defines: macros, NAME or NAME=VALUE.
+        preludes: files that are put in front.
+        roots: folders in which includes are searched, each with what their names begin with; empty for any.
+        language: one of LANGUAGES; empty for that of its ending.
+        is_all: whether all its pairs are meant.
+    """
+
+    defines: tuple[str, ...] = ()
+    preludes: tuple[str, ...] = ()
+    roots: tuple[tuple[str, str], ...] = ()
+    language: str = ""
+    is_all: bool = False
+
+
+LANGUAGES = tuple(dict.fromkeys(name for name in ("HLSL", *TRANSLATED.values()) if name))
+_MACRO = re.compile(r"[A-Za-z_]\w*(?:=.*)?")
+
+
+def settings_of(word: str | Path) -> Settings:
+    """How the file of a word is read. Raises UsageError for a macro or a language that cannot be."""
+    match = _match(word)
+    said = re.findall(_SETTING, match["settings"], re.I) if match else []
+    of = {kind: tuple(value for name, value in said if name.lower() == kind) for kind in SETTINGS}
+    if odd := [f"{kind}={value}" for kind, value in said if not (value and value.isprintable())]:
+        raise UsageError(f"{odd[0]!r}: nothing can be called so; leave it out")
+    if wrong := [one for one in of[DEFINE] if not _MACRO.fullmatch(one)]:
+        raise UsageError(
+            f"-D {wrong[0]!r}: it is NAME or NAME=VALUE; write a macro with a comma in a file for --prelude"
+        )
+    names = [one for name in of[LANGUAGE] for one in LANGUAGES if one.lower() == name.lower()]
+    if of[LANGUAGE] and not names:
+        raise UsageError(f"--language {of[LANGUAGE][0]}: it is one of {', '.join(LANGUAGES).lower()}")
+    roots = tuple(_root(one) for one in of[INCLUDE])
+    return Settings(of[DEFINE], of[PRELUDE], roots, names[0] if names else "", bool(of[ALL_PAIRS]))
+
+
+def _root(said: str) -> tuple[str, str]:
+    """What names begin with, and the folder: of FOLDER, and of VIRTUAL=FOLDER."""
+    virtual, mark, folder = said.partition("=")
+    return (virtual.strip("/"), folder) if mark else ("", said)
+
+
+def with_settings(names: str, **settings: str | None) -> str:
+    """Names with settings behind each of those that are users' files.
+
+    Args:
+        settings: by one of SETTINGS, comma-separated.
+
+    Raises:
+        UsageError: a value that no word can have.
+    """
+    said = [(kind, one.strip()) for kind, values in settings.items() for one in (values or "").split(",")]
+    more = [f":{kind}={one}" for kind, one in said if one]
+    if wrong := next((one for one in more if ":" in one[1:]), ""):
+        raise UsageError(
+            f"--{wrong[1:].replace('=', ' ', 1)}: a colon ends a setting; write it in a file for --prelude"
+        )
+    made = [_with_settings(word, more) for word in split_names(names)]
+    return Words(made, given_in(names)) if made != split_names(names) else names
+
+
+def _with_settings(word: str, more: Sequence[str]) -> str:
+    if names_an_encoder(word):
+        there = [match[0] for match in re.finditer(_SETTING, word, re.I)]
+        return word + "".join(one for one in more if one not in there)
+    before, is_chain, then = word.rpartition(CHAIN)
+    name, is_codec, storage = before.rpartition("/")
+    if not (is_chain and is_codec):
+        return word
+    return f"{_with_settings(name, more)}/{storage}{CHAIN}{_with_settings(then, more)}"
+
+
+def with_pair(word: str | Path, pair: str) -> Path:
+    """A word of a file with two functions, ENCODE:DECODE, that it does not name."""
+    match = _match(word)
+    if not match:
+        return Path(f"{word}:{pair}")
+    settings = re.sub(rf":{ALL_PAIRS}=[^:,]*", "", match["settings"], flags=re.I)
+    return Path(f"{match['file']}:{pair}{settings}")
+
+
+def names_a_users_file(names: str) -> bool:
+    """Whether one of comma-separated names is a user's file, by itself or in a chain."""
+    return any(_with_settings(word, [":"]) != word for word in split_names(names))
+
+
+def split_names(names: str, folder: Path = Path()) -> list[str]:
+    """Comma-separated names, each once; a comma in a user's file is a part of its name, and one between an encoder and
+    its decoder in two files joins them.
+
+    Args:
+        folder: where files are looked for.
+    """
+    return split(names, lambda word: bool(_TWO.fullmatch(word)) or is_file(folder, str(file_of(word))))
+
+
+def parts_of(word: str) -> list[str]:
+    """The names in a word that are files, each with how it is read: those of a chain, or of its settings."""
+    if names_an_encoder(word) and (CHAIN not in word or is_file(Path(), str(file_of(word)))):
+        return [word]
+    before, is_chain, then = word.rpartition(CHAIN)
+    parts = (before.rpartition("/")[0], then) if is_chain and not is_file(Path(), word) else ()
+    return [one for part in parts for one in parts_of(part)] or files_in(word)
 
 
 def names_an_encoder(word: str) -> bool:
@@ -35,29 +173,45 @@ def _is_only_an_ending(word: str) -> bool:
 
 def file_of(word: str | Path) -> Path:
     """The file of a word: mine.hlsl of mine.hlsl:EncodeNormal:DecodeNormal."""
-    match = _PAIR.fullmatch(str(word))
+    match = _match(word)
     return Path(match["file"] if match else word)
 
 
+def files_of(word: str | Path) -> list[Path]:
+    """The file of a word; of one that names two, the encoder's and the decoder's."""
+    match = _match(word)
+    return [file_of(word), *([Path(match["other"])] if match and match.re is _TWO else [])]
+
+
+def without_settings(word: str | Path) -> str:
+    """A word without how its file is read."""
+    match = _match(word)
+    return str(word)[: match.start("settings")] if match else str(word)
+
+
 def files_in(word: str, folder: Path = Path()) -> list[str]:
-    """The files that a word names, as it has them: `mine.hlsl` of mine.hlsl:EncodeNormal:DecodeNormal, and both of
-    mine.glsl/rg8+best_fit:table=scales.npy.
+    """The files that a word names, as it has them: `mine.hlsl` of mine.hlsl:EncodeNormal:DecodeNormal, both of
+    mine.glsl/rg8+best_fit:table=scales.npy, and the folders of mine.hlsl:include=../library.
 
     Args:
         folder: where they are looked for.
     """
-    match = _PAIR.fullmatch(word)
+    match = _match(word)
     whole = match["file"] if match else word
-    if _is_file(folder, whole):
-        return [whole]
-    found = [value for setting in word.split(":") if _is_file(folder, value := setting.partition("=")[2])]
+    if is_file(folder, whole):
+        settings = settings_of(word)
+        others = [one for one in (*map(str, files_of(word)[1:]), *settings.preludes) if is_file(folder, one)]
+        folders = [root for _, root in settings.roots if (folder / root).is_dir()]
+        return list(dict.fromkeys([whole, *others, *folders]))
+    found = [value for setting in word.split(":") if is_file(folder, value := setting.partition("=")[2])]
     # A chain is ENCODING/STORAGE+ENCODING.
     before, is_chain, then = word.rpartition(CHAIN)
     parts = (before.rpartition("/")[0], then) if is_chain else ()
     return list(dict.fromkeys([*found, *(one for part in parts for one in files_in(part, folder))]))
 
 
-def _is_file(folder: Path, text: str) -> bool:
+def is_file(folder: Path, text: str) -> bool:
+    """Whether a text names a plain file."""
     try:
         return bool(text) and (folder / text).is_file()
     except (OSError, ValueError):  # no name that a file could have
@@ -69,7 +223,7 @@ def with_files(word: str, others: Mapping[str, str]) -> str:
     if not others:
         return word
     known = "|".join(map(re.escape, sorted(others, key=len, reverse=True)))
-    return re.sub(rf"(?<![^+=])(?:{known})(?![^:/+])", lambda match: others[match[0]], word)
+    return re.sub(rf"(?<![^+=,])(?:{known})(?![^:/+])", lambda match: others[match[0]], word)
 
 
 def lacks_a_function(word: str) -> bool:
@@ -80,8 +234,8 @@ def lacks_a_function(word: str) -> bool:
 
 def functions_of(word: str | Path) -> tuple[str, str] | None:
     """The two functions that a word names; None where it names none."""
-    match = _PAIR.fullmatch(str(word))
-    return (match["encode"], match["decode"]) if match else None
+    match = _match(word)
+    return (match["encode"], match["decode"]) if match and match["encode"] else None
 
 
 def twin_of(word: str | Path) -> Path:
@@ -90,5 +244,6 @@ def twin_of(word: str | Path) -> Path:
 
 
 def is_translated(word: str | Path) -> bool:
-    """Whether a word's file is in another language than GLSL."""
-    return file_of(word).suffix.lower() in TRANSLATED
+    """Whether a word's file is translated: it is in another language than GLSL, or more is said of it than its name."""
+    match = _match(word)
+    return file_of(word).suffix.lower() in TRANSLATED or bool(match and (match["encode"] or match["settings"]))

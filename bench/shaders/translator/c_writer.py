@@ -102,13 +102,13 @@ class CWriter(Writer):
         functions = [self._function(each) for each in program.functions]
         parts = [
             *map(self._struct, program.structs),
-            *self._head(program),
+            *self._head_parts(program),
             *(["\n".join(constants)] if constants else []),
             *functions,
         ]
         return "\n\n".join(parts) + "\n"
 
-    def _head(self, program: Program) -> list[str]:
+    def _head_parts(self, program: Program) -> list[str]:
         kinds = {getattr(node, "kind", "").partition("[")[0] for node in inside([program.constants, program.functions])}
         kinds |= {f"vec{kind[3]}" for kind in kinds & set(MATRICES)}
         includes = ["#include <math.h>", "#include <stdbool.h>", "#include <stdint.h>", "#include <string.h>"]
@@ -136,9 +136,9 @@ class CWriter(Writer):
     def _kind(self, kind: str) -> str:
         return SCALARS.get(kind) or f"{self._prefix}_{kind}"
 
-    def _global(self, constant: Declare) -> str:
+    def _global_text(self, constant: Declare) -> str:
         self._used, self._count = set(self._taken), 0
-        text, hoisted = self._apart(lambda: self._declared(constant), INDENT)
+        text, hoisted = self._apart(lambda: self._declaration_text(constant), INDENT)
         if not hoisted and not any(isinstance(node, Call | Name) for node in inside(constant.value)):
             return f"static const {text};"
         if "[" in constant.kind:
@@ -152,7 +152,7 @@ class CWriter(Writer):
     def _name(self, name: str) -> str:
         return f"{name}()" if name in self._computed else super()._name(name)
 
-    def _declared(self, declared: Declare) -> str:
+    def _declaration_text(self, declared: Declare) -> str:
         kind, _, count = declared.kind.partition("[")
         value, array = declared.value, f"[{count}" if count else ""
         # What is read before it is assigned to is the same wherever it is compiled.
@@ -173,7 +173,7 @@ class CWriter(Writer):
     # Statements: what they need is said before them.
 
     def _statement(self, statement: Statement, indent: str) -> str:
-        (text, hoisted) = self._apart(lambda: self._one(statement, indent), indent)
+        (text, hoisted) = self._apart(lambda: self._uncommented_text(statement, indent), indent)
         return self._comments(statement, indent) + hoisted + text
 
     def _apart(self, write: Callable[[], str], indent: str) -> tuple[str, str]:
@@ -185,7 +185,7 @@ class CWriter(Writer):
         self._hoisted, self._indent = outer
         return text, hoisted
 
-    def _one(self, statement: Statement, indent: str) -> str:
+    def _uncommented_text(self, statement: Statement, indent: str) -> str:
         match statement:
             case For():
                 return self._loop(statement, indent)
@@ -201,10 +201,10 @@ class CWriter(Writer):
     def _loop(self, loop: For, indent: str) -> str:
         known = counted(loop)
         self._ranges |= known
-        start = self._plain(loop.start) if loop.start else ""
+        start = self._simple_text(loop.start) if loop.start else ""
         inner = indent + INDENT
         condition, before = self._apart(lambda: self._text(loop.condition), inner)
-        step, before_step = self._apart(lambda: self._plain(loop.step) if loop.step else "", inner)
+        step, before_step = self._apart(lambda: self._simple_text(loop.step) if loop.step else "", inner)
         if before or before_step:
             text = self._statement(self._loop_without_head(loop), indent)
         else:
@@ -213,16 +213,16 @@ class CWriter(Writer):
             del self._ranges[name]
         return text
 
-    def _plain(self, statement: Statement) -> str:
+    def _simple_text(self, statement: Statement) -> str:
         match statement:
             case Assign(target, mark, value):
                 if mark != "=" and self._is_plain(target, mark, value):
-                    return super()._plain(statement)
+                    return super()._simple_text(statement)
                 made = value if mark == "=" else Binary(target.kind, mark[:-1], target, value)
                 return f"{self._place(target)} = {self._whole(made)}"
             case Return(value) if value is not None:
                 return f"return {self._whole(value)}"
-        return super()._plain(statement)
+        return super()._simple_text(statement)
 
     def _is_plain(self, target: Expression, mark: str, value: Expression) -> bool:
         """Whether C's own operator with = does it."""
@@ -235,12 +235,12 @@ class CWriter(Writer):
         assert value
         if isinstance(value, Elements):
             values = [self._whole(one, is_initial=True) for one in value.values]
-            return f"{{{self._rows(values)}}}"
+            return f"{{{self._rows_text(values)}}}"
         if value.kind in SCALARS:
             return self._text(value)
         if isinstance(value, Name) or (isinstance(value, Call) and value.is_own):
-            return self._written(value)[0]
-        whole = self._assembled(self._parts(value), value.kind)
+            return self._text_and_level(value)[0]
+        whole = self._assembled_text(self._parts(value), value.kind)
         return whole.removeprefix(f"({self._kind(value.kind)})") if is_initial else whole
 
     # Places: what can be assigned to, and read without being computed.
@@ -277,7 +277,7 @@ class CWriter(Writer):
 
     # Values: a vector is the list of its components.
 
-    def _written(self, value: Expression) -> Part:
+    def _text_and_level(self, value: Expression) -> Part:
         """A scalar; or a whole vector that has a name."""
         if isinstance(value, Name):
             return self._name(value.name), PRIMARY
@@ -292,37 +292,37 @@ class CWriter(Writer):
             case Literal():
                 return [(self._literal(value), PRIMARY)]
             case Name(kind, name) if name in self._computed and kind not in SCALARS:
-                return self._made(self._name(name), kind)
+                return self._made_parts(self._name(name), kind)
             case Name():
-                return self._members(self._name(value.name), value.kind)
+                return self._member_parts(self._name(value.name), value.kind)
             case Unary(kind, "-", inner) if scalar_of(kind) == "int" and not isinstance(inner, Literal):
                 return [self._helper("subtract", "0", part[0]) for part in self._parts(inner)]
             case Unary(_, mark, inner):
                 parts = self._parts(inner)
-                return [(f"{mark}{_in(part, UNARY + (mark == part[0][:1]))}", UNARY) for part in parts]
+                return [(f"{mark}{_bracketed(part, UNARY + (mark == part[0][:1]))}", UNARY) for part in parts]
             case Binary():
-                return self._combination(value)
+                return self._combined_parts(value)
             case Choice():
-                return self._choices(value)
+                return self._choice_parts(value)
             case Call():
-                return self._calls(value)
+                return self._call_parts(value)
             case Construct():
-                return self._constructs(value)
+                return self._constructed_parts(value)
             case Swizzle(_, inner, names):
                 parts = self._parts(inner)
                 return [parts[FIELDS.index(name)] for name in names]
             case Index():
-                return self._indexed(value)
+                return self._indexed_parts(value)
         raise TranslationError(f"a {type(value).__name__} of {value.kind} cannot be written in C")
 
-    def _indexed(self, value: Index) -> list[Part]:
+    def _indexed_parts(self, value: Index) -> list[Part]:
         inner, at = value.value, value.at
         base = inner
         while isinstance(base, Index | Swizzle):
             base = base.value
         is_there = isinstance(base, Name) and base.name not in self._computed
         if is_there and not isinstance(inner, Swizzle):
-            return self._members(self._place(value), value.kind)
+            return self._member_parts(self._place(value), value.kind)
         if inner.kind.endswith("]"):
             raise TranslationError("an element of an array without a name cannot be written in C")
         parts, size = self._parts(inner), size_of(value.kind)
@@ -330,9 +330,9 @@ class CWriter(Writer):
             return parts[int(at.text, 0) * size :][:size]
         whole = self._temporary(self._kind(inner.kind), self._whole(inner))
         count = len(parts) // size
-        return self._members(f"(&{whole}.x)[{self._within(at, count)}]", value.kind)
+        return self._member_parts(f"(&{whole}.x)[{self._within(at, count)}]", value.kind)
 
-    def _members(self, name: str, kind: str) -> list[Part]:
+    def _member_parts(self, name: str, kind: str) -> list[Part]:
         if kind in MATRICES:
             fields = FIELDS[: int(kind[3])]
             return [(f"{name}.{column}.{row}", PRIMARY) for column in fields for row in fields]
@@ -348,40 +348,40 @@ class CWriter(Writer):
 
     def _temporary(self, kind: str, text: str) -> str:
         """A value under a name of its own, before the statement."""
-        name = self._fresh()
+        name = self._fresh_name()
         self._hoisted.append(f"{self._indent}const {kind} {name} = {text};\n")
         return name
 
-    def _fresh(self) -> str:
+    def _fresh_name(self) -> str:
         self._count += 1
         while (name := f"t{self._count}") in self._used:
             self._count += 1
         return name
 
-    def _broad(self, value: Expression, size: int) -> list[Part]:
+    def _broad_parts(self, value: Expression, size: int) -> list[Part]:
         """A value's components, a scalar as many times."""
         parts = self._parts(value)
         return [self._once(parts[0], scalar_of(value.kind))] * size if len(parts) == 1 < size else parts
 
-    def _combination(self, value: Binary) -> list[Part]:
+    def _combined_parts(self, value: Binary) -> list[Part]:
         left, right, mark = value.left, value.right, value.operator
         if mark == "*" and "mat" in left.kind and right.kind != "float":
-            return self._product(value)
+            return self._product_parts(value)
         if mark == "*" and "mat" in right.kind and left.kind != "float":
-            return self._product(value)
+            return self._product_parts(value)
         if mark in ("&&", "||"):
             return [self._logical(value)]
         level, size = BINDING[mark], self._size(value)
         scalar = scalar_of(left.kind)
         if scalar in WHOLE and mark in OPERATIONS and not self._is_safe(value):
             name = f"{'u' * (scalar == 'uint')}{OPERATIONS[mark]}"
-            pairs = zip(self._broad(left, size), self._broad(right, size), strict=True)
+            pairs = zip(self._broad_parts(left, size), self._broad_parts(right, size), strict=True)
             return [self._helper(name, a[0], b[0]) for a, b in pairs]
         if size == 1:
             texts = self._operand(value, left, level), self._operand(value, right, level + 1)
             return [(f"{texts[0]} {mark} {texts[1]}", level)]
-        pairs = zip(self._broad(left, size), self._broad(right, size), strict=True)
-        return [(f"{_in(a, level)} {mark} {_in(b, level + 1)}", level) for a, b in pairs]
+        pairs = zip(self._broad_parts(left, size), self._broad_parts(right, size), strict=True)
+        return [(f"{_bracketed(a, level)} {mark} {_bracketed(b, level + 1)}", level) for a, b in pairs]
 
     def _size(self, value: Binary) -> int:
         """How many components an operation has."""
@@ -414,58 +414,60 @@ class CWriter(Writer):
         return None
 
     def _logical(self, value: Binary) -> Part:
-        """&& and ||: what is right of them is computed where the left does not decide."""
+        """The text of && or ||, and how tightly it binds; a right side that takes statements is an `if` before it."""
         level = BINDING[value.operator]
         left = self._operand(value, value.left, level)
         text, hoisted = self._apart(lambda: self._operand(value, value.right, level + 1), self._indent + INDENT)
         if not hoisted:
             return f"{left} {value.operator} {text}", level
-        name, no = self._fresh(), "" if value.operator == "&&" else "!"
+        name, no = self._fresh_name(), "" if value.operator == "&&" else "!"
         self._hoisted.append(f"{self._indent}bool {name} = {left};\n")
         inner = f"{hoisted}{self._indent}{INDENT}{name} = {text};\n"
         self._hoisted.append(f"{self._indent}if ({no}{name}) {{\n{inner}{self._indent}}}\n")
         return name, PRIMARY
 
-    def _product(self, value: Binary) -> list[Part]:
+    def _product_parts(self, value: Binary) -> list[Part]:
         """A matrix's columns by a vector from the left, or summed by a vector's components."""
         left, right = value.left, value.right
         size = int((left if "mat" in left.kind else right).kind[3])
         if "mat" not in left.kind:
-            n, columns = self._named(left), self._parts(right)
-            return [_sum(list(zip(n, columns[at : at + size], strict=True))) for at in range(0, size**2, size)]
-        columns, others = self._named(left), self._named(right)
+            n, columns = self._named_parts(left), self._parts(right)
+            return [
+                _sum_of_products(list(zip(n, columns[at : at + size], strict=True))) for at in range(0, size**2, size)
+            ]
+        columns, others = self._named_parts(left), self._named_parts(right)
         return [
-            _sum([(columns[size * at + row], others[first + at]) for at in range(size)])
+            _sum_of_products([(columns[size * at + row], others[first + at]) for at in range(size)])
             for first in range(0, len(others), size)
             for row in range(size)
         ]
 
-    def _named(self, value: Expression) -> list[Part]:
+    def _named_parts(self, value: Expression) -> list[Part]:
         """A vector's components, each computed once."""
         return [self._once(part, scalar_of(value.kind)) for part in self._parts(value)]
 
-    def _choices(self, value: Choice) -> list[Part]:
+    def _choice_parts(self, value: Choice) -> list[Part]:
         count = int(value.kind[3]) ** 2 if value.kind in MATRICES else size_of(value.kind)
         if size_of(value.condition.kind) > 1:
             parts = zip(*(self._parts(one) for one in (value.condition, value.chosen, value.other)), strict=True)
-            return [_chosen(*three) for three in parts]
+            return [_choice_part(*three) for three in parts]
         condition = self._text(value.condition, CHOICE + 1), UNARY
         inner = self._indent + INDENT
         chosen, before_chosen = self._parts_apart(value.chosen, inner)
         other, before_other = self._parts_apart(value.other, inner)
         if not before_chosen and not before_other:
             condition = self._once(condition, "bool") if count > 1 else condition
-            return [_chosen(condition, a, b) for a, b in zip(chosen, other, strict=True)]
+            return [_choice_part(condition, a, b) for a, b in zip(chosen, other, strict=True)]
         # What one of the two needs is computed where that one is chosen.
-        name, kind = self._fresh(), self._kind(value.kind)
-        texts = [self._assembled(parts, value.kind) for parts in (chosen, other)]
+        name, kind = self._fresh_name(), self._kind(value.kind)
+        texts = [self._assembled_text(parts, value.kind) for parts in (chosen, other)]
         nothing = "{0}" if value.kind not in SCALARS else "0"
         self._hoisted.append(
             f"{self._indent}{kind} {name} = {nothing};\n{self._indent}if ({condition[0]}) {{\n{before_chosen}"
             f"{inner}{name} = {texts[0]};\n{self._indent}}} else {{\n{before_other}{inner}{name} = {texts[1]};\n"
             f"{self._indent}}}\n"
         )
-        return self._members(name, value.kind)
+        return self._member_parts(name, value.kind)
 
     def _parts_apart(self, value: Expression, indent: str) -> tuple[list[Part], str]:
         parts: list[Part] = []
@@ -476,7 +478,7 @@ class CWriter(Writer):
 
         return parts, self._apart(write, indent)[1]
 
-    def _assembled(self, parts: list[Part], kind: str) -> str:
+    def _assembled_text(self, parts: list[Part], kind: str) -> str:
         texts = [text for text, _ in parts]
         if kind in SCALARS:
             return texts[0]
@@ -485,16 +487,16 @@ class CWriter(Writer):
             texts = [f"{{{', '.join(texts[at : at + size])}}}" for at in range(0, size**2, size)]
         return f"({self._kind(kind)}){{{', '.join(texts)}}}"
 
-    def _calls(self, value: Call) -> list[Part]:
+    def _call_parts(self, value: Call) -> list[Part]:
         if value.is_own:
-            text = self._written(value)[0]
-            return [(text, PRIMARY)] if value.kind in SCALARS else self._made(text, value.kind)
+            text = self._text_and_level(value)[0]
+            return [(text, PRIMARY)] if value.kind in SCALARS else self._made_parts(text, value.kind)
         if value.name == FETCH:
-            return self._fetched(value)
+            return self._fetched_parts(value)
         if value.name in OF_WHOLE:
             return getattr(self, f"_{value.name}")(*value.arguments)
         scalar, size = scalar_of(value.kind), size_of(value.kind)
-        given = [self._broad(a, size) for a in value.arguments]
+        given = [self._broad_parts(a, size) for a in value.arguments]
         if scalar == "int" and value.name in ("abs", "sign"):
             return [self._helper(f"i{value.name}", x) for ((x, _),) in zip(*given, strict=True)]
         if value.name in FORMULAS:
@@ -506,9 +508,9 @@ class CWriter(Writer):
             return [(f"1.0f / sqrtf({x})", BINDING["/"]) for ((x, _),) in zip(*given, strict=True)]
         return [self._scalar_call(value.name, scalar, parts) for parts in zip(*given, strict=True)]
 
-    def _made(self, text: str, kind: str) -> list[Part]:
+    def _made_parts(self, text: str, kind: str) -> list[Part]:
         """A structure under a name, as its components."""
-        return self._members(self._temporary(self._kind(kind), text), kind)
+        return self._member_parts(self._temporary(self._kind(kind), text), kind)
 
     def _scalar_call(self, name: str, scalar: str, parts: tuple[Part, ...]) -> Part:
         texts, sign = [text for text, _ in parts], LETTERS[scalar]
@@ -523,48 +525,56 @@ class CWriter(Writer):
         return f"{FUNCTIONS[name]}({', '.join(texts)})", PRIMARY
 
     def _smoothstep(self, low: Part, high: Part, x: Part) -> Part:
-        share = f"({_in(x, 10)} - {_in(low, 11)}) / ({_in(high, 10)} - {_in(low, 11)})"
+        share = f"({_bracketed(x, 10)} - {_bracketed(low, 11)}) / ({_bracketed(high, 10)} - {_bracketed(low, 11)})"
         t = self._temporary("float", self._helper("min", self._helper("max", share, "0.0f")[0], "1.0f")[0])
         return f"{t} * {t} * (3.0f - 2.0f * {t})", BINDING["*"]
 
     def _dot(self, a: Expression, b: Expression) -> list[Part]:
-        return [_sum(list(zip(self._named(a), self._named(b), strict=True)))]
+        return [_sum_of_products(list(zip(self._named_parts(a), self._named_parts(b), strict=True)))]
 
     def _length(self, value: Expression) -> list[Part]:
-        parts = self._named(value)
-        return [(f"sqrtf({_sum(list(zip(parts, parts, strict=True)))[0]})", PRIMARY)]
+        parts = self._named_parts(value)
+        return [(f"sqrtf({_sum_of_products(list(zip(parts, parts, strict=True)))[0]})", PRIMARY)]
 
     def _distance(self, a: Expression, b: Expression) -> list[Part]:
         return self._length(Binary(a.kind, "-", a, b))
 
     def _reflect(self, incident: Expression, normal: Expression) -> list[Part]:
-        i, n = self._named(incident), self._named(normal)
-        twice = self._once((f"2.0f * ({_sum(list(zip(n, i, strict=True)))[0]})", BINDING["*"]), "float")
-        return [(f"{_in(a, 10)} - {twice[0]} * {_in(b, 12)}", BINDING["-"]) for a, b in zip(i, n, strict=True)]
+        i, n = self._named_parts(incident), self._named_parts(normal)
+        twice = self._once((f"2.0f * ({_sum_of_products(list(zip(n, i, strict=True)))[0]})", BINDING["*"]), "float")
+        return [
+            (f"{_bracketed(a, 10)} - {twice[0]} * {_bracketed(b, 12)}", BINDING["-"]) for a, b in zip(i, n, strict=True)
+        ]
 
     def _cross(self, a: Expression, b: Expression) -> list[Part]:
-        u, v = self._named(a), self._named(b)
+        u, v = self._named_parts(a), self._named_parts(b)
         pairs = ((1, 2), (2, 0), (0, 1))
         minus = BINDING["-"]
-        return [(f"{_in(u[i], 11)} * {_in(v[j], 12)} - {_in(u[j], 11)} * {_in(v[i], 12)}", minus) for i, j in pairs]
+        return [
+            (
+                f"{_bracketed(u[i], 11)} * {_bracketed(v[j], 12)} - {_bracketed(u[j], 11)} * {_bracketed(v[i], 12)}",
+                minus,
+            )
+            for i, j in pairs
+        ]
 
     def _normalize(self, value: Expression) -> list[Part]:
-        parts = self._named(value)
-        length2 = _sum(list(zip(parts, parts, strict=True)))
+        parts = self._named_parts(value)
+        length2 = _sum_of_products(list(zip(parts, parts, strict=True)))
         scale = self._once((f"1.0f / sqrtf({length2[0]})", BINDING["/"]), "float")
-        return [(f"{_in(part, 11)} * {scale[0]}", 11) for part in parts]
+        return [(f"{_bracketed(part, 11)} * {scale[0]}", 11) for part in parts]
 
     def _transpose(self, value: Expression) -> list[Part]:
         size, parts = int(value.kind[3]), self._parts(value)
         return [parts[size * row + column] for column in range(size) for row in range(size)]
 
     def _all(self, value: Expression) -> list[Part]:
-        return [_joined("&&", self._parts(value))]
+        return [_joined_part("&&", self._parts(value))]
 
     def _any(self, value: Expression) -> list[Part]:
-        return [_joined("||", self._parts(value))]
+        return [_joined_part("||", self._parts(value))]
 
-    def _fetched(self, value: Call) -> list[Part]:
+    def _fetched_parts(self, value: Call) -> list[Part]:
         table, place, _ = value.arguments
         name = getattr(table, "name", "")
         height, width, channels = self._sizes[name]
@@ -576,21 +586,21 @@ class CWriter(Writer):
         parts = [(f"{name}[{first}{f' + {channel}' if channel else ''}]", PRIMARY) for channel in range(channels)]
         return parts + [("0.0f", PRIMARY)] * (4 - channels)
 
-    def _constructs(self, value: Construct) -> list[Part]:
+    def _constructed_parts(self, value: Construct) -> list[Part]:
         parts = [(part, scalar_of(a.kind)) for a in value.arguments for part in self._parts(a)]
         if value.kind in MATRICES:
             return [part for part, _ in parts]
         scalar, size = scalar_of(value.kind), size_of(value.kind)
         if len(parts) == 1 < size:
             parts = [(self._once(parts[0][0], parts[0][1]), parts[0][1])] * size
-        return [self._cast(part, kind, scalar) for part, kind in parts[:size]]
+        return [self._cast_part(part, kind, scalar) for part, kind in parts[:size]]
 
-    def _cast(self, part: Part, kind: str, scalar: str) -> Part:
+    def _cast_part(self, part: Part, kind: str, scalar: str) -> Part:
         if kind == scalar:
             return part
         if kind == "float" and scalar in WHOLE:
             return self._helper(f"to_{scalar}", part[0])
-        return f"({SCALARS[scalar]}){_in(part, UNARY)}", UNARY
+        return f"({SCALARS[scalar]}){_bracketed(part, UNARY)}", UNARY
 
 
 # Functions of whole vectors, each a method of its name.
@@ -601,18 +611,18 @@ def _without_comments(statement: Statement) -> Statement:
     return replace(statement, above=[])
 
 
-def _in(part: Part, least: int) -> str:
+def _bracketed(part: Part, least: int) -> str:
     return f"({part[0]})" if part[1] < least else part[0]
 
 
-def _chosen(condition: Part, chosen: Part, other: Part) -> Part:
-    return f"{_in(condition, CHOICE + 1)} ? {_in(chosen, CHOICE + 1)} : {other[0]}", CHOICE
+def _choice_part(condition: Part, chosen: Part, other: Part) -> Part:
+    return f"{_bracketed(condition, CHOICE + 1)} ? {_bracketed(chosen, CHOICE + 1)} : {other[0]}", CHOICE
 
 
-def _joined(mark: str, parts: list[Part]) -> Part:
+def _joined_part(mark: str, parts: list[Part]) -> Part:
     level = BINDING[mark]
-    return f" {mark} ".join(_in(part, level + 1) for part in parts), level
+    return f" {mark} ".join(_bracketed(part, level + 1) for part in parts), level
 
 
-def _sum(pairs: list[tuple[Part, Part]]) -> Part:
-    return " + ".join(f"{_in(a, 11)} * {_in(b, 12)}" for a, b in pairs), BINDING["+"]
+def _sum_of_products(pairs: list[tuple[Part, Part]]) -> Part:
+    return " + ".join(f"{_bracketed(a, 11)} * {_bracketed(b, 12)}" for a, b in pairs), BINDING["+"]

@@ -72,18 +72,18 @@ class GlslParser(Parser):
         self._declared(name, value.kind)
 
     def _program(self) -> Program:
-        while self._next is not END:
+        while self._next_token is not END:
             if not self._skip(";"):
                 self._global()
         return self._made
 
     def _global(self) -> None:
-        first = self._next
+        first = self._next_token
         if self._skip("uniform"):
             self._table()
         elif self._skip("precision"):
             self._at += 3
-        elif self._next.text == "const":
+        elif self._next_token.text == "const":
             self._constants_of(self._declaration())
         else:
             self._function(first)
@@ -92,18 +92,18 @@ class GlslParser(Parser):
         self._made.constants += [each for each in declared if isinstance(each, Declare)]
 
     def _table(self) -> None:
-        while self._next.text in PRECISIONS:
+        while self._next_token.text in PRECISIONS:
             self._take()
         self._take("sampler2D")
-        name = self._word().text
+        name = self._word_token().text
         self._take(";")
         self._made.tables.append(Table(name))
         self._declared(name, "sampler2D")
 
     def _kind(self) -> str:
-        while self._next.text in PRECISIONS:
+        while self._next_token.text in PRECISIONS:
             self._take()
-        token = self._word()
+        token = self._word_token()
         if token.text not in TYPES and token.text != "void":
             self._at -= 1
             if token.text in UNTRANSLATED:
@@ -112,7 +112,7 @@ class GlslParser(Parser):
         return token.text
 
     def _function(self, first: Token) -> None:
-        kind, name = self._sized(self._kind()), self._word().text
+        kind, name = self._sized(self._kind()), self._word_token().text
         self._take("(")
         parameters = self._parameters()
         if self._skip(";"):
@@ -132,19 +132,19 @@ class GlslParser(Parser):
         found: list[Parameter] = []
         while not self._skip(")"):
             is_changed = False
-            while self._next.text in ("const", "in", "inout"):
+            while self._next_token.text in ("const", "in", "inout"):
                 is_changed |= self._take().text == "inout"
             kind = self._kind()
-            name = "" if self._next.text in (",", ")") else self._word().text
+            name = "" if self._next_token.text in (",", ")") else self._word_token().text
             found.append(Parameter(self._sized(kind), name or f"unused{len(found)}", is_changed))
-            if self._next.text != ")":
+            if self._next_token.text != ")":
                 self._take(",")
         return found
 
     def _sized(self, kind: str) -> str:
         """A type, or an array of it where a length follows in brackets."""
         length = self._length()
-        return kind if length is None else self._array_of(kind, length)
+        return kind if length is None else self._array_kind(kind, length)
 
     def _length(self) -> Expression | None:
         if not self._skip("["):
@@ -156,7 +156,7 @@ class GlslParser(Parser):
     # Statements.
 
     def _body(self) -> list[Statement]:
-        if self._next.text == "{":
+        if self._next_token.text == "{":
             return self._block()
         self._scopes.append({})
         found = self._deeper(self._statement)
@@ -164,22 +164,22 @@ class GlslParser(Parser):
         return found
 
     def _statement(self) -> list[Statement]:
-        first = self._next
+        first = self._next_token
         if self._skip(";"):
             return []
         if first.text == "{":
             return [Block(self._block())]
-        if (first.text in TYPES and self._ahead(1) != "(") or first.text in ("const", *PRECISIONS):
+        if (first.text in TYPES and self._text_ahead(1) != "(") or first.text in ("const", *PRECISIONS):
             made = self._declaration()
         else:
-            made = [self._simple(first)]
+            made = [self._simple_statement(first)]
         if made:
             made[0].above = [*first.above, *made[0].above]
             if not isinstance(made[-1], If | For | While | Block):
                 made[-1].behind = self._tokens[self._at - 1].behind
         return made
 
-    def _simple(self, first: Token) -> Statement:
+    def _simple_statement(self, first: Token) -> Statement:
         if self._skip("if"):
             return self._if()
         if self._skip("for"):
@@ -192,12 +192,12 @@ class GlslParser(Parser):
         if self._skip("do"):
             return self._do()
         if first.text in ("break", "continue"):
-            return Leave(self._ended(self._take().text))
+            return Leave(self._before_semicolon(self._take().text))
         if self._skip("return"):
-            return Return(self._ended(None if self._next.text == ";" else self._expression()))
-        return self._ended(self._assignment())
+            return Return(self._before_semicolon(None if self._next_token.text == ";" else self._expression()))
+        return self._before_semicolon(self._assignment())
 
-    def _ended(self, what):
+    def _before_semicolon(self, what):
         self._take(";")
         return what
 
@@ -212,9 +212,9 @@ class GlslParser(Parser):
         self._take("(")
         self._scopes.append({})
         starts = self._starts()
-        condition = Literal("bool", "true") if self._next.text == ";" else self._expression()
+        condition = Literal("bool", "true") if self._next_token.text == ";" else self._expression()
         self._take(";")
-        step = None if self._next.text == ")" else self._assignment()
+        step = None if self._next_token.text == ")" else self._assignment()
         self._take(")")
         body = self._body()
         self._scopes.pop()
@@ -226,9 +226,9 @@ class GlslParser(Parser):
         """What stands first between a loop's parentheses."""
         if self._skip(";"):
             return []
-        if self._next.text in TYPES or self._next.text in ("const", *PRECISIONS):
+        if self._next_token.text in TYPES or self._next_token.text in ("const", *PRECISIONS):
             return self._declaration()
-        return [self._ended(self._assignment())]
+        return [self._before_semicolon(self._assignment())]
 
     def _do(self) -> Statement:
         """do BODY while (CONDITION), as a loop that does not ask before its first turn."""
@@ -247,7 +247,7 @@ class GlslParser(Parser):
     def _declaration(self) -> list[Statement]:
         """One statement for each name; a constant that stands for another is that other."""
         is_constant = self._skip("const")
-        kind, is_open = self._kind(), self._next.text == "[" and self._ahead(1) == "]"
+        kind, is_open = self._kind(), self._next_token.text == "[" and self._text_ahead(1) == "]"
         self._at += 2 * is_open
         kind = self._sized(kind)
         found = [d for d in [self._declarator(kind, is_constant, is_open)] if d]
@@ -258,8 +258,8 @@ class GlslParser(Parser):
 
     def _declarator(self, kind: str, is_constant: bool, is_open: bool) -> Statement | None:
         """A name of a declaration; `is_open` where it is an array as long as its value."""
-        name = self._word().text
-        if self._next.text == "[" and self._ahead(1) == "]":
+        name = self._word_token().text
+        if self._next_token.text == "[" and self._text_ahead(1) == "]":
             self._at += 2
             is_open = True
         kind = self._sized(kind)
@@ -297,24 +297,24 @@ class GlslParser(Parser):
             raise self._error(f"{token.text} is not expected here")
         if self._skip("("):
             return self._called(token.text, self._arguments(), token.place)
-        return self._named(token)
+        return self._name_expression(token)
 
     def _array(self, kind: str) -> Expression:
-        if self._next.text != "]":
+        if self._next_token.text != "]":
             self._expression()
         self._take("]")
         self._take("(")
         values = [self._converted(value, scalar_of(kind)) for value in self._arguments()]
         return Elements(f"{kind}[{len(values)}]", values)
 
-    def _indexed(self, value: Expression, at: Expression) -> Expression:
+    def _index_expression(self, value: Expression, at: Expression) -> Expression:
         """An element; of an array that has no name, one of its values."""
-        return self._element_of(value, at) if isinstance(value, Elements) else super()._indexed(value, at)
+        return self._element_of(value, at) if isinstance(value, Elements) else super()._index_expression(value, at)
 
     def _element_of(self, array: Elements, at: Expression) -> Expression:
         found = array.values[-1]
         for number, value in reversed([*enumerate(array.values[:-1])]):
-            found = self._chosen(Binary("bool", "==", at, Literal(at.kind, str(number))), value, found)
+            found = self._choice_of(Binary("bool", "==", at, Literal(at.kind, str(number))), value, found)
         return found
 
     def _operation(self, mark: str, left: Expression, right: Expression) -> Expression:

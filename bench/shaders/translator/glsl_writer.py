@@ -36,20 +36,20 @@ class GlslWriter(Writer):
         fields = "".join(f"{INDENT}{self._kind(kind)} {name};\n" for name, kind in struct.kinds.items())
         return f"struct {struct.name} {{\n{fields}}};"
 
-    def _written(self, value: Expression) -> tuple[str, int]:
+    def _text_and_level(self, value: Expression) -> tuple[str, int]:
         match value:
             case Unary(kind, "!", inner) if size_of(kind) > 1:
                 return f"not({self._text(inner)})", PRIMARY
-        return super()._written(value)
+        return super()._text_and_level(value)
 
-    def _binary(self, value: Binary) -> tuple[str, int]:
+    def _binary_and_level(self, value: Binary) -> tuple[str, int]:
         if value.kind.startswith("bvec") and value.operator in NAMES:
             return f"{NAMES[value.operator]}({self._text(value.left)}, {self._text(value.right)})", PRIMARY
-        return super()._binary(value)
+        return super()._binary_and_level(value)
 
-    def _choice(self, value: Choice) -> tuple[str, int]:
+    def _choice_and_level(self, value: Choice) -> tuple[str, int]:
         if size_of(value.condition.kind) == 1:
-            return super()._choice(value)
+            return super()._choice_and_level(value)
         return f"mix({', '.join(map(self._text, (value.other, value.chosen, value.condition)))})", PRIMARY
 
 

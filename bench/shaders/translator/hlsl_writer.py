@@ -80,8 +80,8 @@ class HlslWriter(Writer):
     def _table(self, table: Table) -> str:
         return f"Texture2D<float4> {table.name};"
 
-    def _global(self, constant: Declare) -> str:
-        return f"static const {self._declared(constant)};"
+    def _global_text(self, constant: Declare) -> str:
+        return f"static const {self._declaration_text(constant)};"
 
     def _elements(self, value: Elements) -> str:
         return f"{{{self._listed(value)}}}"
@@ -90,14 +90,14 @@ class HlslWriter(Writer):
         table, place, level = map(self._text, value.arguments)
         return f"{table}.Load(int3({place}, {level}))"
 
-    def _binary(self, value: Binary) -> tuple[str, int]:
+    def _binary_and_level(self, value: Binary) -> tuple[str, int]:
         if value.operator == "*" and "mat" in value.left.kind + value.right.kind:
             return f"mul({self._text(value.right)}, {self._text(value.left)})", PRIMARY
         # glslang makes one truth value of two constant vectors.
         if value.operator in COMPARES and size_of(value.kind) > 1 and self._is_constant(value):
             parts = ", ".join(self._component(value, field) for field in FIELDS[: size_of(value.kind)])
             return f"{self._kind(value.kind)}({parts})", PRIMARY
-        return super()._binary(value)
+        return super()._binary_and_level(value)
 
     def _is_constant(self, value: Expression) -> bool:
         nodes = list(inside(value))
@@ -108,11 +108,11 @@ class HlslWriter(Writer):
         """An operand: Slang takes `a < b && c > (d)` for a generic function of b && c."""
         return super()._operand(parent, child, UNARY if parent.operator in TRUTHS and is_less(child) else least)
 
-    def _choice(self, value: Choice) -> tuple[str, int]:
+    def _choice_and_level(self, value: Choice) -> tuple[str, int]:
         """Of vectors one component after the other: HLSL 2021 has no `?:` of vectors, earlier ones have no select."""
         size = size_of(value.condition.kind)
         if size == 1:
-            text, level = super()._choice(value)
+            text, level = super()._choice_and_level(value)
             condition = self._text(value.condition)
             is_unclear = is_less(value.condition) and ">" in text
             return f"({condition}){text.removeprefix(condition)}" if is_unclear else text, level

@@ -68,8 +68,8 @@ class MslWriter(Writer):
         self._reads = tables_read(program)
         return super().program(program)
 
-    def _global(self, constant: Declare) -> str:
-        return f"constant {self._declared(constant)};"
+    def _global_text(self, constant: Declare) -> str:
+        return f"constant {self._declaration_text(constant)};"
 
     def _signature(self, function: Function) -> str:
         read = "".join(f", {TABLE} {name}" for name in self._reads[function.name])
@@ -82,9 +82,9 @@ class MslWriter(Writer):
         text = super()._call(value)
         return text.removesuffix(")") + "".join(f", {name}" for name in self._reads.get(value.name, [])) + ")"
 
-    def _choice(self, value: Choice) -> tuple[str, int]:
+    def _choice_and_level(self, value: Choice) -> tuple[str, int]:
         if size_of(value.condition.kind) == 1:
-            return super()._choice(value)
+            return super()._choice_and_level(value)
         return f"select({self._arguments((value.other, value.chosen, value.condition))})", PRIMARY
 
     def _fetch(self, value: Call) -> str:
@@ -102,10 +102,10 @@ class MslWriter(Writer):
         from_kind, to_kind = scalar_of(given.kind), scalar_of(value.kind)
         if size > 1 and from_kind == "bool":
             one, zero = (Construct(value.kind, [Literal(to_kind, text)]) for text in _ends(to_kind))
-            return self._choice(Choice(value.kind, given, one, zero))[0]
+            return self._choice_and_level(Choice(value.kind, given, one, zero))[0]
         if size > 1 and to_kind == "bool":
             zero = Construct(given.kind, [Literal(from_kind, _ends(from_kind)[1])])
-            return f"({self._binary(Binary(value.kind, '!=', given, zero))[0]})"
+            return f"({self._binary_and_level(Binary(value.kind, '!=', given, zero))[0]})"
         return f"{self._kind(value.kind)}({self._text(given)})"
 
 

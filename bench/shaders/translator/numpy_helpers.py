@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 
 # By name; each is written where the file or another one needs it.
@@ -88,6 +89,9 @@ HELPERS: Mapping[str, str] = MappingProxyType(
         "_length": '''def _length(v):
     """Lengths of vectors."""
     return np.sqrt(_dot(v, v))''',
+        "_distance": '''def _distance(a, b):
+    """Lengths of differences."""
+    return _length(a - b)''',
         "_normalize": '''def _normalize(v):
     """Vectors of length 1."""
     return v * (1.0 / np.sqrt(_dot(v, v)))[..., None]''',
@@ -115,15 +119,12 @@ HELPERS: Mapping[str, str] = MappingProxyType(
     return np.concatenate([texels, np.zeros((*texels.shape[:-1], 4 - channels), np.float32)], axis=-1)''',
     }
 )
-# What each needs of the others.
-NEEDS: Mapping[str, tuple[str, ...]] = MappingProxyType(
-    {
-        "_matrix": ("_vector",),
-        "_replaced": ("_vector",),
-        "_remainder": ("_quotient",),
-        "_length": ("_dot",),
-        "_normalize": ("_dot",),
-        "_reflect": ("_dot",),
-        "_product": ("_times",),
-    }
-)
+
+
+def needed(helpers: Iterable[str]) -> list[str]:
+    """Helpers and those that they call, in an order in which each calls only those before it."""
+    found = {*helpers}
+    for name in reversed([*HELPERS]):
+        if name in found:
+            found |= HELPERS.keys() & set(re.findall(r"\b_\w+(?=\()", HELPERS[name]))
+    return [name for name in HELPERS if name in found]

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from types import MappingProxyType
 
-from .builtins import BITS, FETCH
+from .builtins import BITS, FETCH, LIKE_GIVEN, OF_VECTORS
 from .numpy_helpers import HELPERS
 from .parser import COMPARES, SHIFTS
 from .tree import (
@@ -24,7 +25,7 @@ from .tree import (
     size_of,
     vector,
 )
-from .writer import FIELDS, MIXING, PRIMARY, UNARY, Writer, least_of, shortest
+from .writer import FIELDS, MIXING, PRIMARY, PUBLIC, UNARY, Writer, least_of, shortest
 
 TYPES: Mapping[str, str] = MappingProxyType(
     {"float": "np.float32", "int": "np.int32", "uint": "np.uint32", "bool": "np.bool_"}
@@ -51,7 +52,8 @@ FUNCTIONS: Mapping[str, str] = MappingProxyType(
     {
         **{name: f"np.{name}" for name in ("abs", "sign", "floor", "ceil", "trunc", "sqrt", "exp", "exp2", "log")},
         **{name: f"np.{name}" for name in ("log2", "sin", "cos", "tan")},
-        **{name: f"_{name}" for name in ("mix", "step", "smoothstep", "fract", "fma", "dot", "length", "normalize")},
+        **{name: f"_{name}" for name in ("mix", "step", "smoothstep", "fract", "fma", "dot", "length", "distance")},
+        "normalize": "_normalize",
         "cross": "_cross",
         "reflect": "_reflect",
         "min": "np.fmin",
@@ -66,9 +68,8 @@ FUNCTIONS: Mapping[str, str] = MappingProxyType(
         "roundEven": "np.rint",
     }
 )
-# Of vectors, as a scalar is one of a single component.
-OF_SCALARS = frozenset(("dot", "length", "distance", "normalize", "reflect"))
-SIX = ("encode", "decode", "pack", "unpack", "to_target", "from_target")
+# Those of vectors that take scalars.
+OF_ONE = OF_VECTORS | {"normalize", "reflect"}
 
 
 class NumpyValues(Writer):
@@ -79,13 +80,28 @@ class NumpyValues(Writer):
     def __init__(self, prefix: str, sizes: Mapping[str, tuple[int, int, int]]):
         super().__init__(prefix, sizes)
         self._helpers: set[str] = set()
-        self.public = {f"{prefix}_{name}" for name in SIX}
+        self._public = {f"{prefix}_{name}" for name in PUBLIC}
+        # The functions that are told for which normals they are called, and the conditions within the statement that is
+        # written under which a value is wanted.
+        self._laned: set[str] = set()
+        self._under: list[str] = []
+
+    def _around(self) -> list[str]:
+        """The variables that say for which normals a statement is done."""
+        return []
+
+    @contextmanager
+    def _where(self, condition: str) -> Iterator[None]:
+        """What is written meanwhile is wanted where a condition holds; everywhere if that is empty."""
+        before, self._under = self._under, [*self._under, *([condition] if condition else [])]
+        yield
+        self._under = before
 
     def _own(self, name: str) -> str:
         """A name of the program's own; what is not for others begins with an underscore."""
-        return name if name in self.public else f"_{name}"
+        return name if name in self._public else f"_{name}"
 
-    def _helped(self, name: str) -> str:
+    def _helper_name(self, name: str) -> str:
         self._helpers.add(name)
         return name
 
@@ -102,7 +118,11 @@ class NumpyValues(Writer):
             return self._text(value, least)
         return f"{self._text(value, PRIMARY)}[{', '.join(['...', *['None'] * more])}]"
 
-    def _written(self, value: Expression) -> tuple[str, int]:
+    def _typed_wide(self, value: Expression, like: str, least: int = 0) -> str:
+        """An operand of vectors or matrices that has its type."""
+        return self._typed(value) if _is_written_out(value) else self._wide(value, like, least)
+
+    def _text_and_level(self, value: Expression) -> tuple[str, int]:
         match value:
             case Unary(_, mark, inner):
                 text = self._text(inner) if _is_written_out(value) else self._typed(inner, UNARY)
@@ -113,7 +133,7 @@ class NumpyValues(Writer):
                 return f"{self._text(inner, PRIMARY)}[..., {_places(names)}]", PRIMARY
             case Index():
                 return self._indexed(value), PRIMARY
-        return super()._written(value)
+        return super()._text_and_level(value)
 
     def _literal(self, value: Literal) -> str:
         if value.kind == "bool":
@@ -131,9 +151,9 @@ class NumpyValues(Writer):
         if isinstance(value.at, Literal):
             return f"{self._text(inner, PRIMARY)}[{', '.join(['...', self._text(value.at), *[':'] * len(axes)])}]"
         more = f", {len(axes)}" if axes else ""
-        return f"{self._helped('_at')}({self._text(inner)}, {self._text(value.at)}{more})"
+        return f"{self._helper_name('_at')}({self._text(inner)}, {self._text(value.at)}{more})"
 
-    def _binary(self, value: Binary) -> tuple[str, int]:
+    def _binary_and_level(self, value: Binary) -> tuple[str, int]:
         left, right, mark = value.left, value.right, value.operator
         if mark == "*" and "mat" in left.kind + right.kind and "float" not in (left.kind, right.kind):
             return self._product(left, right), PRIMARY
@@ -148,18 +168,25 @@ class NumpyValues(Writer):
         first = self._wide(left, wider, least_of(value, left, level + (level == 1)))
         if _is_written_out(left) and _is_written_out(right):
             first = self._typed(left)
-        text = f"{first} {mark} {self._wide(right, wider, least_of(value, right, level + 1))}"
+        with self._where(self._undecided(value)):
+            second = self._wide(right, wider, least_of(value, right, level + 1))
+        text = f"{first} {mark} {second}"
         if mark in COMPARES and value.kind == "bool" and (axes := len(inner_shape(wider))):
             last = "-1" if axes == 1 else "(-2, -1)"
             return f"np.{'all' if mark == '==' else 'any'}({text}, axis={last})", PRIMARY
         return text, level
 
+    def _undecided(self, value: Binary) -> str:
+        """Where the left one of two truths leaves it to the right one; empty for other operations."""
+        negation = {"&&": "", "||": "~"}.get(value.operator)
+        return "" if negation is None else negation + self._typed(value.left, PRIMARY)
+
     def _product(self, left: Expression, right: Expression) -> str:
         if "mat" in left.kind and "mat" in right.kind:
-            return f"{self._helped('_product')}({self._text(left)}, {self._text(right)})"
+            return f"{self._helper_name('_product')}({self._text(left)}, {self._text(right)})"
         if "mat" in left.kind:
-            return f"{self._helped('_times')}({self._text(left)}, {self._text(right)})"
-        return f"{self._helped('_times')}(np.swapaxes({self._text(right)}, -1, -2), {self._text(left)})"
+            return f"{self._helper_name('_times')}({self._text(left)}, {self._text(right)})"
+        return f"{self._helper_name('_times')}(np.swapaxes({self._text(right)}, -1, -2), {self._text(left)})"
 
     def _division(self, value: Binary) -> tuple[str, int]:
         """A quotient or a remainder of whole numbers, and how tightly it binds."""
@@ -167,15 +194,13 @@ class NumpyValues(Writer):
         if scalar_of(left.kind) == "uint" and isinstance(right, Literal) and int(right.text, 0):
             level = BINDING[mark]
             return f"{self._typed(left, level)} {'//' if mark == '/' else '%'} {self._text(right, level + 1)}", level
-        name = self._helped("_quotient" if mark == "/" else "_remainder")
-        self._helpers.add("_quotient")
-        given = [self._typed(one) if _is_written_out(one) else self._wide(one, value.kind) for one in (left, right)]
-        return f"{name}({', '.join(given)})", PRIMARY
+        name = self._helper_name("_quotient" if mark == "/" else "_remainder")
+        return f"{name}({self._typed_wide(left, value.kind)}, {self._typed_wide(right, value.kind)})", PRIMARY
 
     def _shift(self, value: Binary) -> str:
         """By as many bits as fit: what is more is taken modulo 32."""
         level, right = BINDING[value.operator], value.right
-        left = self._typed(value.left) if _is_written_out(value.left) else self._wide(value.left, value.kind, level)
+        left = self._typed_wide(value.left, value.kind, level)
         if _is_written_out(right):
             return f"{left} {value.operator} {int(self._text(right), 0) % 32}"
         by = f"({self._wide(right, value.kind, BINDING['&'])} & 31)"
@@ -183,27 +208,32 @@ class NumpyValues(Writer):
             by += f".astype({TYPES[scalar_of(value.left.kind)]})"
         return f"{left} {value.operator} {by}"
 
-    def _choice(self, value: Choice) -> tuple[str, int]:
+    def _choice_and_level(self, value: Choice) -> tuple[str, int]:
         condition = value.condition
         is_broad = size_of(condition.kind) == 1 and inner_shape(value.kind)
-        text = broad(self._typed(condition, PRIMARY), value.kind) if is_broad else self._typed(condition)
-        return f"np.where({text}, {self._typed(value.chosen)}, {self._typed(value.other)})", PRIMARY
+        holds = self._typed(condition, PRIMARY)
+        text = broad(holds, value.kind) if is_broad else self._typed(condition)
+        is_one = size_of(condition.kind) == 1
+        with self._where(holds if is_one else ""):
+            chosen = self._typed(value.chosen)
+        with self._where(f"~{holds}" if is_one else ""):
+            other = self._typed(value.other)
+        return f"np.where({text}, {chosen}, {other})", PRIMARY
 
     def _call(self, value: Call) -> str:
         name, given = value.name, value.arguments
         if value.is_own:
-            return f"{self._own(name)}({', '.join(map(self._typed, given))})"
-        if name in OF_SCALARS and size_of(given[0].kind) == 1:
-            return self._of_scalars(name, given)
+            texts = [*map(self._typed, given)]
+            if name in self._laned and (conditions := [*self._around(), *self._under]):
+                texts.append(" & ".join(conditions))
+            return f"{self._own(name)}({', '.join(texts)})"
         match name:
             case _ if name == FETCH:
-                return f"{self._helped('_fetched')}({self._text(given[0])}, {self._text(given[1])})"
+                return f"{self._helper_name('_fetched')}({self._text(given[0])}, {self._text(given[1])})"
             case _ if name in BITS:
                 return f"{self._typed(given[0], PRIMARY)}.view({TYPES[BITS[name]]})"
             case "inversesqrt":
                 return f"(1.0 / np.sqrt({self._typed(given[0])}))"
-            case "distance":
-                return f"{self._helped('_length')}({self._text(Binary(given[0].kind, '-', *given))})"
             case "transpose":
                 return f"np.swapaxes({self._text(given[0])}, -1, -2)"
             case "all" | "any":
@@ -211,36 +241,22 @@ class NumpyValues(Writer):
         if name not in FUNCTIONS:
             raise TranslationError(f"{name} is not written in Python")
         called = self.functions[name]
+        if name in OF_ONE and size_of(given[0].kind) == 1:
+            # A scalar is a vector of one component.
+            texts = ", ".join(f"{self._typed(one, PRIMARY)}[..., None]" for one in given)
+            return f"{self._helper_name(called)}({texts})" + "[..., 0]" * (name in LIKE_GIVEN)
+        like = value.kind if name in MIXING or name in ("pow", "atan2", "fma") else given[0].kind
+        # NumPy's own functions take the type from another argument, if one has any.
+        is_plain = called in HELPERS or all(map(_is_written_out, given))
         if called in HELPERS:
-            self._helpers.add(called)
-        like = value.kind if name in MIXING or name in ("pow", "atan2", "fma") else ""
-        texts = [self._wide(one, like) if like else self._text(one) for one in given]
-        # NumPy's own functions take the type from another argument, np.clip from the first.
-        plain = given if called in HELPERS or all(map(_is_written_out, given)) else given[: called == "np.clip"]
-        texts[: len(plain)] = [
-            self._typed(one) if _is_written_out(one) else text for one, text in zip(plain, texts, strict=False)
-        ]
-        return f"{called}({', '.join(texts)})"
-
-    def _of_scalars(self, name: str, given: list[Expression]) -> str:
-        """A function of vectors that is given scalars."""
-        a, *others = [self._typed(one, PRIMARY) for one in given]
-        match name:
-            case "dot":
-                return f"({a} * {others[0]})"
-            case "length":
-                return f"np.abs({a})"
-            case "distance":
-                return f"np.abs({a} - {others[0]})"
-            case "normalize":
-                return f"({a} * (1.0 / np.abs({a})))"
-        return f"({a} - 2.0 * ({others[0]} * {a}) * {others[0]})"
+            self._helper_name(called)
+        return f"{called}({', '.join((self._typed_wide if is_plain else self._wide)(one, like) for one in given)})"
 
     def _construct(self, value: Construct) -> str:
         given, kind = value.arguments, value.kind
         scalar, size = scalar_of(kind), size_of(kind)
         if "mat" in kind:
-            return f"{self._helped('_matrix')}({kind[3]}, {', '.join(self._components(given, scalar))})"
+            return f"{self._helper_name('_matrix')}({kind[3]}, {', '.join(self._components(given, scalar))})"
         if size == 1:
             first = given[0] if size_of(given[0].kind) == 1 else Swizzle(scalar_of(given[0].kind), given[0], "x")
             return self._converted(first, scalar)
@@ -248,18 +264,18 @@ class NumpyValues(Writer):
             numbers = [self._text(one) for one in given] * (size if len(given) == 1 else 1)
             return f"np.array([{', '.join(numbers)}], {TYPES[scalar]})"
         if len(given) == 1 and size_of(given[0].kind) == 1:
-            return f"{self._helped('_splat')}({self._converted(given[0], scalar)}, {size})"
+            return f"{self._helper_name('_splat')}({self._converted(given[0], scalar)}, {size})"
         if len(given) == 1:
             part = given[0]
             if size_of(part.kind) > size:
                 part = Swizzle(vector(scalar_of(part.kind), size), part, FIELDS[:size])
             return self._converted(part, scalar)
-        return f"{self._helped('_vector')}({', '.join(self._components(given, scalar))})"
+        return f"{self._helper_name('_vector')}({', '.join(self._components(given, scalar))})"
 
     def _components(self, given: list[Expression], scalar: str) -> Iterator[str]:
         for one in given:
             text = self._converted(one, scalar)
-            yield text if size_of(one.kind) == 1 else f"*{self._helped('_parts')}({text})"
+            yield text if size_of(one.kind) == 1 else f"*{self._helper_name('_parts')}({text})"
 
     def _converted(self, value: Expression, scalar: str) -> str:
         """A value as numbers of another type."""
@@ -271,19 +287,21 @@ class NumpyValues(Writer):
         if scalar == "bool":
             return f"({self._typed(value, BINDING['|'])} != 0)"
         if mine == "float":
-            return f"{self._helped(f'_to_{scalar}')}({self._typed(value)})"
+            return f"{self._helper_name(f'_to_{scalar}')}({self._typed(value)})"
         return f"{self._typed(value, PRIMARY)}.astype({TYPES[scalar]})"
 
     def _elements(self, value: Elements) -> str:
         kind = value.kind.partition("[")[0]
         scalar = TYPES[scalar_of(kind)]
         if all(_numbers(one) for one in value.values):
-            rows = [_row([self._text(n) for n in _numbers(one)], size_of(kind)) for one in value.values]
-            return f"np.array([{self._rows(rows)}], {scalar})"
+            rows = [_row_text([self._text(n) for n in _numbers(one)], size_of(kind)) for one in value.values]
+            return f"np.array([{self._rows_text(rows)}], {scalar})"
         axes, values = len(inner_shape(kind)), ", ".join(self._typed(one) for one in value.values)
-        return f"{self._helped('_array')}({axes}, {values})" if axes else f"{self._helped('_vector')}({values})"
+        return (
+            f"{self._helper_name('_array')}({axes}, {values})" if axes else f"{self._helper_name('_vector')}({values})"
+        )
 
-    def _nothing(self, kind: str) -> str:
+    def _zero_text(self, kind: str) -> str:
         """What is read before it is assigned to."""
         scalar = TYPES[scalar_of(kind.partition("[")[0])]
         return f"np.zeros({inner_shape(kind)}, {scalar})" if inner_shape(kind) else f"{scalar}(0)"
@@ -291,8 +309,9 @@ class NumpyValues(Writer):
 
 def _is_written_out(value: Expression) -> bool:
     """Whether a value is a number of Python's, which has no type of its own. Less than 0, no uint is one: it wraps."""
-    is_negative = isinstance(value, Unary) and value.operator == "-" and value.kind != "uint"
-    return isinstance(value.value if isinstance(value, Unary) and is_negative else value, Literal)
+    if isinstance(value, Unary):
+        return value.operator == "-" and value.kind != "uint" and isinstance(value.value, Literal)
+    return isinstance(value, Literal)
 
 
 def _numbers(value: Expression) -> list[Expression]:
@@ -301,7 +320,7 @@ def _numbers(value: Expression) -> list[Expression]:
     return given if all(map(_is_written_out, given)) and len(given) == size_of(value.kind) else []
 
 
-def _row(numbers: list[str], size: int) -> str:
+def _row_text(numbers: list[str], size: int) -> str:
     return numbers[0] if size == 1 else f"[{', '.join(numbers)}]"
 
 

@@ -10,12 +10,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from .c_defined import counted
-from .numpy_helpers import HELPERS, NEEDS
+from .numpy_helpers import HELPERS, needed
 from .numpy_values import BINDING, TYPES, NumpyValues, broad, inner_shape, shape_text
 from .tree import (
     Assign,
     Binary,
     Block,
+    Call,
     Choice,
     Declare,
     Expression,
@@ -39,6 +40,8 @@ from .tree import (
 from .writer import FIELDS, INDENT, words
 
 TRUE = Literal("bool", "true")
+# The parameter of functions with loops of their own length: for which normals they are called.
+LANES = "lanes"
 
 
 @dataclass
@@ -53,6 +56,11 @@ class _Loop:
     looping: str
     going: str
 
+    @property
+    def both(self) -> tuple[str, ...]:
+        """The variables, each once: what leaves the loop leaves its turn."""
+        return tuple(dict.fromkeys((self.looping, self.going)))
+
 
 @dataclass
 class _State:
@@ -60,7 +68,7 @@ class _State:
 
     Attributes:
         masks: of the conditions around, one in the other, the variable that says for which normals all of them hold;
-            empty for the function itself.
+            the first is that of the function itself, empty where it is called for all.
         depth: of each variable, how many conditions it was declared within.
         loops: those around.
         live: the variable that says for which normals the function has not returned; empty where it has for none.
@@ -91,35 +99,38 @@ class NumpyWriter(NumpyValues):
 
     def _program(self, program: Program) -> str:
         everything = (*program.constants, *program.tables, *program.functions)
-        self._taken |= {*HELPERS, *(self._own(one.name) for one in everything)}
+        self._taken |= {*HELPERS, LANES, *(self._own(one.name) for one in everything)}
+        for function in program.functions:
+            if _has_a_loop_of_its_own(function, self._laned):
+                self._laned.add(function.name)
         constants = [self._constant(each) for each in program.constants]
         functions = [self._function(each) for each in program.functions]
         tables = [self._table(each) for each in sorted(program.tables, key=lambda table: table.name)]
         head = ["from pathlib import Path\n"] * bool(tables) + ["import numpy as np"]
-        for name in [*self._helpers]:
-            self._helpers |= {*NEEDS.get(name, ())}
-        helpers = [text for name, text in HELPERS.items() if name in self._helpers]
+        helpers = [HELPERS[name] for name in needed(self._helpers)]
         values = ["\n".join([*tables, *constants])] if tables or constants else []
         return "\n\n\n".join(["\n".join(head), *helpers, *values, *functions]) + "\n"
 
     def _table(self, table: Table) -> str:
         return f'{self._own(table.name)} = np.load(Path(__file__).with_name("{table.name}.npy"))'
 
-    def _global(self, constant: Declare) -> str:
-        return f"{self._own(constant.name)} = {self._value_of(constant)}"
+    def _global_text(self, constant: Declare) -> str:
+        return f"{self._own(constant.name)} = {self._value_text(constant)}"
 
     # Functions.
 
     def _function(self, function: Function) -> str:
-        self._state = _State(depth={p.name: 0 for p in function.parameters})
+        masks = [LANES if function.name in self._laned else ""]
+        self._state = _State(masks, {p.name: 0 for p in function.parameters})
         return super()._function(function).rstrip("\n")
 
-    def _defined(self, signature: str, body: str) -> str:
+    def _definition_text(self, signature: str, body: str) -> str:
         return f"{signature}\n{body}"
 
     def _signature(self, function: Function) -> str:
-        names = ", ".join(self._name(p.name) for p in function.parameters)
-        return f"def {self._own(function.name)}({names}):"
+        names = [self._name(p.name) for p in function.parameters]
+        names += [f"{LANES}=np.bool_(True)"] * (function.name in self._laned)
+        return f"def {self._own(function.name)}({', '.join(names)}):"
 
     def _body(self, function: Function) -> str:
         body = _with_choices(function.body)
@@ -128,7 +139,7 @@ class NumpyWriter(NumpyValues):
         if any(is_in_loop for _, is_in_loop in returns):
             self._state.live, self._state.result = self._unused("live"), self._unused("result")
             public += [f"{INDENT}{self._state.live} = np.bool_(True)\n"]
-            public += [f"{INDENT}{self._state.result} = {self._nothing(function.kind)}\n"]
+            public += [f"{INDENT}{self._state.result} = {self._zero_text(function.kind)}\n"]
         text = "".join(public) + self._statements(body, INDENT)
         if not isinstance(body[-1] if body else None, Return):
             text += f"{INDENT}return {self._state.result or None}\n"
@@ -136,7 +147,7 @@ class NumpyWriter(NumpyValues):
 
     def _opening(self, function: Function) -> Iterator[str]:
         """What a function that others call begins with."""
-        if function.name not in self.public:
+        if function.name not in self._public:
             return
         shapes = [f"{p.name}: {shape_text(p.kind)}" for p in function.parameters]
         yield f'"""{shape_text(function.kind)}, of {"; ".join(shapes)}."""'
@@ -145,7 +156,7 @@ class NumpyWriter(NumpyValues):
 
     def _comments(self, statement: Statement, indent: str) -> str:
         above = "".join(f"{indent}# {line}".rstrip() + "\n" for line in statement.above)
-        is_public = isinstance(statement, Function) and statement.name in self.public
+        is_public = isinstance(statement, Function) and statement.name in self._public
         return above + '@np.errstate(all="ignore")\n' * is_public
 
     # Statements.
@@ -166,43 +177,43 @@ class NumpyWriter(NumpyValues):
             case If():
                 return above + self._if(statement, indent)
             case Return(value) if value is not None:
-                lines = self._return(value)
+                lines = self._return_lines(value)
             case Leave(word):
-                lines = self._leave(word)
+                lines = self._leave_lines(word)
             case _:
-                lines = [self._plain(statement)]
+                lines = [self._simple_text(statement)]
         lines[-1] += behind
         return above + "".join(f"{indent}{line}\n" for line in lines)
 
-    def _plain(self, statement: Statement) -> str:
+    def _simple_text(self, statement: Statement) -> str:
         match statement:
             case Declare():
                 self._state.depth[statement.name] = len(self._state.masks) - 1
-                return f"{self._name(statement.name)} = {self._value_of(statement)}"
+                return f"{self._name(statement.name)} = {self._value_text(statement)}"
             case Assign(target, mark, value):
                 made = value if mark == "=" else Binary(target.kind, mark[:-1], target, value)
                 return self._anew(target, self._typed(made))
         raise TranslationError(f"a {type(statement).__name__} is not written in Python")
 
-    def _value_of(self, declared: Declare) -> str:
-        return self._nothing(declared.kind) if declared.value is None else self._typed(declared.value)
+    def _value_text(self, declared: Declare) -> str:
+        return self._zero_text(declared.kind) if declared.value is None else self._typed(declared.value)
 
     def _anew(self, target: Expression, text: str) -> str:
         """A variable, or a part of one, made anew: arrays are never changed in place."""
         match target:
             case Name(kind, name):
-                return f"{self._name(name)} = {self._kept(kind, name, text)}"
+                return f"{self._name(name)} = {self._kept_text(kind, name, text)}"
             case Swizzle(_, inner, names):
                 places = "".join(f"{FIELDS.index(name)}, " for name in names)
                 places = places.strip() if len(names) == 1 else places.removesuffix(", ")
-                return self._anew(inner, f"{self._helped('_replaced')}({self._text(inner)}, ({places}), {text})")
+                return self._anew(inner, f"{self._helper_name('_replaced')}({self._text(inner)}, ({places}), {text})")
             case Index(kind, inner, at):
                 axes = f", {len(inner_shape(kind))}" if inner_shape(kind) else ""
-                put = f"{self._helped('_put')}({self._text(inner)}, {self._text(at)}, {text}{axes})"
+                put = f"{self._helper_name('_put')}({self._text(inner)}, {self._text(at)}, {text}{axes})"
                 return self._anew(inner, put)
         raise TranslationError(f"a {type(target).__name__} of {target.kind} cannot be assigned to in Python")
 
-    def _kept(self, kind: str, name: str, text: str) -> str:
+    def _kept_text(self, kind: str, name: str, text: str) -> str:
         """A new value, for those normals alone that the conditions since the variable's declaration hold for."""
         mask = self._state.masks[-1]
         if self._state.depth.get(name) == len(self._state.masks) - 1 or not mask:
@@ -236,18 +247,14 @@ class NumpyWriter(NumpyValues):
             return ""
         return f"{indent}{mask} = {mask} & {going}\n"
 
-    def _leave(self, word: str) -> list[str]:
+    def _leave_lines(self, word: str) -> list[str]:
         loop, mask = self._state.loops[-1], self._state.masks[-1]
-        kept = f"{loop.looping} = {loop.looping} & ~{mask}"
-        going = f"{loop.going} = {loop.going} & ~{mask}"
-        if word == "continue":
-            return [going]
-        return [kept] if loop.going == loop.looping else [kept, going]
+        return [f"{name} = {name} & ~{mask}" for name in (loop.both if word == "break" else (loop.going,))]
 
-    def _return(self, value: Expression) -> list[str]:
+    def _return_lines(self, value: Expression) -> list[str]:
         state, mask = self._state, self._state.masks[-1]
         text = self._typed(value)
-        if not mask:
+        if len(state.masks) == 1:
             chosen = f"np.where({broad(state.live, value.kind)}, {text}, {state.result})"
             return [f"return {chosen if state.live else text}"]
         if not state.live:
@@ -256,7 +263,7 @@ class NumpyWriter(NumpyValues):
         taken = self._unused("taken")
         lines = [f"{taken} = {mask} & {state.live}"]
         lines += [f"{state.result} = np.where({broad(taken, value.kind)}, {text}, {state.result})"]
-        ended = [state.live, *(state.loops[-1:] and {state.loops[-1].looping: 0, state.loops[-1].going: 0})]
+        ended = [state.live, *(name for loop in state.loops[-1:] for name in loop.both)]
         return lines + [f"{name} = {name} & ~{taken}" for name in ended]
 
     def _loop(self, loop: For | While, indent: str) -> str:
@@ -266,8 +273,8 @@ class NumpyWriter(NumpyValues):
         text = self._statement(start, indent) if start else ""
         looping = self._unused("looping")
         going = self._unused("going") if _leaves(loop.body, ("continue",)) else looping
-        around = [name for name in (self._state.masks[-1], self._state.live) if name]
-        text += f"{indent}{looping} = {self._all_of([*around, *self._unless_true(loop.condition)])}\n"
+        conditions = [*self._around(), *self._unless_true(loop.condition)]
+        text += f"{indent}{looping} = {self._and_text(conditions)}\n"
         text += f"{indent}while np.any({looping}):\n"
         inner = indent + INDENT
         text += f"{inner}{going} = {looping}\n" if going != looping else ""
@@ -276,15 +283,15 @@ class NumpyWriter(NumpyValues):
         text += self._within(looping, [step], inner) if step else ""
         self._state.loops.pop()
         if _is_condition(loop.condition):
-            text += f"{inner}{looping} = {self._all_of([looping, *self._unless_true(loop.condition)])}\n"
+            with self._where(looping):
+                again = self._and_text([looping, *self._unless_true(loop.condition)])
+            text += f"{inner}{looping} = {again}\n"
         return text + self._after_a_loop_that_returns(loop, indent)
 
     def _after_a_loop_that_returns(self, loop: For | While, indent: str) -> str:
         if not self._state.loops or not any(isinstance(node, Return) for node in inside(loop.body)):
             return ""
-        outer = self._state.loops[-1]
-        names = dict.fromkeys((outer.looping, outer.going))
-        text = "".join(f"{indent}{name} = {name} & {self._state.live}\n" for name in names)
+        text = "".join(f"{indent}{name} = {name} & {self._state.live}\n" for name in self._state.loops[-1].both)
         return text + self._without_those_that_left(indent)
 
     def _counting(self, loop: For, indent: str) -> str:
@@ -294,14 +301,21 @@ class NumpyWriter(NumpyValues):
         self._state.depth[start.name] = len(self._state.masks) - 1
         by = self._text(step.value)
         end = self._text(condition.right) + (" + 1" if condition.operator == "<=" else "")
-        counts = f"np.arange({self._value_of(start)}, {end}{'' if by == '1' else f', {by}'}, dtype={TYPES[start.kind]})"
+        counts = (
+            f"np.arange({self._value_text(start)}, {end}{'' if by == '1' else f', {by}'}, dtype={TYPES[start.kind]})"
+        )
         body = self._statements(loop.body, indent + INDENT) or f"{indent}{INDENT}pass\n"
         return f"{indent}for {self._name(start.name)} in {counts}:\n{body}"
 
-    def _all_of(self, conditions: list[str]) -> str:
+    def _and_text(self, conditions: list[str]) -> str:
         return " & ".join(conditions) or "np.bool_(True)"
 
+    def _around(self) -> list[str]:
+        """The variables that say for which normals a statement is done."""
+        return [name for name in (self._state.masks[-1], self._state.live) if name]
+
     def _unless_true(self, condition: Expression) -> list[str]:
+        """A condition's text in a list; an empty list where the condition is `true` itself."""
         return [self._typed(condition, BINDING["&"])] if _is_condition(condition) else []
 
     def _name(self, name: str) -> str:
@@ -310,7 +324,18 @@ class NumpyWriter(NumpyValues):
         return self._own(name) if name in self._taken else name
 
 
+def _has_a_loop_of_its_own(function: Function, such: set[str]) -> bool:
+    """Whether the length of a loop depends on the normal, here or in a function that is called; `such` have one."""
+    for node in inside(function.body):
+        if isinstance(node, While) or (isinstance(node, For) and (not counted(node) or _leaves(node.body))):
+            return True
+        if isinstance(node, Call) and node.is_own and node.name in such:
+            return True
+    return False
+
+
 def _is_condition(condition: Expression) -> bool:
+    """Whether it is anything but the literal `true`."""
     return condition != TRUE
 
 

@@ -106,35 +106,36 @@ class Parser:
     # Tokens.
 
     @property
-    def _next(self) -> Token:
+    def _next_token(self) -> Token:
         return self._tokens[self._at] if self._at < len(self._tokens) else END
 
-    def _ahead(self, count: int) -> str:
+    def _text_ahead(self, count: int) -> str:
         at = self._at + count
         return self._tokens[at].text if at < len(self._tokens) else ""
 
     def _take(self, *texts: str) -> Token:
         """The next token, which must be one of these if any are named."""
-        token = self._next
+        token = self._next_token
         if (texts and token.text not in texts) or token is END:
             raise self._error(f"{' or '.join(texts) or 'more'} expected, not {token.text}")
         self._at += 1
         return token
 
     def _skip(self, text: str) -> bool:
-        if self._next.text != text or self._next is END:
+        """Whether the next token is this text, which then is taken."""
+        if self._next_token.text != text or self._next_token is END:
             return False
         self._at += 1
         return True
 
-    def _word(self) -> Token:
-        if self._next.kind != "word":
-            raise self._error(f"a name expected, not {self._next.text}")
+    def _word_token(self) -> Token:
+        if self._next_token.kind != "word":
+            raise self._error(f"a name expected, not {self._next_token.text}")
         return self._take()
 
     def _error(self, what: str, place: Place | None = None) -> TranslationError:
         last = self._tokens[-1].place if self._tokens else END.place
-        place = place or (last if self._next is END else self._next.place)
+        place = place or (last if self._next_token is END else self._next_token.place)
         return TranslationError(f"{place.line}:{place.column}: {what}")
 
     def _deeper(self, read: Callable):
@@ -149,7 +150,7 @@ class Parser:
 
     # Names.
 
-    def _named(self, token: Token) -> Expression:
+    def _name_expression(self, token: Token) -> Expression:
         for scope in reversed(self._scopes):
             if token.text in scope:
                 return replace(scope[token.text])
@@ -167,6 +168,7 @@ class Parser:
         return called
 
     def _would_hide(self, name: str) -> bool:
+        """Whether a function, or a scope around the innermost one, has this name already."""
         return name in self._functions or any(name in scope for scope in self._scopes[:-1])
 
     def _unused(self, name: str) -> str:
@@ -194,15 +196,15 @@ class Parser:
             return condition
         chosen = self._expression()
         self._take(":")
-        return self._chosen(condition, chosen, self._expression())
+        return self._choice_of(condition, chosen, self._expression())
 
-    def _chosen(self, condition: Expression, chosen: Expression, other: Expression) -> Expression:
+    def _choice_of(self, condition: Expression, chosen: Expression, other: Expression) -> Expression:
         chosen, other = self._alike(chosen, other)
         return Choice(chosen.kind, condition, chosen, other)
 
     def _binary(self, least: int) -> Expression:
         left, terms = self._unary(), 1
-        while (mark := self._next.text) in BINDING and BINDING[mark] >= least and self._next.kind == "mark":
+        while (mark := self._next_token.text) in BINDING and BINDING[mark] >= least and self._next_token.kind == "mark":
             self._take()
             left, terms = self._operation(mark, left, self._binary(BINDING[mark] + 1)), terms + 1
             if terms > MOST_TERMS:
@@ -227,9 +229,9 @@ class Parser:
                 return Literal("int", str(whole))
         if mark in COMPARES:
             return Binary(vector("bool", max(size_of(left.kind), size_of(right.kind))), mark, left, right)
-        return Binary(self._product(left.kind, right.kind), mark, left, right)
+        return Binary(self._product_kind(left.kind, right.kind), mark, left, right)
 
-    def _product(self, left: str, right: str) -> str:
+    def _product_kind(self, left: str, right: str) -> str:
         if left.startswith("mat"):
             return right if "vec" in right else left
         if right.startswith("mat"):
@@ -273,8 +275,8 @@ class Parser:
         return Construct(vector(scalar, size_of(value.kind)), [value])
 
     def _unary(self) -> Expression:
-        mark = self._next.text
-        if self._next.kind == "mark" and mark in ("-", "!", "~", "+"):
+        mark = self._next_token.text
+        if self._next_token.kind == "mark" and mark in ("-", "!", "~", "+"):
             self._take()
             value = self._deeper(self._unary)
             return value if mark == "+" else Unary(value.kind, mark, value)
@@ -287,16 +289,16 @@ class Parser:
         """Members and elements behind a value."""
         while True:
             if self._skip("."):
-                value = self._member(value, self._word())
+                value = self._member(value, self._word_token())
             elif self._skip("["):
                 at = self._expression()
                 self._take("]")
-                value = self._indexed(value, at)
+                value = self._index_expression(value, at)
             else:
                 return value
 
-    def _indexed(self, value: Expression, at: Expression) -> Expression:
-        return Index(self._element(value.kind), value, at)
+    def _index_expression(self, value: Expression, at: Expression) -> Expression:
+        return Index(self._element_kind(value.kind), value, at)
 
     def _member(self, value: Expression, word: Token) -> Expression:
         size, names = size_of(value.kind), word.text
@@ -307,7 +309,7 @@ class Parser:
         self._at -= 1
         raise self._error(f"a {value.kind} has no .{names}")
 
-    def _element(self, kind: str) -> str:
+    def _element_kind(self, kind: str) -> str:
         if kind.endswith("]"):
             return kind.partition("[")[0]
         if kind.startswith("mat"):
@@ -316,7 +318,7 @@ class Parser:
             raise self._error(f"a {kind} has no elements")
         return scalar_of(kind)
 
-    def _array_of(self, kind: str, length: Expression) -> str:
+    def _array_kind(self, kind: str, length: Expression) -> str:
         count = self._whole_number(length)
         if count is None:
             raise self._error("an array's length is not a number")
@@ -348,7 +350,7 @@ class Parser:
     def _called(self, name: str, arguments: list[Expression], place: Place | None = None) -> Expression:
         """A call; `place` is where the name stands."""
         if name in self._functions:
-            return self._own(name, arguments)
+            return self._own_call(name, arguments)
         if name == "mod" and len(arguments) == 2:
             return self._modulus("floor", *arguments)
         if name == "atan" and len(arguments) == 2:
@@ -360,7 +362,7 @@ class Parser:
         if name in COMPARISONS and len(arguments) == 2:
             return self._combined(COMPARISONS[name], *arguments)
         if name == "mix" and len(arguments) == 3 and scalar_of(arguments[2].kind) == "bool":
-            return self._chosen(arguments[2], arguments[1], arguments[0])
+            return self._choice_of(arguments[2], arguments[1], arguments[0])
         arguments = self._given(name, arguments)
         if name == "exp2" and isinstance(arguments[0], Literal) and abs(float(arguments[0].text)) <= MOST_FOLDED:
             return Literal("float", with_a_point(repr(2.0 ** float(arguments[0].text))))
@@ -381,7 +383,7 @@ class Parser:
         What is more than a name is given to a function of the program's: it would be written, and computed, twice.
         """
         x, y = self._alike(x, y, sizes_too=False)
-        kind = self._product(x.kind, y.kind)
+        kind = self._product_kind(x.kind, y.kind)
         if all(map(_is_short, (x, y))) or len(self._scopes) == 1:
             return self._remainder(rounding, kind, x, y)
         name = f"{rounding}_modulus({x.kind},{y.kind})"
@@ -400,7 +402,7 @@ class Parser:
         widest = next(s for s in ("float", "uint", "int", "bool") if s in scalars)
         return [self._converted(a, widest) for a in arguments]
 
-    def _own(self, name: str, arguments: list[Expression]) -> Expression:
+    def _own_call(self, name: str, arguments: list[Expression]) -> Expression:
         kinds = [a.kind for a in arguments]
         same = self._functions[name]
         found = next((f for f in same if [p.kind for p in f.parameters] == kinds), None)
@@ -478,10 +480,10 @@ class Parser:
         for mark in ("++", "--"):
             if self._skip(mark):
                 target = self._behind(self._primary())
-                return self._counted(target, mark)
+                return self._count_statement(target, mark)
         target = self._behind(self._primary())
-        if self._next.text in ("++", "--"):
-            return self._counted(target, self._take().text)
+        if self._next_token.text in ("++", "--"):
+            return self._count_statement(target, self._take().text)
         if isinstance(target, Call) and target.is_own:
             return Perform(target)
         mark = self._take(*ASSIGNS).text
@@ -490,7 +492,7 @@ class Parser:
             value = self._converted(value, scalar_of(target.kind))
         return Assign(target, mark, value)
 
-    def _counted(self, target: Expression, mark: str) -> Statement:
+    def _count_statement(self, target: Expression, mark: str) -> Statement:
         one = Literal("float", "1.0") if target.kind == "float" else Literal(target.kind, "1")
         return Assign(target, f"{mark[0]}=", one)
 

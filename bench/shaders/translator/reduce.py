@@ -30,7 +30,7 @@ def reduced(program: Program, roots: Mapping[str, str], prefix: str, own: str) -
         TranslationError: one of these functions could not be read.
     """
     keys = {plain_name(f): f.name for f in program.functions}
-    kept = _reached(program, [keys[name] for name in roots])
+    kept = _reached_names(program, [keys[name] for name in roots])
     functions = [f for f in program.functions if f.name in kept]
     _keep_changes_inside(functions)
     _leave_out_views(functions, {keys[name] for name, called in roots.items() if called in PAIR})
@@ -44,7 +44,7 @@ def reduced(program: Program, roots: Mapping[str, str], prefix: str, own: str) -
     return Program(constants, tables, functions, program.structs)
 
 
-def _reached(program: Program, names: list[str]) -> set[str]:
+def _reached_names(program: Program, names: list[str]) -> set[str]:
     by_name = {f.name: f for f in program.functions}
     found, left = set(names), list(names)
     while left:
@@ -89,7 +89,7 @@ def _keep_changes_inside(functions: list[Function]) -> None:
 
 def _leave_out_views(functions: list[Function], pair: set[str]) -> None:
     """Takes the view from functions that do not read it; from both or neither of a pair."""
-    at = {f.name: [p.name for p in f.parameters].index(VIEW) for f in functions if VIEW in _names(f)}
+    at = {f.name: [p.name for p in f.parameters].index(VIEW) for f in functions if VIEW in _parameter_names(f)}
     unread: set[str] = set()
     for function in functions:
         if function.name in at and not _reads_view(function, at, unread):
@@ -103,7 +103,7 @@ def _leave_out_views(functions: list[Function], pair: set[str]) -> None:
             del function.parameters[at[function.name]]
 
 
-def _names(function: Function) -> list[str]:
+def _parameter_names(function: Function) -> list[str]:
     return [p.name for p in function.parameters]
 
 
@@ -131,20 +131,20 @@ def _rename(functions: list[Function], names: dict[str, str], prefix: str, own: 
             size = size_of(function.parameters[0].kind) if plain.count(short) > 1 else 0
             mine = re.sub(f"^{own}_(?=.)", "", short)
             mine = INNER.get(mine, mine) if f"{prefix}_{mine}" in names.values() else mine
-            names[function.name] = _free(f"{prefix}_{mine}{size or ''}", names.values())
+            names[function.name] = _free_name(f"{prefix}_{mine}{size or ''}", names.values())
     for function in functions:
         for call in (node for node in inside(function.body) if isinstance(node, Call) and node.is_own):
             call.name = names[call.name]
         function.name = names[function.name]
 
 
-def _free(name: str, taken: Collection[str]) -> str:
+def _free_name(name: str, taken: Collection[str]) -> str:
     """A name that is not taken: this one, or this one with a number."""
     ways = (name, *(f"{name}_{number}" for number in range(2, len(taken) + 3)))
     return next(one for one in ways if one not in taken)
 
 
-def _without(own: str, name: str) -> str:
+def _shorter_name(own: str, name: str) -> str:
     """A constant's name without the words of its encoding's: COUNT for FIBONACCI_COUNT of spherical_fibonacci."""
     words = own.upper().split("_")
     for first in range(len(words)):
@@ -155,13 +155,13 @@ def _without(own: str, name: str) -> str:
 
 
 def _rename_constants(constants: list[Declare], functions: list[Function], prefix: str, own: str) -> None:
-    short = {constant.name: _without(own, constant.name) for constant in constants}
+    short = {constant.name: _shorter_name(own, constant.name) for constant in constants}
     taken = list(short.values())
     names: dict[str, str] = {}
     others = {function.name for function in functions}
     for name, new in short.items():
         plain = f"{prefix.upper()}_{new if taken.count(new) == 1 else name}"
-        names[name] = _free(plain, others | set(names.values()))
+        names[name] = _free_name(plain, others | set(names.values()))
     _replace(functions, names)
     for constant in constants:
         _replace_in(constant.value, names)
@@ -171,7 +171,7 @@ def _rename_constants(constants: list[Declare], functions: list[Function], prefi
 def _replace(functions: list[Function], names: Mapping[str, str]) -> None:
     """Give what is outside of functions other names, but in a function that has a variable of such a name."""
     for function in functions:
-        own = {*_names(function), *(node.name for node in inside(function.body) if isinstance(node, Declare))}
+        own = {*_parameter_names(function), *(node.name for node in inside(function.body) if isinstance(node, Declare))}
         _replace_in(function.body, {old: new for old, new in names.items() if old not in own})
 
 
@@ -196,7 +196,9 @@ def numbered(program: Program, word: str) -> None:
         constant.name = outside[constant.name]
     for function in program.functions:
         declared = [node for node in inside(function.body) if isinstance(node, Declare)]
-        own = {name: f"{word}_{next(numbers)}" for name in [*_names(function), *(node.name for node in declared)]}
+        own = {
+            name: f"{word}_{next(numbers)}" for name in [*_parameter_names(function), *(node.name for node in declared)]
+        }
         _replace_in(function.body, own)
         for one in (*function.parameters, *declared):
             one.name = own[one.name]

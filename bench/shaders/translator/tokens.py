@@ -109,7 +109,7 @@ class Preprocessor:
         kept: list[str] = []
         including: list[tuple[bool, bool]] = []  # whether this branch counts, and whether one has
         # Directives are what stands in no comment.
-        lines, bare = text.split("\n"), COMMENT.sub(_blank, text).split("\n")
+        lines, bare = text.split("\n"), COMMENT.sub(_blanked_comment, text).split("\n")
         while len(kept) < len(lines):
             number = len(kept) + 1
             directive = re.match(r"\s*#\s*(\w*)\s*(.*)", bare[number - 1])
@@ -121,11 +121,11 @@ class Preprocessor:
             while rest.endswith("\\") and len(kept) + 1 < len(lines):
                 kept.append("")
                 rest = f"{rest[:-1]} {bare[len(kept)]}"
-            kept.append(_begun(lines[len(kept)], bare[len(kept)]))
+            kept.append(_open_comment(lines[len(kept)], bare[len(kept)]))
             self._obey(directive[1], rest, number, including, counts)
         if including:
             raise TranslationError("an #if without its #endif")
-        every = (each for token in tokens("\n".join(kept)) for each in self._expanded(token))
+        every = (each for token in tokens("\n".join(kept)) for each in self._expanded_tokens(token))
         found = list(islice(every, MOST_TOKENS + 1))
         if len(found) > MOST_TOKENS:
             raise TranslationError(TOO_LONG)
@@ -156,21 +156,22 @@ class Preprocessor:
             self.constants[match[1]] = self._macros.pop(match[1])
 
     def _holds(self, word: str, rest: str, line: int) -> bool:
+        """Whether the lines behind `#if`, `#ifdef` or `#ifndef` are read."""
         if word != "if":
             name = rest.split()[0] if rest.split() else ""
             return (name in self._macros or name in self.constants) == (word == "ifdef")
-        found = [self._number(token, line) for token in tokens(rest.split("//")[0], line)]
+        found = [self._whole_number(token, line) for token in tokens(rest.split("//")[0], line)]
         if len(found) != 1:
             raise TranslationError(f"{line}:1: only `#if NAME` is translated, not {rest[:60]}")
         return found[0] != 0
 
-    def _number(self, token: Token, line: int) -> int:
+    def _whole_number(self, token: Token, line: int) -> int:
         stands = self.constants.get(token.text, [token])
         if len(stands) != 1 or not stands[0].text.isdigit():
             raise TranslationError(f"{line}:1: {token.text} is not a whole number")
         return int(stands[0].text)
 
-    def _expanded(self, token: Token) -> Iterator[Token]:
+    def _expanded_tokens(self, token: Token) -> Iterator[Token]:
         """A token, or what a macro of its name stands for, in its place."""
         if token.kind != "word" or token.text not in self._macros:
             yield token
@@ -191,11 +192,11 @@ class Preprocessor:
             yield from self._words(each, depth + 1)
 
 
-def _blank(comment: re.Match[str]) -> str:
+def _blanked_comment(comment: re.Match[str]) -> str:
     return re.sub(r"[^\n]", " ", comment[0])
 
 
-def _begun(line: str, bare: str) -> str:
+def _open_comment(line: str, bare: str) -> str:
     """Of a directive's line, the comment that began before it or that ends behind it; nothing where there is none."""
     only = "".join(" " if left == letter else letter for letter, left in zip(line, bare, strict=True))
     return only if only.count("/*") != only.count("*/") else ""
@@ -218,12 +219,12 @@ def suffixed(text: str) -> tuple[str, str]:
     if lower.startswith("0x"):
         return ("uint" if lower.endswith("u") else "int"), text.rstrip("uUi")
     if lower.endswith("u"):
-        return "uint", _whole(lower.rstrip("u"))
+        return "uint", _decimal_text(lower.rstrip("u"))
     is_float = any(mark in lower for mark in ".efh")
-    return ("float", with_a_point(lower.rstrip("lfh"))) if is_float else ("int", _whole(lower.rstrip("i")))
+    return ("float", with_a_point(lower.rstrip("lfh"))) if is_float else ("int", _decimal_text(lower.rstrip("i")))
 
 
-def _whole(text: str) -> str:
+def _decimal_text(text: str) -> str:
     """A whole number in decimal; with a zero before it, it is octal."""
     return str(int(text, 8)) if text.startswith("0") else text
 

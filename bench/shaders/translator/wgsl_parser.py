@@ -161,19 +161,19 @@ class WgslParser(Parser):
     def _known_by(self, declared: range) -> tuple[Token, str]:
         """The word that a declaration is made by, such as fn, and its name; the parser stands at the word."""
         self._at = declared.start
-        while self._next.text == "@":
+        while self._next_token.text == "@":
             self._at += 2
             self._skip_group()
-        word = self._next
+        word = self._next_token
         behind = (at for at in range(self._at, declared.stop) if self._tokens[at].text in NAME_ENDS)
         return word, self._tokens[max(next(behind, declared.stop) - 1, self._at)].text
 
     def _skip_group(self) -> None:
         """What stands in parentheses here, if anything does."""
         depth = 0
-        while self._next is not END:
-            depth += (self._next.text == "(") - (self._next.text == ")")
-            if not depth and self._next.text != ")":
+        while self._next_token is not END:
+            depth += (self._next_token.text == "(") - (self._next_token.text == ")")
+            if not depth and self._next_token.text != ")":
                 return
             self._at += 1
 
@@ -196,7 +196,7 @@ class WgslParser(Parser):
     def _has_attributes(self, declared: range) -> bool:
         """Whether it is an entry point, or something else of a pipeline."""
         self._at = declared.start
-        return self._next.text == "@" and self._ahead(1) != "must_use"
+        return self._next_token.text == "@" and self._text_ahead(1) != "must_use"
 
     def _know_function(self, declared: range) -> None:
         _, name = self._known_by(declared)
@@ -259,23 +259,23 @@ class WgslParser(Parser):
         self._take("{")
         found: dict[str, str] = {}
         while not self._skip("}"):
-            name = self._word().text
+            name = self._word_token().text
             self._take(":")
             found[name] = self._kind()
-            if self._next.text != "}":
+            if self._next_token.text != "}":
                 self._take(",")
         return found
 
     def _global(self) -> None:
-        first = self._next
+        first = self._next_token
         if self._skip("const"):
             self._constant(first)
         elif self._skip(";"):
             pass
-        elif first.text == "@" and self._ahead(1) == "must_use":
+        elif first.text == "@" and self._text_ahead(1) == "must_use":
             self._at += 2
         elif self._skip("struct"):
-            self._word()
+            self._word_token()
             self._fields()
         elif first.text in SKIPPED:
             while self._take().text != ";":
@@ -286,18 +286,18 @@ class WgslParser(Parser):
             raise self._error(f"{first.text}: only functions, constants, structures and aliases are read")
 
     def _constant(self, first: Token) -> None:
-        if (name := self._next.text) not in self._read:
+        if (name := self._next_token.text) not in self._read:
             self._read.add(name)
             self._made.constants.append(self._declared_constant(first))
             return
         while self._take().text != ";":
             pass
 
-    def _named(self, token: Token) -> Expression:
+    def _name_expression(self, token: Token) -> Expression:
         """A name; a constant outside of functions is read when it is first used."""
         if not any(token.text in scope for scope in self._scopes):
             self._read_constant(token)
-        return super()._named(token)
+        return super()._name_expression(token)
 
     def _read_constant(self, token: Token) -> None:
         """One outside of functions, where a name is of one that was not read. Raises TranslationError."""
@@ -323,14 +323,14 @@ class WgslParser(Parser):
 
     def _signature(self) -> Function:
         self._take("fn")
-        name = self._word().text
+        name = self._word_token().text
         self._take("(")
         parameters: list[Parameter] = []
         while not self._skip(")"):
-            called = self._word().text
+            called = self._word_token().text
             self._take(":")
             parameters.append(Parameter(self._kind(), called))
-            if self._next.text != ")":
+            if self._next_token.text != ")":
                 self._take(",")
         return Function(self._kind() if self._skip("->") else "void", name, parameters, [])
 
@@ -346,7 +346,7 @@ class WgslParser(Parser):
         self._made.functions.append(function)
 
     def _kind(self) -> str:
-        token = self._word()
+        token = self._word_token()
         if token.text in self._types:
             self._know_type(token.text)
         known = {**KINDS, **self._aliases}
@@ -365,30 +365,30 @@ class WgslParser(Parser):
             count = self._binary(BINDING["+"])
             self._skip(",")
             self._take(">")
-            return self._array_of(element, count)
+            return self._array_kind(element, count)
         self._take(">")
         return f"mat{token.text[3]}" if token.text.startswith("mat") else vector(element, int(token.text[3]))
 
     # Statements.
 
     def _statement(self) -> list[Statement]:
-        first = self._next
+        first = self._next_token
         if self._skip(";"):
             return []
         if first.text == "{":
             return [Block(self._block())]
-        if first.text == "_" and self._ahead(1) == "=":
+        if first.text == "_" and self._text_ahead(1) == "=":
             self._at += 2
             self._expression()
             self._take(";")
             return []
-        made = self._one(first)
+        made = self._one_statement(first)
         made.above = [*first.above, *made.above]
         if not isinstance(made, If | For | While | Block):
             made.behind = self._tokens[self._at - 1].behind
         return [made]
 
-    def _one(self, first: Token) -> Statement:
+    def _one_statement(self, first: Token) -> Statement:
         if self._skip("if"):
             return self._if()
         if self._skip("for"):
@@ -408,7 +408,7 @@ class WgslParser(Parser):
         if first.text in ("break", "continue"):
             return Leave(self._take().text)
         if self._skip("return"):
-            return Return(None if self._next.text == ";" else self._expression())
+            return Return(None if self._next_token.text == ";" else self._expression())
         if first.text in ("let", "var", "const"):
             return self._declarator(is_constant=self._take().text == "const")
         return self._assignment()
@@ -425,22 +425,22 @@ class WgslParser(Parser):
         self._scopes.append({})
         body: list[Statement] = []
         while not self._skip("}"):
-            if self._next.text != "continuing":
+            if self._next_token.text != "continuing":
                 body += self._deeper(self._statement)
                 continue
             if _leaves(body, "continue"):
                 raise self._error("a loop with continue and continuing is not read")
             self._take()
-            body.append(Block(self._continuing()))
+            body.append(Block(self._continuing_statements()))
         self._scopes.pop()
         return While(Literal("bool", "true"), body)
 
-    def _continuing(self) -> list[Statement]:
+    def _continuing_statements(self) -> list[Statement]:
         self._take("{")
         self._scopes.append({})
         found: list[Statement] = []
         while not self._skip("}"):
-            if self._next.text == "break" and self._ahead(1) == "if":
+            if self._next_token.text == "break" and self._text_ahead(1) == "if":
                 self._at += 2
                 found.append(If(self._expression(), [Leave("break")], []))
                 self._take(";")
@@ -465,11 +465,12 @@ class WgslParser(Parser):
         return Block([Declare(value.kind, name, value), *other])
 
     def _case(self, chosen_by: Name) -> tuple[Expression | None, list[Statement]]:
+        """A case's condition, None of the default, and its body without a break at its end."""
         condition: Expression | None = None
         is_default = self._skip("default")
         if not is_default:
             self._take("case")
-            while self._next.text not in ("{", ":"):
+            while self._next_token.text not in ("{", ":"):
                 if self._skip("default"):
                     is_default = True
                 else:
@@ -487,18 +488,18 @@ class WgslParser(Parser):
     def _for(self) -> Statement:
         self._take("(")
         self._scopes.append({})
-        start = None if self._next.text == ";" else self._simple(self._next)
+        start = None if self._next_token.text == ";" else self._simple(self._next_token)
         self._take(";")
-        condition = Literal("bool", "true") if self._next.text == ";" else self._expression()
+        condition = Literal("bool", "true") if self._next_token.text == ";" else self._expression()
         self._take(";")
-        step = None if self._next.text == ")" else self._assignment()
+        step = None if self._next_token.text == ")" else self._assignment()
         self._take(")")
         body = self._block()
         self._scopes.pop()
         return For(start, condition, step, body)
 
     def _declarator(self, is_constant: bool) -> Declare:
-        name = self._word().text
+        name = self._word_token().text
         kind = self._kind() if self._skip(":") else None
         value = self._expression() if self._skip("=") else None
         if value is None and kind is None:
@@ -521,7 +522,7 @@ class WgslParser(Parser):
         found: list[Expression] = []
         while not self._skip(")"):
             found.append(self._expression())
-            if self._next.text != ")":
+            if self._next_token.text != ")":
                 self._take(",")
         return found
 
@@ -545,7 +546,7 @@ class WgslParser(Parser):
             return self._made_of(token)
         if self._skip("("):
             return self._named_call(token, self._arguments())
-        return self._named(token)
+        return self._name_expression(token)
 
     def _bits(self) -> Expression:
         self._take("<")
@@ -559,7 +560,7 @@ class WgslParser(Parser):
     def _made_of(self, token: Token) -> Expression:
         """A type's constructor; without its element's type that is what it is given."""
         self._at -= 1
-        if token.text in GENERIC and self._ahead(1) == "(":
+        if token.text in GENERIC and self._text_ahead(1) == "(":
             self._at += 2
             values = self._all_alike(self._arguments())
             element = scalar_of(values[0].kind)
@@ -573,26 +574,26 @@ class WgslParser(Parser):
         values = self._arguments()
         if "[" in kind:
             scalar = scalar_of(kind.partition("[")[0])
-            return Elements(kind, [self._converted(value, scalar) for value in values] or self._nothing(kind))
+            return Elements(kind, [self._converted(value, scalar) for value in values] or self._zero_elements(kind))
         if kind in self._structs:
-            return Construct(kind, self._of_fields(kind, values))
+            return Construct(kind, self._field_values(kind, values))
         return self._constructed(kind, values or [Literal("int", "0")])
 
-    def _of_fields(self, kind: str, values: list[Expression]) -> list[Expression]:
+    def _field_values(self, kind: str, values: list[Expression]) -> list[Expression]:
         kinds = self._structs[kind].kinds.values()
         if not values:
-            return [self._zero(one) for one in kinds]
+            return [self._zero_value(one) for one in kinds]
         return [v if v.kind == k else self._converted(v, scalar_of(k)) for v, k in zip(values, kinds, strict=True)]
 
-    def _nothing(self, kind: str) -> list[Expression]:
+    def _zero_elements(self, kind: str) -> list[Expression]:
         element, _, length = kind.partition("[")
-        return [self._zero(element) for _ in range(int(length.rstrip("]")))]
+        return [self._zero_value(element) for _ in range(int(length.rstrip("]")))]
 
-    def _zero(self, kind: str) -> Expression:
+    def _zero_value(self, kind: str) -> Expression:
         if kind in self._structs:
-            return Construct(kind, self._of_fields(kind, []))
+            return Construct(kind, self._field_values(kind, []))
         if "[" in kind:
-            return Elements(kind, self._nothing(kind))
+            return Elements(kind, self._zero_elements(kind))
         return self._constructed(kind, [Literal("int", "0")])
 
     def _constructed(self, kind: str, arguments: list[Expression]) -> Expression:
@@ -620,11 +621,11 @@ class WgslParser(Parser):
             return Member(kind, value, word.text)
         return super()._member(value, word)
 
-    def _indexed(self, value: Expression, at: Expression) -> Expression:
+    def _index_expression(self, value: Expression, at: Expression) -> Expression:
         """An element; an index beyond an array is its last."""
-        return super()._indexed(value, at if isinstance(at, Literal) else self._inside(value.kind, at))
+        return super()._index_expression(value, at if isinstance(at, Literal) else self._clamped_index(value.kind, at))
 
-    def _inside(self, kind: str, at: Expression) -> Expression:
+    def _clamped_index(self, kind: str, at: Expression) -> Expression:
         count = int(kind.partition("[")[2].rstrip("]")) if "[" in kind else int(kind[-1])
         whole = at if at.kind == "uint" else Construct("uint", [at])
         return Call("uint", "min", [whole, Literal("uint", str(count - 1))])
@@ -635,7 +636,7 @@ class WgslParser(Parser):
             return self._called(name, arguments, token.place)
         if name == "select" and len(arguments) == 3:
             other, chosen, condition = arguments
-            return self._chosen(condition, chosen, other)
+            return self._choice_of(condition, chosen, other)
         if name == "saturate" and len(arguments) == 1:
             return self._called("clamp", [*arguments, ZERO, ONE])
         return self._called(NAMES.get(name, name), arguments, token.place)
@@ -654,7 +655,7 @@ class WgslParser(Parser):
         """As in GLSL, but where that defines nothing: quotients and remainders of whole numbers, and shifts."""
         scalar = scalar_of(left.kind)
         if mark in SHIFTS:
-            by = right if isinstance(right, Literal) else self._masked(right)
+            by = right if isinstance(right, Literal) else self._masked_shift(right)
             return self._combined(mark, left, by)
         if mark in TRUTHS and scalar == "bool":
             if size_of(left.kind) == 1:
@@ -676,7 +677,7 @@ class WgslParser(Parser):
             )
         return self._combined(mark, left, right)
 
-    def _masked(self, by: Expression) -> Expression:
+    def _masked_shift(self, by: Expression) -> Expression:
         whole = by if scalar_of(by.kind) == "uint" else Construct(vector("uint", size_of(by.kind)), [by])
         return self._combined("&", whole, Literal("uint", "31"))
 

@@ -80,7 +80,7 @@ class WgslWriter(Writer):
         self._bindings += 1
         return text
 
-    def _global(self, constant: Declare) -> str:
+    def _global_text(self, constant: Declare) -> str:
         value = self._text(constant.value) if constant.value else ""
         return f"const {constant.name}: {self._kind(constant.kind)} = {value};"
 
@@ -101,7 +101,7 @@ class WgslWriter(Writer):
         copies = (f"{INDENT}var {self._name(name)} = {given};\n" for name, given in self._copied.items())
         return "".join(copies) + super()._body(function)
 
-    def _declared(self, declared: Declare) -> str:
+    def _declaration_text(self, declared: Declare) -> str:
         value = f" = {self._text(declared.value)}" if declared.value is not None else ""
         said = "" if value else f": {self._kind(declared.kind)}"
         # What is not a variable is indexed by constants alone.
@@ -109,19 +109,19 @@ class WgslWriter(Writer):
         word = "var" if is_variable else "let"
         return f"{word} {self._name(declared.name)}{said}{value}"
 
-    def _local(self, declared: Declare) -> str:
-        return self._declared(declared)
+    def _local_text(self, declared: Declare) -> str:
+        return self._declaration_text(declared)
 
-    def _counted(self, target: Expression, mark: str) -> str:
+    def _count_text(self, target: Expression, mark: str) -> str:
         return f"{self._text(target)}{mark[0] * 2}"
 
-    def _written(self, value: Expression) -> tuple[str, int]:
+    def _text_and_level(self, value: Expression) -> tuple[str, int]:
         match value:
             case Unary(kind, "-", inner) if scalar_of(kind) == "uint":
-                return self._binary(Binary(kind, "-", _broad(Literal("uint", "0"), size_of(kind)), inner))
-        return super()._written(value)
+                return self._binary_and_level(Binary(kind, "-", _broad(Literal("uint", "0"), size_of(kind)), inner))
+        return super()._text_and_level(value)
 
-    def _binary(self, value: Binary) -> tuple[str, int]:
+    def _binary_and_level(self, value: Binary) -> tuple[str, int]:
         left, right = value.left, value.right
         size = max(size_of(left.kind), size_of(right.kind))
         if value.operator in SHIFTS:
@@ -134,12 +134,12 @@ class WgslWriter(Writer):
             value = Binary(value.kind, value.operator, left, right)
         if value.operator in ("==", "!=") and left.kind == "bool":
             return f"{self._text(left, PRIMARY)} {value.operator} {self._text(right, PRIMARY)}", 7
-        return super()._binary(value)
+        return super()._binary_and_level(value)
 
     def _as_uint(self, value: Expression) -> str:
         return self._text(value, UNARY) if value.kind == "uint" else f"u32({self._text(value)})"
 
-    def _choice(self, value: Choice) -> tuple[str, int]:
+    def _choice_and_level(self, value: Choice) -> tuple[str, int]:
         parts = (value.other, value.chosen, value.condition)
         return f"select({self._arguments(parts)})", PRIMARY
 

@@ -42,6 +42,8 @@ from .tree import (
     size_of,
 )
 
+# What others call of a codec's program, each behind the program's prefix.
+PUBLIC = ("encode", "decode", "pack", "unpack", "to_target", "from_target")
 INDENT = "    "
 FIELDS = "xyzw"
 # Of an array, in a line.
@@ -103,7 +105,7 @@ class Writer:
             return self._program(program)
 
     def _program(self, program: Program) -> str:
-        parts = [*self._head(program), *map(self._struct, program.structs)]
+        parts = [*self._head_parts(program), *map(self._struct, program.structs)]
         if self.has_tables:
             parts += map(self._table, sorted(program.tables, key=lambda table: table.name))
         if program.constants:
@@ -111,7 +113,7 @@ class Writer:
         parts += [self._function(each) for each in program.functions]
         return "\n\n".join(parts) + "\n"
 
-    def _head(self, program: Program) -> list[str]:  # noqa: ARG002 (C's depends on it)
+    def _head_parts(self, program: Program) -> list[str]:  # noqa: ARG002 (C's depends on it)
         return [self.head] if self.head else []
 
     def _struct(self, struct: Struct) -> str:
@@ -121,10 +123,10 @@ class Writer:
         return f"uniform sampler2D {table.name};"
 
     def _constant(self, constant: Declare) -> str:
-        return self._comments(constant, "") + self._global(constant)
+        return self._comments(constant, "") + self._global_text(constant)
 
-    def _global(self, constant: Declare) -> str:
-        return f"const {self._declared(constant)};"
+    def _global_text(self, constant: Declare) -> str:
+        return f"const {self._declaration_text(constant)};"
 
     # Functions and statements.
 
@@ -139,9 +141,9 @@ class Writer:
         for name in (name for name in dict.fromkeys(own) if name in self._taken):
             self._renamed[name] = self._unused(f"{name}_")
         body = self._body(function)
-        return self._comments(function, "") + self._defined(self._signature(function), body)
+        return self._comments(function, "") + self._definition_text(self._signature(function), body)
 
-    def _defined(self, signature: str, body: str) -> str:
+    def _definition_text(self, signature: str, body: str) -> str:
         return f"{signature} {{\n{body}}}"
 
     def _body(self, function: Function) -> str:
@@ -218,13 +220,13 @@ class Writer:
             case If():
                 return above + self._if(statement, indent)
             case For(start, condition, step, body):
-                ends = [self._plain(one) if one else "" for one in (start, step)]
+                ends = [self._simple_text(one) if one else "" for one in (start, step)]
                 return above + self._block(f"for ({ends[0]}; {self._text(condition)}; {ends[1]})", body, indent)
             case Block(body):
                 return above + self._block("", body, indent)
             case While():
                 return above + self._block(f"while ({self._text(statement.condition)})", statement.body, indent)
-        return f"{above}{indent}{self._plain(statement)};{behind}\n"
+        return f"{above}{indent}{self._simple_text(statement)};{behind}\n"
 
     def _block(self, head: str, body: list[Statement], indent: str) -> str:
         return f"{indent}{head}{' ' * bool(head)}{{\n{self._statements(body, indent + INDENT)}{indent}}}\n"
@@ -235,13 +237,13 @@ class Writer:
             return text
         return text.rstrip("\n") + self._block(" else", statement.other, indent).removeprefix(indent)
 
-    def _plain(self, statement: Statement) -> str:
+    def _simple_text(self, statement: Statement) -> str:
         """A statement of one line, without what ends it."""
         match statement:
             case Declare():
-                return self._local(statement)
+                return self._local_text(statement)
             case Assign(target, mark, Literal(text="1")) if mark in ("+=", "-="):
-                return self._counted(target, mark)
+                return self._count_text(target, mark)
             case Assign(target, mark, value):
                 return f"{self._text(target)} {mark} {self._text(value)}"
             case Perform(call):
@@ -254,13 +256,13 @@ class Writer:
                 return f"return {self._text(value)}" if value else "return"
         raise TranslationError(f"a {type(statement).__name__} cannot be written")
 
-    def _counted(self, target: Expression, mark: str) -> str:
+    def _count_text(self, target: Expression, mark: str) -> str:
         return f"{mark[0] * 2}{self._text(target)}"
 
-    def _local(self, declared: Declare) -> str:
-        return ("const " if declared.is_constant else "") + self._declared(declared)
+    def _local_text(self, declared: Declare) -> str:
+        return ("const " if declared.is_constant else "") + self._declaration_text(declared)
 
-    def _declared(self, declared: Declare) -> str:
+    def _declaration_text(self, declared: Declare) -> str:
         kind, _, count = declared.kind.partition("[")
         array = f"[{count}" if count else ""
         value = f" = {self._text(declared.value)}" if declared.value is not None else ""
@@ -276,10 +278,10 @@ class Writer:
 
     def _text(self, value: Expression, least: int = 0) -> str:
         """A value, in parentheses where what stands around it binds more tightly."""
-        text, level = self._written(value)
+        text, level = self._text_and_level(value)
         return f"({text})" if level < least else text
 
-    def _written(self, value: Expression) -> tuple[str, int]:
+    def _text_and_level(self, value: Expression) -> tuple[str, int]:
         match value:
             case Literal():
                 return self._literal(value), PRIMARY
@@ -288,9 +290,9 @@ class Writer:
             case Unary(_, mark, inner):
                 return mark + self._text(inner, UNARY + (isinstance(inner, Unary))), UNARY
             case Binary():
-                return self._binary(value)
+                return self._binary_and_level(value)
             case Choice():
-                return self._choice(value)
+                return self._choice_and_level(value)
             case Call():
                 return self._call(value), PRIMARY
             case Construct():
@@ -310,7 +312,7 @@ class Writer:
             return shortest(value.text) + self.float_suffix
         return value.text + ("u" if value.kind == "uint" else "")
 
-    def _binary(self, value: Binary) -> tuple[str, int]:
+    def _binary_and_level(self, value: Binary) -> tuple[str, int]:
         level = BINDING[value.operator]
         left, right = self._operand(value, value.left, level), self._operand(value, value.right, level + 1)
         return f"{left} {value.operator} {right}", level
@@ -318,7 +320,7 @@ class Writer:
     def _operand(self, parent: Binary, child: Expression, least: int) -> str:
         return self._text(child, least_of(parent, child, least))
 
-    def _choice(self, value: Choice) -> tuple[str, int]:
+    def _choice_and_level(self, value: Choice) -> tuple[str, int]:
         condition, chosen = self._text(value.condition, CHOICE + 1), self._text(value.chosen, CHOICE + 1)
         return f"{condition} ? {chosen} : {self._text(value.other)}", CHOICE
 
@@ -332,9 +334,9 @@ class Writer:
 
     def _arguments(self, values: Sequence[Expression]) -> str:
         """What a function is given. f(a < b, c > (d)) may be read as a template's name and a call."""
-        return ", ".join([*map(self._before_others, values[:-1]), *map(self._text, values[-1:])])
+        return ", ".join([*map(self._argument_text, values[:-1]), *map(self._text, values[-1:])])
 
-    def _before_others(self, value: Expression) -> str:
+    def _argument_text(self, value: Expression) -> str:
         return self._text(value, UNARY if self.has_templates and is_less(value) else 0)
 
     def _fetch(self, value: Call) -> str:
@@ -349,9 +351,9 @@ class Writer:
 
     def _listed(self, value: Elements) -> str:
         """An array's elements, in lines of their own where they are many."""
-        return self._rows(list(map(self._text, value.values)))
+        return self._rows_text(list(map(self._text, value.values)))
 
-    def _rows(self, texts: list[str]) -> str:
+    def _rows_text(self, texts: list[str]) -> str:
         if len(texts) <= ELEMENTS:
             return ", ".join(texts)
         rows = (", ".join(texts[at : at + ELEMENTS]) for at in range(0, len(texts), ELEMENTS))

@@ -10,8 +10,10 @@ what comes back, `half`, the axis and the side of a hemisphere that is not z >= 
 wrong, `hole`, a direction outside of the domain where it is not finite, and `is_unit`, where its codes fill [0, 1].
 Closely also `like`, the encodings of the catalogue that both its functions are, `bad`, directions that come back
 elsewhere, `spared`, lines on ranges that may be unused, and `lattice`, to which bits it rounds by itself and whether in
-[0, 1]. Of a translation also `by`, the language whose compiler reads it right, and `notes`, lines. Of the twin:
-`error`, what it raises; `apart`, where it contradicts the GLSL.
+[0, 1]. Of a code that is an integer also `packed_bits`, how many of its bits are used. Of a translation also `by`, the
+language whose compiler reads it right, `pair`, which of several pairs was looked at, as only that one undoes itself,
+`language`, what it is written in if its ending says something else, and `notes`, lines. Of the twin: `error`, what it
+raises; `apart`, where it contradicts the GLSL.
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ import json
 import os
 import re
 import sys
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import astuple
 from pathlib import Path
@@ -39,20 +42,28 @@ from ...ground.directions import directions
 from ...ground.machine import children
 from ...ground.output.errors import MissingError, UsageError
 from ...shaders.code.twin import NoTwinError
-from ...shaders.languages.words import is_translated, twin_of
+from ...shaders.languages.language import GLSL_NAME
+from ...shaders.languages.pairs import NO_PAIR
+from ...shaders.languages.translated import AloneError, SeveralEncodersError, Translated
+from ...shaders.languages.wiring import Wiring, wiring_of
+from ...shaders.languages.words import functions_of, is_translated, twin_of, with_pair, with_settings
 from .doctor.diagnoses import bad, diagnosed
-from .doctor.domains import Domain, guessed
-from .doctor.exact import OF_A_HALF, SAME_DEG, is_unit, spared
-from .doctor.likeness import likeness
+from .doctor.domains import SPHERE, Domain, guessed
+from .doctor.exact import OF_A_HALF, SAME_DEG, bits_used, is_unit, spared
+from .doctor.likeness import likeness, names_alone
 from .doctor.nearly import lattice_of
 from .doctor.probe import VIEW, Probe, Trip, probe_of, trip_of
 from .names import check_twin
 from .second_look import second_look
-from .signatures import of_hlsl
-from .user_encodings import ANY, read_encoding, twin_is_looked_at
+from .signatures import NO_FUNCTION, OWN_MAIN, OWN_VERSION, of_hlsl
+from .user_encodings import ANY, encoding_alone, read_encoding, twin_is_looked_at
 
+# What one function of a pair is called.
+SIDES = ("encode", "decode")
 # Of directions that a picture is marked with.
 MOST_BAD = 4000
+# How many pairs of a file are tried, and how near directions come back from one, in degrees.
+MOST_PAIRS, MOST_WIRINGS, OF_A_PAIR_DEG, OF_A_WIRING_DEG = 12, 12, 5.0, 0.1
 NOT_ASKED = "the twin is looked at by itself"
 # Letters of a compiler's message; what follows the first errors follows from them.
 LONGEST = 1000
@@ -66,24 +77,116 @@ def first_look(path: Path, domain: str = "") -> dict[str, Any]:
     Args:
         domain: what its author says that it is made for, or ANY, to look closely.
     """
+    found = _first_look(path, domain, "")
+    if "error" not in found or is_translated(path):
+        return found
+    if _is_hlsl(path):
+        again = _first_look(Path(with_settings(str(path), language="hlsl")), domain, "")
+        return found if {"error", "missing"} & again.keys() else again | {"language": "hlsl"}
+    # What the device does not compile as it lies may have more in it than the two functions.
+    again = _first_look(path, domain, GLSL_NAME)
+    # Those that the device refuses for their form alone are read here.
+    is_of_form = found["error"].endswith((OWN_MAIN, OWN_VERSION))
+    is_nearer = (is_of_form or NO_FUNCTION in found["error"]) and NO_PAIR not in again.get("error", NO_PAIR)
+    return again if is_nearer or not {"error", "missing"} & again.keys() else found
+
+
+def _is_hlsl(path: Path) -> bool:
     try:
-        encoding, gl = read_encoding(path, NOT_ASKED), device()
+        return bool(of_hlsl(read_shader(path)))
+    except ShaderError:
+        return True
+
+
+def _first_look(path: Path, domain: str, by: str) -> dict[str, Any]:
+    try:
+        return _look_at_one(path, domain, by)
+    except SeveralEncodersError as error:
+        kept = _that_undo_themselves(path, error.pairs, by)
+        if len(kept) == 1:
+            return _look_at_one(with_pair(path, kept[0]), domain, by) | {"pair": kept[0]}
+        how = "name one, or take --all-pairs"
+        said = f"{len(kept)} of its pairs undo themselves; {how}" if kept else "none of its pairs undoes itself"
+        named = ", ".join(str(with_pair(path, one)) for one in kept or error.pairs)
+        tried = len({_functions_of(with_pair(path, pair)) for pair in error.pairs})
+        more = f" (the first {MOST_PAIRS} of {tried} were tried)" if tried > MOST_PAIRS else ""
+        return {"error": f"{path}: {said}{more}: {named}", "pairs": kept}
+
+
+def _wirings_of(path: Path) -> list[Wiring]:
+    """How the two functions are called that a word names."""
+    return [wiring_of(text) for text in functions_of(path) or ()]
+
+
+def _functions_of(path: Path) -> tuple[str, ...]:
+    """The names of these functions."""
+    return tuple(one.function for one in _wirings_of(path))
+
+
+def _that_undo_themselves(path: Path, pairs: Sequence[str], by: str) -> list[str]:
+    """Those of some pairs that undo themselves; of two functions, as they are called where that holds most normals."""
+    found: dict[tuple[str, ...], tuple[bool, str]] = {}
+    tries = Counter()
+    for pair in pairs:
+        word = with_pair(path, pair)
+        functions = _functions_of(word)
+        is_whole, _ = found.get(functions, (False, ""))
+        tries[functions] += 1
+        is_too_many = len(tries) > MOST_PAIRS or tries[functions] > MOST_WIRINGS
+        domain = "" if is_whole or is_too_many else _undone(word, by)
+        if domain == SPHERE.name or (domain and functions not in found):
+            found[functions] = (domain == SPHERE.name, pair)
+    return [pair for _, pair in found.values()]
+
+
+def _undone(path: Path, by: str) -> str:
+    """The domain on which a decoder undoes its encoder; empty where it does on none."""
+    try:
+        encoding, gl = read_encoding(path, NOT_ASKED, by=by), device()
+        with np.errstate(invalid="ignore"):
+            # What lacks a part of its code comes back nearly.
+            within = OF_A_WIRING_DEG if any(one.made for one in _wirings_of(path)) else OF_A_PAIR_DEG
+            return guessed(trip_of(probe_of(gl, encoding), directions()), within).name
+    except (UsageError, ShaderError):
+        return ""
+
+
+def _look_at_one(path: Path, domain: str, by: str) -> dict[str, Any]:
+    """The same of a file of which one pair is meant. Raises SeveralEncodersError."""
+    try:
+        encoding, gl = read_encoding(path, NOT_ASKED, by=by), device()
         broken = _endless(gl, encoding)
-        other = {} if broken or not is_translated(path) else _second_look(path, gl, encoding)
+        other = {"by": by} if by else {}
+        if not broken and (by or is_translated(path)):
+            other |= _second_look(path, gl, encoding)
         if "error" in other:
             return other
-        by = other.get("by", "")
-        encoding = read_encoding(path, NOT_ASKED, by=by) if by else encoding
-        unit = {"is_unit": True} if not broken and _is_unit(probe_of(gl, encoding)) else {}
+        may_be_unit = not broken and not encoding.is_packed
+        unit = {"is_unit": True} if may_be_unit and _is_unit(probe_of(gl, encoding)) else {}
         if unit:
             encoding = read_encoding(path, NOT_ASKED, is_unit=True, by=by)
         return (broken or _judged(probe_of(gl, encoding), gl, domain)) | unit | other
     except (NoDeviceError, MissingError) as error:
         return {"missing": str(error)}
+    except SeveralEncodersError:
+        raise
+    except AloneError as error:
+        return {"error": f"{error}; {_of_one(path, error.made)}"}
     except UsageError as error:
         return {"error": str(error)}
     except ShaderError as error:
         return {"error": _of_compiler(path, str(error))}
+
+
+def _of_one(path: Path, made: Translated) -> str:
+    """What an encoder or a decoder is that has no partner, in words."""
+    side, (name, _) = next((side, one) for side, one in zip(SIDES, made.functions, strict=True) if one[0])
+    try:
+        gl = device()
+        like = names_alone(gl, probe_of(gl, encoding_alone(path, made)), side == SIDES[0])
+    except (NoDeviceError, ShaderError) as error:
+        return f"it is not compared with the catalogue: {' '.join(str(error).split())[:300]}"
+    return f"{name} is the {side} of {like[0]}" if like else f"{name} is the {side} of no encoding of the catalogue"
 
 
 def _is_unit(probe: Probe) -> bool:
@@ -132,14 +235,19 @@ def _judged(probe: Probe, gl: Device, domain: str) -> dict[str, Any]:
     if found.broken:
         return {"broken": found.broken, "wrong": found.wrong}
     hole = {"hole": found.hole} if found.hole else {}
+    packed = {"packed_bits": bits_used(_finite_trip(probe).codes)} if probe.is_packed else {}
     half = {"half": [found.domain.axis, found.domain.side]} if found.domain.is_turned else {}
     closely = _closely(probe, gl, found.domain) if domain else {}
-    return {"domain": found.domain.name, "wrong": found.wrong} | half | hole | closely
+    return {"domain": found.domain.name, "wrong": found.wrong} | packed | half | hole | closely
+
+
+def _finite_trip(probe: Probe) -> Trip:
+    found = trip_of(probe, directions())
+    return found.of(found.is_finite)
 
 
 def _closely(probe: Probe, gl: Device, domain: Domain) -> dict[str, Any]:
-    found = trip_of(probe, directions())
-    found = found.of(found.is_finite)
+    found = _finite_trip(probe)
     lattice = lattice_of(found.codes)
     return {
         "like": likeness(gl, probe, domain).shared(domain.name),

@@ -14,9 +14,17 @@ from ....encodings.codecs.variants import MARK, TABLE
 from ....gbuffer.layouts.layout import Layout, read_layout
 from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.layouts.words import LayoutError
-from ...ground.choose import choose
+from ...ground.choose import choose, file_names
 from ...ground.output.errors import MissingError, UsageError
-from ...shaders.languages.words import file_of, files_in, lacks_a_function, names_an_encoder
+from ...shaders.languages.words import (
+    files_in,
+    files_of,
+    lacks_a_function,
+    names_an_encoder,
+    settings_of,
+    split_names,
+    with_files,
+)
 from .names import check_twin
 from .user_encodings import encodings_named
 
@@ -31,12 +39,15 @@ def layouts_named(names: str) -> list[Layout]:
         UsageError: an unknown name, a file that is not a layout, or an encoder that cannot be measured.
         MissingError: the compiler of an encoder's language is not there.
     """
-    words = dict.fromkeys(name.strip() for name in names.split(","))
+    words = file_names(names)
     # The first look at an encoder takes seconds: layouts that name the same one share it.
     shared = cache(_encoding_named)
-    found = {name: _read(Path(name), shared) for name in words if name.endswith(".toml")}
+    found = {name: _layout_from_file(Path(name), shared) for name in words if name.endswith(".toml")}
     known = {**LAYOUTS, **found}
-    chosen = choose("layout", names, known) if "all" not in words else list(known.values())
+    # A file's name may have a comma of its own.
+    known = {name.replace(",", ";"): layout for name, layout in known.items()}
+    asked = ",".join(name.replace(",", ";") for name in words)
+    chosen = choose("layout", asked, known) if "all" not in words else list(known.values())
     called = [layout.name for layout in chosen]
     for name in called:
         if called.count(name) > 1:
@@ -47,14 +58,14 @@ def layouts_named(names: str) -> list[Layout]:
 
 def _check_encodings(layouts: Sequence[Layout]) -> None:
     """Raises UsageError for two encodings of one name, which rows could not tell apart."""
-    files: dict[str, set[Path]] = {}
+    files: dict[str, set[tuple[Path | None, Path]]] = {}
     for encoding in (layout.encoding for layout in layouts):
-        files.setdefault(encoding.name, set()).add(encoding.source or encoding.glsl)
+        files.setdefault(encoding.name, set()).add((encoding.source, encoding.glsl))
         if len(files[encoding.name]) > 1:
             raise UsageError(f"two layouts have each an encoding named {encoding.name} of its own; rename one")
 
 
-def _read(path: Path, encoding_named: Callable[[str], Encoding]) -> Layout:
+def _layout_from_file(path: Path, encoding_named: Callable[[str], Encoding]) -> Layout:
     try:
         return read_layout(path, lambda word: encoding_named(_from_here(path, word)))
     except LayoutError as error:
@@ -66,7 +77,7 @@ def _read(path: Path, encoding_named: Callable[[str], Encoding]) -> Layout:
 
 def _encoding_named(word: str) -> Encoding:
     """The encoding that --encoding would take by this name. Raises UsageError and MissingError."""
-    if "," in word or word == "all":
+    if len(split_names(word)) > 1 or word == "all":
         raise UsageError(f"encoding {word!r}: a layout has one encoding")
     (encoding,) = encodings_named(word)
     check_twin(encoding)
@@ -80,8 +91,11 @@ def _from_here(path: Path, word: str) -> str:
         LayoutError: the file lies outside the layout's folder: it would not travel to workers with the layout.
     """
     if names_an_encoder(word) or lacks_a_function(word):
-        _check_inside(path.parent, str(file_of(word)))
-        return str(path.parent / word)
+        settings = settings_of(word)
+        for file in (*map(str, files_of(word)), *settings.preludes, *(root for _, root in settings.roots)):
+            _check_inside(path.parent, file)
+        named = files_in(word, path.parent)
+        return with_files(word, {file: str(path.parent / file) for file in named}) if named else str(path.parent / word)
     table = _TABLE_FILE.search(word)
     if not table:
         return word

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import jax
@@ -11,43 +12,47 @@ import jax.numpy as jnp
 from ....encodings.catalogue import ENCODINGS
 from ....encodings.codecs.codec import Codec
 from ....encodings.codecs.encoding import Encoding
-from ....encodings.codecs.variants import ARITHMETICS, FLOAT, HALF, in_half
+from ....encodings.codecs.variants import ARITHMETICS, DECLARED, FLOAT, HALF, in_half
 from ....encodings.storages.storage import ROUNDINGS, STORAGES, Storage, storage_of
 from ....encodings.vec import Vec3
 from ...ground.choose import choose, names_a_file
 from ...ground.options.words import Words, given_in
-from ...ground.output.errors import UsageError, by_reason
-from ...shaders.code.twin import NoTwinError
-from ...shaders.languages.words import CHAIN
+from ...ground.output.errors import MissingError, UsageError, by_reason, tell
+from ...shaders.code.twin import NoTwinError, has_twin
+from ...shaders.languages.words import CHAIN, file_of, split_names
+from .half.compute import half_device
 from .user_encodings import encodings_named
 
 
 def codecs_named(encodings: str, storages: str, roundings: str, arithmetics: str = FLOAT) -> list[Codec]:
     """Every combination of comma-separated names, users' encodings from files among them. Raises UsageError."""
-    chosen = with_arithmetics(_with_chains(encodings), arithmetics)
-    return [
+    named = _with_chains(encodings)
+    chosen = with_arithmetics(named, FLOAT if arithmetics == DECLARED and not _computes_halves(named) else arithmetics)
+    made = (
         Codec(encoding, storage, rounding)
         for storage in storages_named(storages)
         for rounding in choose("rounding", roundings, dict(zip(ROUNDINGS, ROUNDINGS, strict=True)))
         for encoding in chosen
-    ]
+    )
+    # One with a storage of its own is one codec, however many storages are named.
+    return list(dict.fromkeys(made))
 
 
 def _with_chains(names: str) -> list[Encoding]:
     """Encodings by name; CODEC+ENCODING is that encoding of what comes back from a codec. Raises UsageError."""
-    words, own = list(dict.fromkeys(map(str.strip, names.split(",")))), given_in(names)
+    words, own = split_names(names), given_in(names)
     if not any(_is_chain(word) for word in words):
         return encodings_named(names)
     single = [word for word in words if not _is_chain(word)]
     found = encodings_named(Words(single, own)) if single else []
-    return [*found, *(_chained(word, own) for word in words if _is_chain(word))]
+    return [*found, *(_chained_encoding(word, own) for word in words if _is_chain(word))]
 
 
 def _is_chain(word: str) -> bool:
-    return CHAIN in word and not names_a_file(word)
+    return CHAIN in word and not names_a_file(str(file_of(word)))
 
 
-def _chained(word: str, own: Mapping[str, Any]) -> Encoding:
+def _chained_encoding(word: str, own: Mapping[str, Any]) -> Encoding:
     before, _, then = word.rpartition(CHAIN)
     name, is_codec, storage = before.rpartition("/")
     if not (is_codec and name and then):
@@ -62,12 +67,32 @@ def _chained(word: str, own: Mapping[str, Any]) -> Encoding:
 
 
 def with_arithmetics(encodings: Sequence[Encoding], names: str) -> list[Encoding]:
-    """Encodings computed in each of comma-separated arithmetics, those of a name that says half once. Raises
-    UsageError."""
-    chosen = choose("arithmetic", names, dict(zip(ARITHMETICS, ARITHMETICS, strict=True)))
-    named = [encoding for encoding in encodings if encoding.is_half or FLOAT in chosen]
-    made = [in_half(encoding) for encoding in encodings if HALF in chosen and not encoding.is_half]
-    return [*named, *made]
+    """Encodings computed in each of comma-separated arithmetics, those of a name that says half once.
+
+    DECLARED is both for files that declare numbers of 16 bits, and float for all others. Raises UsageError.
+    """
+    chosen = choose("arithmetic", names, {word: word for word in (*ARITHMETICS, DECLARED)})
+    named = [encoding for encoding in encodings if encoding.is_half or {FLOAT, DECLARED} & set(chosen)]
+    others = [encoding for encoding in encodings if not encoding.is_half]
+    return [*named, *(in_half(one) for one in others if HALF in chosen or (DECLARED in chosen and one.is_also_half))]
+
+
+def _computes_halves(encodings: Iterable[Encoding]) -> bool:
+    """Whether this machine computes in 16 bits what declares them; a line says so where it does not."""
+    if any(one.is_also_half and not has_twin(one) for one in encodings):
+        try:
+            half_device()
+        except MissingError as error:
+            tell(f"what declares numbers of 16 bits is computed in 32 alone: {error}")
+            return False
+    return True
+
+
+def as_declared(codecs: Sequence[Codec]) -> list[Codec]:
+    """Codecs in the arithmetic that their files declare, where this machine computes in it."""
+    if not _computes_halves([codec.encoding for codec in codecs]):
+        return list(codecs)
+    return [replace(one, encoding=in_half(one.encoding)) if one.encoding.is_also_half else one for one in codecs]
 
 
 def storages_named(names: str) -> list[Storage]:

@@ -5,9 +5,8 @@ from __future__ import annotations
 import itertools
 import re
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -18,11 +17,10 @@ from ....gbuffer.gl.device import Device
 from ...ground.output import cache as kept
 from ...ground.output.errors import MissingError, UsageError
 from ...shaders.languages import tools
-from ...shaders.languages.language import also_read_by, language_of
+from ...shaders.languages.language import GLSLANG, language_of, name_of
 from ...shaders.languages.second import NoSecondWayError, UndefinedError, Way, second_way
 from ...shaders.languages.source import Source
 from ...shaders.languages.translated import own, translated
-from ...shaders.languages.words import TRANSLATED, file_of
 
 RANDOM = 2**16
 VIEW = (0.1, -0.2, -1.0)
@@ -34,12 +32,10 @@ POLYNOMIALS = re.compile(r"\b(?:a?(?:sin|cos|tan)h?|atan2|sincos|pow|exp2?|log(?
 BESIDE, MOST = 2.0**-22, 1e-3
 # As many differ only where a function is another one; and so many are looked at closely.
 MANY, LOOKED_AT = 0.05, 2048
-# In HLSL: of negative numbers.
-MISREAD = re.compile(r"\bfmod\s*\(|%")
-# What the two ways of each language are called.
-WAYS: Mapping[str, tuple[str, str]] = MappingProxyType(
-    {"HLSL": ("glslang", "slangc"), "Slang": ("slangc's GLSL", "its C++"), "WGSL": ("this program", "naga")}
-)
+# What glslang reads otherwise than HLSL defines it: remainders of negative numbers, and products of matrices.
+MISREAD = re.compile(r"\bfmod\s*\(|%|\b(?:float|half|min16float|real)[234]x[234]\b|\bmatrix\b")
+# What the two ways of a language are called.
+SLANG_S, OF_WGSL = ("Slang's GLSL", "its C++"), ("this program", "naga")
 # Values of shape (count, 3) to what a function makes of them.
 Function = Callable[[np.ndarray], np.ndarray]
 
@@ -53,79 +49,102 @@ def second_look(
         path: what names it.
         encoding: it, by its first way.
         hard: normals of shape (count, 3), beside random ones.
-        read: makes the encoding of a language whose compiler reads the file as well.
+        read: makes the encoding as a reader of a name of `BY_NAME` has it.
 
     Returns:
-        Nothing where they agree. `error`: where they do not; `by`: the language whose compiler has read it right;
-        `notes`: lines that are to be said.
+        Nothing where they agree. `error`: where they do not; `notes`: lines that are to be said.
     """
-    source = Source(file_of(path))
-    stamps = [_stamp(tool) for tool in (tools.SLANG, *language_of(file_of(path)).tools)]
+    source, language = Source(path), language_of(path)
+    stamps = [tools.stamp_or_empty(tool) for tool in (tools.SLANG, *language.tools, *language.others)]
     key = kept.key_of("second", source.text, str(path), *stamps, own(), gl.renderer, gl.version)
     if (found := kept.read(key)) is None:
         try:
-            found = _looked(path, source.text, gl, encoding, hard, read)
+            found = _disagreement(path, source.text, gl, encoding, hard, read)
         except UndefinedError as error:
             found = {"error": f"{path}: {error}; its language does not define that"}
         except NoSecondWayError as error:
-            found = _unchecked(path, source, str(error))
+            found = _unchecked_finding(path, str(error))
             if not error.is_of_the_file:
                 return found
         kept.write(key, found)
     return found
 
 
-def _unchecked(path: Path, source: Source, why: str) -> dict[str, Any]:
+def _unchecked_finding(path: Path, why: str) -> dict[str, Any]:
     """What is said of a file that one compiler alone has read; it is refused where that one is known to be wrong."""
-    used = MISREAD.search(source.text) if TRANSLATED[file_of(path).suffix.lower()] == "HLSL" else None
-    if used:
+    encoder = translated(path)
+    if encoder.read_by == GLSLANG:
+        if not (used := MISREAD.search(encoder.text)):
+            return {}
         what = f"it uses {used[0].strip('( ')}, which glslang reads otherwise than HLSL defines it"
         return {"error": f"{path}: {what}, and no second compiler reads the file: {why}"}
     return {"notes": [f"no second compiler has checked its translation: {why}"]}
 
 
-def _stamp(tool: str) -> str:
-    try:
-        return tools.stamp(tool)
-    except MissingError:
-        return ""
-
-
-def _looked(
+def _disagreement(
     path: Path, text: str, gl: Device, encoding: Encoding, hard: np.ndarray, read: Callable[[str], Encoding]
 ) -> dict[str, Any]:
     random = np.random.default_rng(0).normal(size=(RANDOM, 3))
     n = np.concatenate([hard, random / np.linalg.norm(random, axis=1, keepdims=True)]).astype(np.float32)
     tolerance = BY_POLYNOMIALS if POLYNOMIALS.search(text) else EXACT
+
+    def difference(way: Way, names: tuple[str, str]) -> str:
+        return _difference(path, gl, encoding, way, n, tolerance, names)
+
+    try:
+        said, why = _by_second_way(path, difference), None
+    except NoSecondWayError as error:
+        said, why = "", error
+    by_glslang = _by_glslang(path, gl, read, difference)
+    if why and by_glslang is None:
+        raise why
+    if said or (why and by_glslang):
+        advice = "write it without what is read in two ways, such as % of negative whole numbers"
+        return {"error": f"{path}: two compilers disagree: {said or by_glslang}; {advice}"}
+    return {"notes": [f"{by_glslang}; the former is measured, as the language defines it"]} if by_glslang else {}
+
+
+def _by_second_way(path: Path, difference: Callable[[Way, tuple[str, str]], str]) -> str:
     with tempfile.TemporaryDirectory() as folder:
-        way = second_way(path, translated(path), Path(folder))
-        said = _difference(path, gl, encoding, way, n, tolerance)
-        if not said:
-            return {}
-        by = also_read_by(file_of(path))
-        try:
-            if by and not _difference(path, gl, read(by), way, n, tolerance):
-                return {"by": by, "notes": [f"{said}; the latter is measured, as the language defines it"]}
-        except (MissingError, UsageError):
-            pass
-    advice = "write it without what is read in two ways, such as % of negative whole numbers"
-    return {"error": f"{path}: two compilers disagree: {said}; {advice}"}
+        is_wgsl = name_of(path) == "WGSL"
+        return difference(second_way(path, translated(path), Path(folder)), OF_WGSL if is_wgsl else SLANG_S)
 
 
-def _difference(path: Path, gl: Device, encoding: Encoding, way: Way, n: np.ndarray, tolerance: float) -> str:
-    """Where the two ways differ, in words; empty where they do not."""
+def _by_glslang(
+    path: Path, gl: Device, read: Callable[[str], Encoding], difference: Callable[[Way, tuple[str, str]], str]
+) -> str | None:
+    """Where glslang differs; None where it has not read the file, or has read it alone."""
+    if name_of(path) != "HLSL" or translated(path).read_by:
+        return None
+    try:
+        encoding = read(GLSLANG)
+    except (MissingError, UsageError):
+        return None
+
+    def way(n: np.ndarray, codes: np.ndarray, view: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        views = np.tile(np.array([*view, 0.0], np.float32), (len(n), 1))
+        by_gl, by_gl_decoded = exact_values(gl, encoding, _four_columns(n), views, _four_columns(codes))
+        return by_gl[:, :3], by_gl_decoded[:, :3]
+
+    return difference(way, ("Slang", GLSLANG))
+
+
+def _difference(
+    path: Path, gl: Device, encoding: Encoding, way: Way, n: np.ndarray, tolerance: float, ways: tuple[str, str]
+) -> str:
+    """Where the two ways, which have these names, differ, in words; empty where they do not."""
     size = encoding.components
 
     def encode(given: np.ndarray) -> np.ndarray:
-        return exact_values(gl, encoding, _four(given), _views(given), _four(given))[0][:, :size]
+        return exact_values(gl, encoding, _four_columns(given), _tiled_views(given), _four_columns(given))[0][:, :size]
 
     def decode(given: np.ndarray) -> np.ndarray:
-        return exact_values(gl, encoding, _four(given), _views(given), _four(given))[1][:, :3]
+        return exact_values(gl, encoding, _four_columns(given), _tiled_views(given), _four_columns(given))[1][:, :3]
 
     codes = encode(n)
     given = np.pad(codes, ((0, 0), (0, 3 - size)))
     second_codes, second_normals = way(n, given, np.array(VIEW, np.float32))
-    names, ways = [name for name, _ in translated(path).functions], WAYS[TRANSLATED[file_of(path).suffix.lower()]]
+    names = [name for name, _ in translated(path).functions]
     for name, function, values, mine, theirs, count in (
         (names[0], encode, n, codes, second_codes[:, :size], 3),
         (names[1], decode, given, decode(given), second_normals, size),
@@ -163,9 +182,9 @@ def _is_beside(function: Function, given: np.ndarray, theirs: np.ndarray, bound:
     return inside.all(axis=1)
 
 
-def _four(given: np.ndarray) -> np.ndarray:
+def _four_columns(given: np.ndarray) -> np.ndarray:
     return np.pad(given, ((0, 0), (0, 4 - given.shape[1]))).astype(np.float32)
 
 
-def _views(given: np.ndarray) -> np.ndarray:
+def _tiled_views(given: np.ndarray) -> np.ndarray:
     return np.tile(np.array([*VIEW, 0.0], np.float32), (len(given), 1))

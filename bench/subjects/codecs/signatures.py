@@ -18,6 +18,9 @@ FUNCTION = r"\b(?!return\b|else\b|define\b)(\w+)\s+({name})\s*\(([^(){{}};]*)\)"
 ENCODE, MAIN = re.compile(FUNCTION.format(name=r"\w+_encode")), re.compile(r"\bvoid\s+main\s*\(")
 CODES = ("vec2", "vec3")
 HLSL = re.compile(r"\b(?:float|half|int|uint)[234](?:x[234])?\b")
+NO_FUNCTION = "no function vec2 (or vec3) NAME_encode(vec3 n, vec3 view)"
+OWN_MAIN = "it defines main; leave it out, normalbench has its own"
+OWN_VERSION = "it has #version; leave it out, normalbench has its own"
 FROM_HLSL = "rename float2 to vec2, lerp to mix, and so on"
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 
@@ -47,9 +50,9 @@ def encode_of(path: Path, text: str) -> Encode:
     if "/*" in code:
         raise UsageError(f"{path}: a comment that begins with /* is not closed")
     if MAIN.search(code):
-        raise UsageError(f"{path}: it defines main; leave it out, normalbench has its own")
+        raise UsageError(f"{path}: {OWN_MAIN}")
     if VERSION.search(code):
-        raise UsageError(f"{path}: it has #version; leave it out, normalbench has its own")
+        raise UsageError(f"{path}: {OWN_VERSION}")
     found = [match.groups() for match in ENCODE.finditer(code)]
     right = list(dict.fromkeys(one[:2] for one in found if _is_encode(one)))
     if not right:
@@ -102,7 +105,7 @@ def _types(parameters: str) -> list[str]:
 def _no_encode(found: list[tuple[str, ...]]) -> str:
     """Why none of some functions is an encode."""
     if not found:
-        return "no function vec2 (or vec3) NAME_encode(vec3 n, vec3 view)"
+        return NO_FUNCTION
     kind, name, _ = found[0]
     wanted = f"{kind if kind in CODES else 'vec2 (or vec3)'} {name}(vec3 n, vec3 view)"
     return _should_be(found[0], wanted)

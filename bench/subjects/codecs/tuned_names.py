@@ -10,6 +10,7 @@ from ....encodings.catalogue import ENCODINGS
 from ....encodings.codecs.encoding import Encoding
 from ....encodings.codecs.files import called
 from ....encodings.codecs.variants import MARK, TABLE, known_settings, settings_in, variant
+from ...ground.choose import unknown_name
 from ...ground.output.arrays import DamagedError, read_npy
 from ...ground.output.errors import UsageError
 
@@ -22,12 +23,14 @@ def tuned(word: str) -> Encoding:
     """
     name = word.partition(MARK)[0]
     if name not in ENCODINGS:
-        raise UsageError(f"{word}: unknown encoding {name!r}; known: {', '.join(ENCODINGS)}")
+        raise UsageError(f"{word}: {unknown_name('encoding', [name], ENCODINGS)}")
     encoding = ENCODINGS[name]
     try:
         _, values = settings_in(word)
     except ValueError as error:
-        raise UsageError(f"{word}: after {name} come parameters, each once, such as {_example(encoding)}") from error
+        raise UsageError(
+            f"{word}: after {name} come parameters, each once, such as {_example_setting(encoding)}"
+        ) from error
     table = values.pop(TABLE, None) if encoding.look_up else None
     try:
         encoding = variant(encoding, values)
@@ -38,7 +41,7 @@ def tuned(word: str) -> Encoding:
     return encoding.with_table(_read_table(Path(table), encoding), called(Path(table).name))
 
 
-def _example(encoding: Encoding) -> str:
+def _example_setting(encoding: Encoding) -> str:
     known = [f"{encoding.name}{MARK}{key}={value}" for key, value in known_settings(encoding).items()]
     return known[0] if known else f"those of others: {encoding.name} has none"
 

@@ -8,7 +8,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import redirect_stdout
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from traceback import extract_tb
 from types import MappingProxyType
@@ -17,10 +17,11 @@ from typing import Any, NamedTuple
 from ....encodings.catalogue import ENCODINGS
 from ....encodings.codecs.encoding import Encoding
 from ....encodings.codecs.files import called
+from ....encodings.storages.storage import BITS_32
 from ....encodings.vec import Vec2, Vec3
 from ....gbuffer.codecs.harness import takes_view
 from ....gbuffer.gl.shader import ShaderError, read_shader
-from ...ground.choose import check_comma, choose, names_a_file
+from ...ground.choose import choose, names_a_file
 from ...ground.machine import children
 from ...ground.machine.cores import on_all_cores
 from ...ground.machine.posix import forks
@@ -29,10 +30,23 @@ from ...ground.output.errors import NO_TWIN, MissingError, UsageError, leave_out
 from ...ground.spelling import spelled
 from ...shaders.code.twin import NoTwinError
 from ...shaders.languages.pairs import NORMAL, Function
-from ...shaders.languages.programs import pair
+from ...shaders.languages.programs import has_halves, pair
 from ...shaders.languages.source import Source
-from ...shaders.languages.translated import glsl_file, translated
-from ...shaders.languages.words import ENDINGS, file_of, is_translated, lacks_a_function, names_an_encoder, twin_of
+from ...shaders.languages.translated import Translated, glsl_file, translated
+from ...shaders.languages.words import (
+    ENDINGS,
+    file_of,
+    functions_of,
+    is_translated,
+    lacks_a_function,
+    names_an_encoder,
+    settings_of,
+    split_names,
+    twin_of,
+    with_pair,
+    with_settings,
+    without_settings,
+)
 from . import tuned_names
 from .doctor.domains import SPHERE, Domain
 from .doctor.nearly import Lattice
@@ -50,6 +64,11 @@ TIME_LIMIT = 60.0
 ANY = "any"
 FIRST_LOOK = "normalbench.bench.subjects.codecs.first_look"
 TAKEN = "there is an encoding named {} already; rename its two functions"
+DECLARES_HALF = (
+    "it declares numbers of 16 bits: quality and cost have rows in half arithmetic as well, and pick goes by them; all "
+    "other tables compute in 32 bits"
+)
+IN_32_BITS = "it declares numbers of 16 bits, but its code is an integer: it is computed in 32 bits"
 UNIT = "{} are in [0, 1]; every storage holds them as they are, signed and float ones as well"
 
 
@@ -64,11 +83,10 @@ def encodings_named(names: str) -> list[Encoding]:
         UsageError: an unknown name, or nothing left.
         MissingError: nothing left, because a compiler is missing.
     """
-    check_comma(names)
-    words = dict.fromkeys(word.strip() for word in names.split(","))
     own = given_in(names)
-    for word in (word for word in words if word not in own):
+    for word in (word for word in split_names(names) if word not in own):
         _check_word(word)
+    words = [one for word in split_names(names) for one in _pairs_meant(word)]
     files, complaints, notes = _read_all([word for word in words if names_an_encoder(word)])
     rest = [word for word in words if word in files or not names_an_encoder(word)]
     if complaints and not rest:
@@ -76,11 +94,23 @@ def encodings_named(names: str) -> list[Encoding]:
     for error in complaints:
         leave_out(str(error))
     tuned = {word: tuned_names.tuned(word) for word in rest if tuned_names.MARK in word and word not in files}
-    picked = choose("encoding", ",".join(rest), {**ENCODINGS, **files, **tuned, **own})
+    # A word may have a comma of its own.
+    whole = {word: word.replace(",", ";") for word in files}
+    known = {whole.get(word, word): one for word, one in {**ENCODINGS, **files, **tuned, **own}.items()}
+    picked = choose("encoding", ",".join(whole.get(word, word) for word in rest), known)
     # At last: an error is one line alone.
     for line in notes:
         tell(line)
     return picked
+
+
+def _pairs_meant(word: str) -> list[str]:
+    """A word, or in its place one for each pair of its file that undoes itself, where all are meant."""
+    if not (names_an_encoder(word) and settings_of(word).is_all) or functions_of(word):
+        return [word]
+    found = _look(Path(word)).glsl
+    pairs = found.get("pairs") or ([found["pair"]] if "pair" in found else [])
+    return [str(with_pair(word, pair)) for pair in pairs] or [word]
 
 
 def _check_word(word: str) -> None:
@@ -88,8 +118,12 @@ def _check_word(word: str) -> None:
     file = next((word + ending for ending in ENDINGS if names_a_file(word + ending)), None)
     if file and spelled("encoding", word, ENCODINGS) is None:
         raise UsageError(f"unknown encoding {word!r}; did you mean the file {file}?")
+    settings_of(word)
     if lacks_a_function(word):
-        raise UsageError(f"{word}: name both functions, such as mine.hlsl:EncodeNormal:DecodeNormal; in GLSL, none")
+        raise UsageError(
+            f"{word}: name both functions, such as mine.hlsl:EncodeNormal:DecodeNormal, or one in each of two "
+            "files, such as pack.hlsl:EncodeNormal,unpack.hlsl:DecodeNormal"
+        )
     if (ending := Path(word).suffix.lower()) in OTHER_LANGUAGES:
         language, how = OTHER_LANGUAGES[ending]
         raise UsageError(f"{word}: {language} is not read; {how}. docs/bring-your-own.md shows how two functions look")
@@ -114,9 +148,11 @@ def _looked_at(path: Path) -> tuple[Encoding | Exception, list[str]]:
     try:
         found = _look(path)
         _check(path, found.glsl)
-        encoding = found.encoding(path)
+        encoding = found.encoding()
         # That codes are in [0, 1] is said by doctor, and in rows by a column.
-        said = [f"{path}: {line}" for line in (*found.wrong, *found.notes) if line != found.unit_note]
+        of = without_settings(path)
+        said = [f"{of}: {line}" for line in (*found.wrong, *found.notes) if line != found.unit_note]
+        said += [f"{of}: {DECLARES_HALF if encoding.is_also_half else IN_32_BITS}"] if encoding.declares_half else []
         said += [f"{twin_of(path)}: {found.twin['apart']}"] if "apart" in found.twin else []
         return encoding, said
     except (UsageError, MissingError) as error:
@@ -174,19 +210,20 @@ def examined(path: Path, domain: str = ANY) -> Examined:
     broken = [found.glsl["broken"]] if "broken" in found.glsl else []
     of_twin = [f"its Python twin: {found.twin['apart']}"] if "apart" in found.twin else []
     of_twin += [found.fault] if found.fault else []
-    encoding = found.encoding(path)
+    encoding = found.encoding()
     taken = [TAKEN.format(encoding.name)] if encoding.name in ENCODINGS else []
     notes = [*found.notes, *found.glsl.get("spared", []), *taken]
     wrong = [*broken, *found.wrong, *of_twin]
     lattice = Lattice(*found.glsl["lattice"]) if "lattice" in found.glsl else None
-    close = found.glsl.get("like", ""), found.glsl.get("bad", []), lattice, _functions_in(path)
+    functions = _functions_in(found.path, found.glsl.get("by", ""))
+    close = found.glsl.get("like", ""), found.glsl.get("bad", []), lattice, functions
     return Examined(encoding, found.domain, wrong, notes, not broken, *close)
 
 
-def _functions_in(path: Path) -> str:
+def _functions_in(path: Path, by: str) -> str:
     """The two functions of a file that are examined."""
-    if is_translated(path):
-        return ":".join(name for name, _ in translated(path).functions)
+    if by or is_translated(path):
+        return translated(path).named
     name, *_ = encode_of(path, read_shader(path))
     return f"{name}_encode:{name}_decode"
 
@@ -203,6 +240,7 @@ def _with_a_name(encoding: Encoding | Exception, path: Path, taken: list[str]) -
 
 
 def _what_names(encoding: Encoding) -> str:
+    """The words for what gives an encoding its name: its file, or its two functions."""
     return "the file" if encoding.source and encoding.name.startswith(encoding.source.name) else "its two functions"
 
 
@@ -220,8 +258,20 @@ def read_encoding(path: Path, fault: str = "", is_unit: bool = False, by: str = 
         MissingError: the compiler of its language is not there.
     """
     text = _text(path, is_unit, by)
-    encode, decode = _lacking(fault) if fault else _twin(twin_of(path))
-    encode, decode = _of_unit(encode, decode) if is_unit else (encode, decode)
+    encode, decode = _lacking_functions(fault) if fault else _twin_functions(twin_of(path))
+    twin = _of_unit(encode, decode) if is_unit else (encode, decode)
+    made = _encoding(path, text, *twin)
+    source = file_of(path).absolute() if is_unit or by or is_translated(path) else None
+    return replace(made, source=source, is_unit=is_unit and not text.is_packed)
+
+
+def encoding_alone(path: Path, made: Translated) -> Encoding:
+    """The encoding of a file that has one of the two functions alone; its other one gives nothing."""
+    text = _Text(made.name, made.components, made.glsl(False), made.prefix)
+    return _encoding(path, text, *_lacking_functions(NO_TWIN))
+
+
+def _encoding(path: Path, text: _Text, encode: Callable[..., Any], decode: Callable[..., Any]) -> Encoding:
     return Encoding(
         name=text.name,
         title=called(str(path)),
@@ -234,8 +284,8 @@ def read_encoding(path: Path, fault: str = "", is_unit: bool = False, by: str = 
         ulps=(0, 0),
         ulps_reason="a user's own",
         functions=text.functions,
-        source=file_of(path).absolute() if is_unit or is_translated(path) else None,
-        is_unit=is_unit,
+        declares_half=text.declares_half,
+        packed_bits=sum(BITS_32.bits) if text.is_packed else 0,
     )
 
 
@@ -251,21 +301,27 @@ class _Text(NamedTuple):
     components: int
     glsl: Path
     functions: str = ""
+    is_packed: bool = False
+    declares_half: bool = False
 
 
 def _text(path: Path, is_unit: bool, by: str) -> _Text:
-    if is_translated(path):
+    if by or is_translated(path):
         made = translated(path, by)
         # Rows of the catalogue's have that name; two functions of another language need not be renamed for it.
         name = called(file_of(path).name) if made.name in ENCODINGS else made.name
-        return _Text(name, made.components, made.glsl(is_unit), made.prefix)
+        declares_half = has_halves(made.text)
+        return _Text(name, made.components, made.glsl(is_unit), made.prefix, bool(made.packed), declares_half)
     try:
         name, components, _ = encode_of(path, read_shader(path))
     except ShaderError as error:
         raise UsageError(str(error)) from error
-    check_given(path, _with_includes(path))
+    whole = _with_includes(path)
+    check_given(path, whole)
     # Not resolved: the twin lies next to the path that was given.
-    return _of_unit_text(path.absolute(), name, components) if is_unit else _Text(name, components, path.absolute())
+    place = path.absolute()
+    made = _of_unit_text(place, name, components) if is_unit else _Text(name, components, place)
+    return made._replace(declares_half=has_halves(whole))
 
 
 def _of_unit_text(path: Path, name: str, components: int) -> _Text:
@@ -288,7 +344,7 @@ def _with_includes(path: Path) -> str:
         return ""
 
 
-def _lacking(reason: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
+def _lacking_functions(reason: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """An encode and a decode that raise NoTwinError."""
 
     def lacking(*_: Any) -> Any:
@@ -297,10 +353,10 @@ def _lacking(reason: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
     return lacking, lacking
 
 
-def _twin(path: Path) -> tuple[Callable[..., Any], Callable[..., Any]]:
+def _twin_functions(path: Path) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """The encode and decode of a Python file; of a missing one, functions that raise NoTwinError."""
     if not path.exists():
-        return _lacking(f"{path.stem} {NO_TWIN}; {path.name} next to it would add rows by JAX")
+        return _lacking_functions(f"{path.stem} {NO_TWIN}; {path.name} next to it would add rows by JAX")
     try:
         spec = importlib.util.spec_from_file_location(path.stem, path)
         assert spec and spec.loader
@@ -339,6 +395,7 @@ class Looks:
     """What a first look found, see first_look.py.
 
     Attributes:
+        path: of the file, with the names of its functions where they are needed.
         glsl: of the shader.
         said: what a translation says of it.
         twin: of the Python twin; empty where there is none, or the shader is of no use.
@@ -346,15 +403,17 @@ class Looks:
         is_asked: whether the user says what it is made for.
     """
 
+    path: Path
     glsl: dict[str, Any]
     twin: dict[str, Any]
     fault: str
     said: tuple[str, ...] = ()
     is_asked: bool = False
 
-    def encoding(self, path: Path) -> Encoding:
+    def encoding(self) -> Encoding:
         """The encoding that was looked at."""
-        read = read_encoding(path, self.fault, self.is_unit, self.glsl.get("by", ""))
+        read = read_encoding(self.path, self.fault, self.is_unit, self.glsl.get("by", ""))
+        read = replace(read, packed_bits=self.glsl.get("packed_bits", read.packed_bits))
         return self.domain.measured(read)
 
     @property
@@ -409,17 +468,23 @@ def _look(path: Path, domain: str = "") -> Looks:
     lines = list(_answers(said))
     if not lines:
         raise UsageError(f"{path}: its shader {ended}")
-    said_of_it, is_asked = () if "error" in lines[0] else _said_of(path), domain not in ("", ANY)
+    # What its ending does not say; and of several pairs, the only one that undoes itself.
+    path = Path(with_settings(str(path), language=lines[0]["language"])) if "language" in lines[0] else path
+    path = with_pair(path, lines[0]["pair"]) if "pair" in lines[0] else path
+    said_of_it, is_asked = (
+        () if "error" in lines[0] else _said_of(path, lines[0].get("by", "")),
+        domain not in ("", ANY),
+    )
     has_twin = twin_is_looked_at(path, lines[0])
     if has_twin and len(lines) < 2:
-        return Looks(lines[0], {}, f"{path}: its Python twin {ended}", said_of_it, is_asked)
+        return Looks(path, lines[0], {}, f"{path}: its Python twin {ended}", said_of_it, is_asked)
     twin = lines[1] if has_twin else {}
-    return Looks(lines[0], twin, twin.get("error", ""), said_of_it, is_asked)
+    return Looks(path, lines[0], twin, twin.get("error", ""), said_of_it, is_asked)
 
 
-def _said_of(path: Path) -> tuple[str, ...]:
+def _said_of(path: Path, by: str) -> tuple[str, ...]:
     """What the text of a file says by itself."""
-    if is_translated(path):
+    if by or is_translated(path):
         return tuple(translated(path).notes)
     name, _, others = encode_of(path, read_shader(path))
     return tuple(f"{name} alone is measured; move {other} into a file of its own" for other in others)

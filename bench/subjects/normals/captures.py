@@ -42,13 +42,13 @@ SPACES: Mapping[str, np.ndarray | None] = MappingProxyType(
 CODE_SPACES = ("view", "world")
 
 
-def _by(curve: Callable[[jax.Array], jax.Array]) -> Callable[[np.ndarray], np.ndarray]:
+def _curve_on_arrays(curve: Callable[[jax.Array], jax.Array]) -> Callable[[np.ndarray], np.ndarray]:
     return lambda stored: np.asarray(curve(jnp.asarray(stored)))
 
 
 # What takes a curve off that the components of a file were given, (3, ...) in [0, 1].
 CURVES: Mapping[str, Callable[[np.ndarray], np.ndarray]] = MappingProxyType(
-    {"linear": lambda stored: stored, "srgb": _by(from_srgb), "srgb-removed": _by(to_srgb)}
+    {"linear": lambda stored: stored, "srgb": _curve_on_arrays(from_srgb), "srgb-removed": _curve_on_arrays(to_srgb)}
 )
 
 
@@ -68,7 +68,7 @@ def capture(path: Path, reading: Reading) -> tuple[NormalSet, list[str]]:
 
     pixels = read_pixels(path, choose)
     surface = _mask(path, reading, pixels.shape)
-    n, covered, of_lengths = _directions(path, pixels, surface, reading)
+    n, covered, of_lengths = _directions_and_remarks(path, pixels, surface, reading)
     not_finite = int((surface & ~np.isfinite(n).all(axis=0)).sum())
     n = np.where(covered, n, 0)
     notes += of_lengths + _which_way(n, covered, turns.to_view, reading, chosen)
@@ -101,7 +101,7 @@ def checked(reading: Reading) -> Reading:
 # Channels
 
 
-def _layers(names: Sequence[str]) -> Iterator[tuple[str, list[str]]]:
+def _layer_channels(names: Sequence[str]) -> Iterator[tuple[str, list[str]]]:
     """Three channels that belong together, with their layer's name: N.X N.Y N.Z, normal.R .., Nx Ny Nz, 0 1 2."""
     known = set(names)
     for name in names:
@@ -120,7 +120,7 @@ def chosen_channels(path: Path, names: Sequence[str], asked: str | None) -> list
     Raises:
         UsageError: there are none, or several that could be meant.
     """
-    layers = dict(_layers(names))
+    layers = dict(_layer_channels(names))
     shown = ", ".join(names[:40]) + (", ..." if len(names) > 40 else "")
     if len(names) < 3:
         remedy = "a normal has three channels; save z too, which is sqrt(max(0, 1 - x*x - y*y)) if it is not negative"
@@ -175,7 +175,7 @@ def _one_channel(path: Path, names: Sequence[str], asked: str) -> list[str]:
     return [asked]
 
 
-def _directions(
+def _directions_and_remarks(
     path: Path, pixels: Pixels, surface: np.ndarray, reading: Reading
 ) -> tuple[np.ndarray, np.ndarray, list[str]]:
     """Normals as planes, unit where they count; where they do; and what is to be said of them."""
@@ -187,7 +187,7 @@ def _directions(
     finite = np.asarray(np.isfinite(stored).all(axis=0))
     _check_finite(path, surface, finite, reading.nan_share)
     n = stored * 2 - 1 if unpack else stored
-    length = _lengths(n)
+    length = _plane_lengths(n)
     covered = surface & finite & (length >= BACKGROUND)
     if not covered.any():
         raise refused(path, "no normals: every pixel is background", "see --channels, --mask and --unpack")
@@ -196,7 +196,7 @@ def _directions(
     return np.divide(n, length, out=n.copy(), where=far), covered, notes
 
 
-def _lengths(n: np.ndarray) -> np.ndarray:
+def _plane_lengths(n: np.ndarray) -> np.ndarray:
     with np.errstate(invalid="ignore", over="ignore"):
         squares = sum(np.square(plane, dtype=np.float64) for plane in n)
         return np.sqrt(squares).astype(n.dtype)
@@ -254,7 +254,7 @@ def _readings_that_fit(found: np.ndarray, curve: str, unpacked: bool) -> Iterato
             if (name, unpack) == (curve, unpacked) or not (is_share or (name, unpack) == ("linear", False)):
                 continue
             read = apply(found) * 2 - 1 if unpack else found
-            lengths = _lengths(read)
+            lengths = _plane_lengths(read)
             # A grey background of packed normals has no length when unpacked.
             surface = lengths[lengths >= BACKGROUND]
             if len(surface) and np.mean(abs(surface - 1) <= UNIT_WITHIN) >= 1 - 10 * OFF_UNIT_SHARE:
@@ -289,19 +289,19 @@ def turns_of(reading: Reading) -> tuple[Turns, list[str]]:
     known, is_world, same = SPACES[reading.space], reading.code_space == CODE_SPACES[1], np.eye(3)
     if reading.view_matrix is None:
         if (known is None) != is_world:
-            raise _no_matrix(reading)
+            raise _matrix_error(reading)
         if known is None and reading.fov is not None:
             raise UsageError("--fov gives rays in view space; --view-matrix turns them to world space")
         return Turns(known, same if known is None else known, same), []
     if known is not None and not is_world:
         raise UsageError(f"--view-matrix turns world space to view space; --space {reading.space} needs none")
-    matrix, notes = _rotation(reading.view_matrix)
+    matrix, notes = _rotation_and_remarks(reading.view_matrix)
     if not is_world:
         return Turns(matrix, matrix, same), notes
     return Turns(matrix, same, matrix.T) if known is None else Turns(known, matrix.T @ known, matrix.T), notes
 
 
-def _no_matrix(reading: Reading) -> UsageError:
+def _matrix_error(reading: Reading) -> UsageError:
     asked, other = f"--space {reading.space}", ""
     if SPACES[reading.space] is None:
         other = "; or --code-space world, where the engine encodes world-space normals"
@@ -313,7 +313,7 @@ def _no_matrix(reading: Reading) -> UsageError:
     )
 
 
-def _rotation(text: str) -> tuple[np.ndarray, list[str]]:
+def _rotation_and_remarks(text: str) -> tuple[np.ndarray, list[str]]:
     said = f"--view-matrix {text}"
     matrix = _numbers_of(text, said)
     linear = matrix[:3, :3]
@@ -371,10 +371,10 @@ def _which_way(
     is_world = SPACES[reading.space] is None
     pixels = some_pixels(np.moveaxis(n, 0, -1), covered)
     found = which_way(pixels, to_view, reading.fov, is_world)
-    return [f"{found.said}: {_remedy(found.remedy, is_world, chosen)}"] if found else []
+    return [f"{found.said}: {_remedy_text(found.remedy, is_world, chosen)}"] if found else []
 
 
-def _remedy(found: np.ndarray | float | None, is_world: bool, chosen: Sequence[str]) -> str:
+def _remedy_text(found: np.ndarray | float | None, is_world: bool, chosen: Sequence[str]) -> str:
     if found is SWAPPED:
         return f"read it with --channels {','.join(reversed(chosen))}"
     if isinstance(found, np.ndarray):

@@ -10,7 +10,7 @@ from typing import Any, get_type_hints
 
 from ....encodings.codecs.files import called
 from ....gbuffer.scenes.files import read as files
-from ...ground.choose import choose_or_read, names_a_folder
+from ...ground.choose import choose_or_read, file_names, names_a_folder
 from ...ground.options.counts import checked_sides
 from ...ground.options.option import Count, Reading, fields_of
 from ...ground.options.scene_names import mesh_file, say_notes
@@ -18,7 +18,7 @@ from ...ground.options.words import given_in
 from ...ground.output.errors import UsageError, tell
 from .captures import CODE_SPACES, capture
 from .normal_sets import NORMAL_SETS, NormalSet, from_arrays
-from .pixel_files import MAX_PIXELS
+from .pixel_files import MAX_PIXELS, has_normals_alone
 from .pixel_files import READERS as IMAGES
 
 WORLD = CODE_SPACES[1]
@@ -40,16 +40,16 @@ def normal_sets_named(names: str, count: int, seed: int, reading: Reading, needs
     Raises:
         UsageError: an unknown name, a file that cannot be read, or an option that no file is there for.
     """
-    for word in map(str.strip, names.split(",")):
+    for word in file_names(names):
         _check_kind(word)
-    typed = [Path(word.strip()).suffix.lower() for word in names.split(",")]
-    if reading != Reading(size=reading.size) and not any(ending in IMAGES for ending in typed):
+    is_read_so = any(has_normals_alone(Path(word)) for word in file_names(names))
+    if reading != Reading(size=reading.size) and not is_read_so:
         raise UsageError(f"options of captures are given, but --normals {names} names none ({', '.join(IMAGES)})")
 
     notes: dict[Path, list[str]] = {}
 
     def read(path: Path) -> Callable[[int, int], NormalSet]:
-        if path.suffix.lower() in IMAGES:
+        if has_normals_alone(path):
             made, notes[path] = capture(path, reading)
             if needs_rays and reading.code_space == WORLD and reading.view_matrix is None:
                 raise UsageError("codes that need the view ray need --view-matrix where they are in world space")
@@ -80,7 +80,7 @@ def say_count_is_unused(options: Any) -> None:
         return
     if getattr(options, "count", None) == known["count"].default or not _is_of_normals(type(options)):
         return
-    words = [word.strip() for word in (getattr(options, "normals", None) or "sphere").split(",")]
+    words = file_names(getattr(options, "normals", None) or "sphere")
     if all(Path(word).suffix.lower() in ENDINGS for word in words):
         tell(f"--count has no effect on files: every normal of {', '.join(words)} is measured")
 

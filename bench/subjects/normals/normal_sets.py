@@ -17,14 +17,12 @@ import numpy as np
 from ....encodings.elementary import sincos_pi
 from ....encodings.vec import Vec3, from_array, sqrt
 from ...ground.native.elementwise import NotElementwiseError
-from ...ground.native.library import NoCompilerError
+from ...ground.native.library import LARGE, NoCompilerError
 from ...ground.options.counts import DEFAULT_COUNT
 from .fill import Fill
 
 CHUNK_WIDTH = 512
 CHUNK = CHUNK_WIDTH * CHUNK_WIDTH
-# From so many normals on C fills them, which takes a fifth of a second to compile: the same normals to the last bit.
-LARGE = 2**22
 # Larger sets are measured and kept in parts of so many normals, by several workers where there are some.
 PART = 2**30
 
@@ -119,7 +117,7 @@ def _direction(lane, start, offset_u, offset_v, *, whole: bool) -> Vec3:
 
 
 @partial(jax.jit, static_argnames="whole")
-def _uniform(start, count, *offsets, whole: bool) -> Chunk:
+def _uniform_chunk(start, count, *offsets, whole: bool) -> Chunk:
     lane = jnp.arange(CHUNK, dtype=jnp.uint32)
     n = _direction(lane, start, *offsets, whole=whole)
     return Chunk(n, _straight_ahead(n.z), lane < count)
@@ -149,7 +147,7 @@ def _make_uniform(name: str, title: str, whole: bool, count: int, seed: int) -> 
         if count >= LARGE and (fill := _fill(whole)):
             return Chunk(fill(CHUNK, first, *shifted), _ahead(), np.arange(CHUNK) < count - start)
         with jax.enable_x64(True):
-            return _uniform(
+            return _uniform_chunk(
                 np.uint32(first), np.uint32(min(count - start, CHUNK)), *map(np.uint32, shifted), whole=whole
             )
 
@@ -214,13 +212,13 @@ def axes(count: int = 0, seed: int = 0) -> NormalSet:
 
 def playground(count: int = 0, seed: int = 0) -> NormalSet:
     """The article's scene as its camera sees it, 640 x 480."""
-    return _playground()
+    return _playground_set()
 
 
 @cache
-def _playground() -> NormalSet:
-    from ....gbuffer.scenes.playground import TITLE
-    from ....gbuffer.scenes.playground import playground as rendered
+def _playground_set() -> NormalSet:
+    from ....gbuffer.scenes.built_in.playground import TITLE
+    from ....gbuffer.scenes.built_in.playground import playground as rendered
 
     seen = rendered()
     return from_arrays("playground", TITLE, seen.normals, seen.positions, seen.covered, seen.covered.shape)

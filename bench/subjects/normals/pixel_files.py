@@ -20,6 +20,7 @@ from typing import Any
 
 import numpy as np
 
+from ....gbuffer.scenes.files import ply
 from ....gbuffer.scenes.files.source import SceneFileError, file_bytes
 from ...ground.machine.children import environment, python
 from ...ground.output.errors import UsageError
@@ -57,6 +58,8 @@ FAILURES: Mapping[int, tuple[str, str]] = MappingProxyType(
 
 # From the names of a file's channels to those that are wanted.
 Choice = Callable[[Sequence[str]], Sequence[str]]
+# Raises UsageError where a file's width and height, or its count of channels, are not those that are read.
+Check = Callable[[Path, tuple[int, int], int], None]
 
 
 @dataclass(frozen=True)
@@ -82,7 +85,16 @@ def read_pixels(path: Path, choose: Choice) -> Pixels:
     Raises:
         UsageError: it is damaged, too large, or of a kind that is not read; and what `choose` raises.
     """
-    return READERS[path.suffix.lower()](path, choose)
+    return {**READERS, **CLOUDS}[path.suffix.lower()](path, choose)
+
+
+def has_normals_alone(path: Path) -> bool:
+    """Whether a file is an image or a list of normals, or a cloud of points that have some. Raises UsageError."""
+    ending = path.suffix.lower()
+    try:
+        return ending in READERS or (ending in CLOUDS and path.is_file() and ply.is_cloud(path))
+    except SceneFileError as error:
+        raise UsageError(str(error)) from error
 
 
 def refused(path: Path, what: str, remedy: str = "save it again") -> UsageError:
@@ -97,6 +109,11 @@ def _bytes(path: Path) -> bytes:
         raise UsageError(str(error)) from error
 
 
+def check_sides(path: Path, sides: tuple[int, int], channels: int) -> None:
+    """Raises UsageError where an image is larger than is read."""
+    check_pixels(path, math.prod(sides), channels)
+
+
 def check_pixels(path: Path, pixels: int, channels: int) -> None:
     """Raises UsageError where an image is larger than is read."""
     if channels > MAX_CHANNELS:
@@ -108,7 +125,12 @@ def check_pixels(path: Path, pixels: int, channels: int) -> None:
 # Images
 
 
-def _read_image(path: Path, choose: Choice) -> Pixels:
+def read_image(path: Path, choose: Choice, check: Check = check_sides) -> Pixels:
+    """The channels of an image that `choose` picks of their names; `check` has seen its header before anything is read.
+
+    Raises:
+        UsageError: it is damaged, too large, or of a kind that is not read; and what `choose` and `check` raise.
+    """
     kind, start = FORMATS[path.suffix.lower()]
     data = _bytes(path)
     if not re.match(start, data, re.DOTALL):
@@ -120,7 +142,7 @@ def _read_image(path: Path, choose: Choice) -> Pixels:
         out = Path(folder) / "out"
         _in_a_process(path, kind, out, "header")
         parts = json.loads(out.read_text(encoding="utf-8"))
-        chosen = list(choose(_checked_parts(path, kind, parts)))
+        chosen = list(choose(_checked_parts(path, kind, parts, check)))
         _check_alike(path, kind, parts, chosen)
         _in_a_process(path, kind, out, "pixels", *chosen)
         found = np.load(out, allow_pickle=False)
@@ -143,7 +165,7 @@ def _in_a_process(path: Path, kind: str, out: Path, mode: str, *names: str) -> N
         raise refused(path, *FAILURES.get(done.returncode, ("it is cut off or damaged",)))
 
 
-def _checked_parts(path: Path, kind: str, parts: list[dict[str, Any]]) -> list[str]:
+def _checked_parts(path: Path, kind: str, parts: list[dict[str, Any]], check: Check) -> list[str]:
     """The names of all channels. Raises UsageError for what is too large or of a kind that is not read."""
     for part in parts:
         where = f"part {part['name']!r}: " if len(parts) > 1 else ""
@@ -152,7 +174,7 @@ def _checked_parts(path: Path, kind: str, parts: list[dict[str, Any]]) -> list[s
         width, height, depth = part["sides"]
         if depth != 1 or min(width, height) < 1:
             raise refused(path, f"{where}an image of {width} x {height} x {depth}", "one of width x height is read")
-        check_pixels(path, width * height, len(part["names"]))
+        check(path, (width, height), len(part["names"]))
         other = [word for word in part["types"] if word not in (*TYPES, *(["uint"] if kind == EXR else []))]
         if other:
             raise refused(path, f"{where}numbers of type {other[0]}", f"{', '.join(TYPES)} are read")
@@ -175,6 +197,18 @@ def _planes(found: np.ndarray, chosen: Sequence[int]) -> np.ndarray:
     kind = np.float64 if found.dtype.itemsize == 8 else np.float32
     with np.errstate(invalid="ignore"):
         return np.stack([found[..., channel].astype(kind) for channel in chosen])
+
+
+# PLY
+
+
+def _read_cloud(path: Path, choose: Choice) -> Pixels:
+    try:
+        found = ply.read_cloud(path)
+    except SceneFileError as error:
+        raise UsageError(str(error)) from error
+    check_pixels(path, *found.shape)
+    return Pixels(_planes(found, [ply.NORMAL.index(name) for name in choose(ply.NORMAL)]), None)
 
 
 # NPY
@@ -217,5 +251,7 @@ def _npy_header(path: Path, stream: io.BytesIO) -> tuple[tuple[int, ...], bool, 
 
 
 READERS: Mapping[str, Callable[[Path, Choice], Pixels]] = MappingProxyType(
-    dict.fromkeys(FORMATS, _read_image) | {".npy": _read_npy}
+    dict.fromkeys(FORMATS, read_image) | {".npy": _read_npy}
 )
+# Files that are meshes otherwise.
+CLOUDS: Mapping[str, Callable[[Path, Choice], Pixels]] = MappingProxyType({".ply": _read_cloud})

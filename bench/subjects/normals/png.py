@@ -30,7 +30,7 @@ def has_surplus(data: bytes) -> bool:
     """
     size = _rows_size(data)
     try:
-        return len(zlib.decompressobj().decompress(_packed(data), size + 1)) > size
+        return len(zlib.decompressobj().decompress(_compressed_bytes(data), size + 1)) > size
     except zlib.error:  # beyond the last row
         return True
 
@@ -44,7 +44,7 @@ def _rows_size(data: bytes) -> int:
     return sum(rows * (1 + (columns * bits + 7) // 8) for columns, rows in sides if columns > 0)
 
 
-def _packed(data: bytes) -> bytes:
+def _compressed_bytes(data: bytes) -> bytes:
     found, at = [], 8
     while at + 12 <= len(data):
         length, kind = struct.unpack_from(">I4s", data, at)

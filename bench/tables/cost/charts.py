@@ -24,14 +24,14 @@ def front_chart(name: str, subtitle: str, panels: Sequence[Panel], error: Error)
     """
     rows = [row for panel in panels for row in _rows(panel, error)]
     best = tuple(row for row in rows if not row["rest"])
-    kinds = tuple(dict.fromkeys(map(_kind, panels)))
+    kinds = tuple(dict.fromkeys(map(_kind_name, panels)))
     is_starred = any(point.is_starred for panel in panels for point in panel.points)
     looks: dict[str, Any] = {"colour": "bits", "shape": "bits"}
     tips = (("codec", "codec"), ("bits", "bits"), ("x", "cost"), ("y", "error"), ("machine", "GPU"))
     bits = Names("bits", tuple(sorted({row["bits"] for row in rows})), "bits")
     return Chart(
         name=name,
-        title=_finding(panels, error),
+        title=_finding_sentence(panels, error),
         subtitle="; ".join([subtitle, GREY, *([BRANCHES] if is_starred else [])]),
         description="Each codec by the cost of encoding or decoding it and its storage, and by its error; grey where "
         "another is no dearer, no worse and takes no more bits. The figures are in the tables.",
@@ -52,7 +52,7 @@ def front_chart(name: str, subtitle: str, panels: Sequence[Panel], error: Error)
     )
 
 
-def _kind(panel: Panel) -> str:
+def _kind_name(panel: Panel) -> str:
     return panel.kind or panel.title
 
 
@@ -64,12 +64,12 @@ def _rows(panel: Panel, error: Error) -> list[Row]:
     """A row for each point, those that no other beats first, by their cost."""
     front = pareto_front(panel.points, error)
     points = [*front, *(point for point in panel.points if point not in front)]
-    return [_row(panel, point) | {"rest": point not in front} for point in points]
+    return [_point_row(panel, point) | {"rest": point not in front} for point in points]
 
 
-def _row(panel: Panel, point: Point) -> Row:
+def _point_row(panel: Panel, point: Point) -> Row:
     about = {"codec": point.codec, "name": point.name + "*" * point.is_starred, "bits": point.bits}
-    about |= {"panel": _kind(panel), "machine": panel.machine, "x": point.cost, "y": point.error}
+    about |= {"panel": _kind_name(panel), "machine": panel.machine, "x": point.cost, "y": point.error}
     half = point.spread / 2
     return about | ({"low": point.cost - half, "high": point.cost + half} if half else {})
 
@@ -87,11 +87,11 @@ def _switch(panels: Sequence[Panel]) -> Switch | None:
     return Switch("machine", "GPU", machines, next(panel.machine for panel in panels if panel.is_usual))
 
 
-def _finding(panels: Sequence[Panel], error: Error) -> str:
+def _finding_sentence(panels: Sequence[Panel], error: Error) -> str:
     """How many codecs of each panel are beaten by no other, on the machine that is shown first."""
     said = []
     for panel in (panel for panel in panels if panel.is_usual):
-        front, operation = pareto_front(panel.points, error), _kind(panel).partition(",")[0]
+        front, operation = pareto_front(panel.points, error), _kind_name(panel).partition(",")[0]
         said.append(f"{len(front)} of {len(panel.points)} codecs to {operation}")
     machine = next((panel.machine for panel in panels if panel.is_usual and panel.machine), "")
     return f"No other beats {', '.join(said)}{f', on {machine}' if machine else ''}"

@@ -47,7 +47,7 @@ class Costs:
         Raises:
             LeftOutError: a part of it is not known, or counts a loop once.
         """
-        rows = [(sign, self._known(key, column)) for sign, key in self._parts(codec, where, operation)]
+        rows = [(sign, self._known_row(key, column)) for sign, key in self._parts(codec, where, operation)]
         cost = sum(sign * row[column] for sign, row in rows)
         return Total(
             cost, sum(row.get("spread") or 0.0 for _, row in rows), any(row.get("branches") for _, row in rows)
@@ -64,7 +64,7 @@ class Costs:
             parts += [(sign, (*kind, packed, None, one.name)) for sign, one in zip((1, -1), SIGN, strict=True)]
         return parts
 
-    def _known(self, key: tuple[Any, ...], column: str) -> Row:
+    def _known_row(self, key: tuple[Any, ...], column: str) -> Row:
         *_, operation, encoding, storage = key
         row = self._rows.get(key)
         if row is None or row.get(column) is None:

@@ -35,10 +35,10 @@ def turns_of(encoding: Encoding) -> Mapping[str, Sequence[Sequence[float]]] | No
         return None
     name = encoding.name if is_in_catalogue(encoding) else None
     key = kept.key_of("turns", sources(), name, device.renderer) if name else ""
-    return kept.kept(key, lambda: {"turns": _counted(device, encoding)})["turns"]
+    return kept.kept(key, lambda: {"turns": _loop_turns(device, encoding)})["turns"]
 
 
-def _counted(device: Device, encoding: Encoding) -> dict[str, list[list[float]]] | None:
+def _loop_turns(device: Device, encoding: Encoding) -> dict[str, list[list[float]]] | None:
     n = np.zeros((COUNT, 4), np.float32)
     n[:, :3] = np.random.default_rng(SEED).normal(size=(COUNT, 3))
     n /= np.linalg.norm(n, axis=1, keepdims=True)
@@ -48,10 +48,10 @@ def _counted(device: Device, encoding: Encoding) -> dict[str, list[list[float]]]
         made = turns_made(device, encoding, n, np.tile(np.array(VIEW, np.float32), (COUNT, 1)))
     except ShaderError:
         return None
-    return {name: _running(turns) for name, turns in zip(("encode", "decode"), made, strict=True)}
+    return {name: _mean_turns(turns) for name, turns in zip(("encode", "decode"), made, strict=True)}
 
 
-def _running(turns: np.ndarray) -> list[list[float]]:
+def _mean_turns(turns: np.ndarray) -> list[list[float]]:
     figures = zip(turns.mean(axis=0).tolist(), turns.std(axis=0).tolist(), strict=True)
     return [[mean, deviation] for mean, deviation in figures if mean]
 

@@ -22,6 +22,8 @@ from ....reports.page.verdict import BACKENDS, LEADING, is_number
 from ...ground.options.gpu_families import FAMILIES, usual_stage
 from ...ground.output.writing import files_of
 from ...shaders.languages.words import CHAIN
+from ..quality.table import TABLE as QUALITY
+from ..render.table import TABLE as RENDER
 from ..table import UNEXPECTED, Row
 from .codec_costs import Costs, LeftOutError, Where
 from .measure import OPERATIONS, listing
@@ -45,24 +47,24 @@ def extras(folder: Path, tables: Mapping[str, Sequence[Row]], remarks: list[str]
     """
     kernels, family = folder / TABLE.files["disassembly"], usual_family(tables)
     return {
-        "fronts": list(_fronts(tables, remarks)),
+        "fronts": list(_fronts(tables, family, remarks)),
         "listings": _listings(kernels, family),
-        "order": _order(kernels, family, tables.get(TABLE.name, ())),
+        "order": _order_lines(kernels, family, tables.get(TABLE.name, ())),
     }
 
 
-def _fronts(tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Iterator[Front]:
-    """Instructions of each GPU family against errors of normals, of the first set, and of images; which codecs have no
-    place among them is added to the remarks."""
+def _fronts(tables: Mapping[str, Sequence[Row]], usual: str, remarks: list[str]) -> Iterator[Front]:
+    """A front for the first set of normals and one for the first scene: the error against the instructions of each GPU
+    family. Which codecs have no place among them is added to the remarks."""
     known = _counted(tables)
     families = dict.fromkeys(row["family"] for row in known)
     costs = {family: [row for row in known if row["family"] == family] for family in families}
     lost: dict[str, dict[str, None]] = {}
-    for table, by, what in (("quality", "normals", "normals of"), ("render", "scene", "the image of")):
+    for table, by, what in ((QUALITY.name, "normals", "normals of"), (RENDER.name, "scene", "the image of")):
         rows = [row for row in tables.get(table, ()) if row.get("encoding")]
         where = next((str(row.get(by)) for row in rows if is_number(row.get(LEADING))), "")
         errors = _errors([row for row in rows if str(row.get(by)) == where], lost)
-        panels = list(_panels(costs, errors, usual_family(tables), lost))
+        panels = list(_panels(costs, errors, usual, lost))
         if panels:
             yield Front(decibels(f"PSNR of {what} {as_text(where)}"), panels)
     if costs:
@@ -173,7 +175,7 @@ def _kernels(folder: Path, family: str) -> Mapping[str, Path]:
     return files_of(known[family]) if family in known else {}
 
 
-def _order(folder: Path, family: str, rows: Sequence[Row]) -> list[str]:
+def _order_lines(folder: Path, family: str, rows: Sequence[Row]) -> list[str]:
     """Where a GPU family's order by instructions is not that of the article's slots, and why, by its kernels."""
     there = _kernels(folder, family)
     try:
@@ -194,7 +196,7 @@ def _listings(folder: Path, family: str) -> dict[str, Listing]:
             continue
         # "fragment-octahedral-encode" is of "octahedral.glsl".
         source = sources.get(f"{path.stem.removeprefix(f'{STAGE}-').rpartition('-')[0]}.glsl")
-        found = Listing(_read(path), _read(source) if source else "")
+        found = Listing(_plain_file_text(path), _plain_file_text(source) if source else "")
         size += len(found.text) + len(found.source)
         if size > LISTED:
             break
@@ -202,6 +204,6 @@ def _listings(folder: Path, family: str) -> dict[str, Listing]:
     return listed
 
 
-def _read(path: Path) -> str:
+def _plain_file_text(path: Path) -> str:
     text = path.read_text(encoding="utf-8", errors="replace")
     return "\n".join(map(str, map(plain_text, text.expandtabs().splitlines())))

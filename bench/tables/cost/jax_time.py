@@ -49,7 +49,7 @@ def jax_rows(chosen: Sequence[Case], count: int, repeats: int, tick: Callable[[s
         works = {size: normals.work(lambda given, _: given, size) for size in sorted({_size(case) for case in asked})}
         made: dict[Case, Work | str] = {}
         for case in asked:
-            made[case] = _made(case, normals)
+            made[case] = _work_or_why(case, normals)
             tick(case.name)
         every = {**works, **{case: work for case, work in made.items() if not isinstance(work, str)}}
         taken = {key: list[float]() for key in every}
@@ -77,7 +77,7 @@ def _encoding(case: Case) -> Encoding:
     return case.encoding
 
 
-def _made(case: Case, normals: Normals) -> Work | str:
+def _work_or_why(case: Case, normals: Normals) -> Work | str:
     """A case's work, run once, which compiles it; or why there is none."""
     encoding = _encoding(case)
     try:

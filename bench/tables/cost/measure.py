@@ -131,17 +131,17 @@ def prepare(case: Case, stage: str, as_cuda: bool = False, as_glsl: bool = False
     try:
         operation = case.make()
         (job, count), (empty, empty_count) = (
-            _job(o, stage, operation.is_portable, as_glsl) for o in (operation, operation.empty)
+            _job_and_instructions(o, stage, operation.is_portable, as_glsl) for o in (operation, operation.empty)
         )
     except spirv.ToolError as error:
         return Failure(str(error))
     except ShaderError as error:
         return Failure(f"{case.name}: {error}")
     more = count - empty_count if count is not None and empty_count is not None else None
-    return Prepared(job, empty, more, _as_cuda(case, operation, stage) if as_cuda else NOT_ASKED)
+    return Prepared(job, empty, more, _cuda_jobs(case, operation, stage) if as_cuda else NOT_ASKED)
 
 
-def _as_cuda(case: Case, operation: Operation, stage: str) -> tuple[Job, Job] | Failure:
+def _cuda_jobs(case: Case, operation: Operation, stage: str) -> tuple[Job, Job] | Failure:
     if case.encoding and case.encoding.is_half:
         return Failure(f"{case.name}: half arithmetic is not counted for NVIDIA")
     try:
@@ -151,15 +151,15 @@ def _as_cuda(case: Case, operation: Operation, stage: str) -> tuple[Job, Job] | 
     return job, empty
 
 
-def _library(family: str) -> str:
+def _library_name(family: str) -> str:
     return FAMILIES[family].library if family in FAMILIES else ""
 
 
 def _takes_cuda(family: str) -> bool:
-    return _library(family) == NVRTC
+    return _library_name(family) == NVRTC
 
 
-def _job(operation: Operation, stage: str, counted: bool, as_glsl: bool) -> tuple[Job, int | None]:
+def _job_and_instructions(operation: Operation, stage: str, counted: bool, as_glsl: bool) -> tuple[Job, int | None]:
     module = spirv.compiled(operation.source(kernels.STAGES[stage]), GLSLANG_STAGES[stage], counted)
     # A vertex shader feeds each fragment shader; a compute shader has none.
     vertex = spirv.compiled(operation.source("kernel.vert"), "vert", False).binary if stage == "fragment" else b""
@@ -191,7 +191,7 @@ def isa_rows(
     compiler = spirv.titles()
     if spirv.version(spirv.OPTIMISER) is None:
         lacks.append(spirv.NO_OPTIMISER)
-    takes_cuda, takes_glsl = (any(_library(f) == library for f in families) for library in (NVRTC, R600))
+    takes_cuda, takes_glsl = (any(_library_name(f) == library for f in families) for library in (NVRTC, R600))
     prepared = list(on_all_cores(lambda pair: prepare(*pair, takes_cuda and "compute" in pair, takes_glsl), pairs))
     outcomes: dict[tuple[str, Job], Outcome] = {}
     for some in ([f for f in families if _takes_cuda(f) == is_cuda] for is_cuda in (False, True)):
@@ -214,7 +214,7 @@ def isa_rows(
                 jobs = made.jobs(family)
                 compared = [outcomes[family, job] for job in jobs] if isinstance(jobs, tuple) else [jobs, jobs]
                 figures, assembly = _figures(row, *compared)
-                yield figures | {"executed_slots": _executed(case, figures, assembly)}, assembly
+                yield figures | {"executed_slots": _executed_slots(case, figures, assembly)}, assembly
 
 
 def _jobs(prepared: Iterable[Prepared | Failure], family: str) -> list[Job]:
@@ -248,7 +248,7 @@ def _figures(row: Row, outcome: Outcome, empty: Outcome) -> tuple[Row, str]:
         return row | {"skipped": f"the empty kernel: {empty.reason}"}, ""
     compared = alike(outcome.kernels, empty.kernels)
     if compared is None:
-        return row | {"skipped": _unlike(outcome.kernels, empty.kernels)}, ""
+        return row | {"skipped": _width_mismatch(outcome.kernels, empty.kernels)}, ""
     kernel, nothing = compared
     for column, names in STATISTICS.items():
         row[column] = _difference(_total(kernel, names), _total(nothing, names))
@@ -260,11 +260,11 @@ def _figures(row: Row, outcome: Outcome, empty: Outcome) -> tuple[Row, str]:
     if ours and theirs:
         row |= {column: _difference(ours[column], theirs[column]) for column in ours}
     row["kernel_waves"] = occupancy.waves(row["family"], row["kernel_vgprs"])
-    about = {"simd_width": kernel.simd_width, "device": outcome.device, "driver": _driver(outcome, row["family"])}
+    about = {"simd_width": kernel.simd_width, "device": outcome.device, "driver": _driver_text(outcome, row["family"])}
     return row | about, kernel.assembly
 
 
-def _driver(outcome: Compiled, family: str) -> str:
+def _driver_text(outcome: Compiled, family: str) -> str:
     """The compiler of a count and its version; Mesa says the number alone."""
     return outcome.version if _takes_cuda(family) else f"Mesa {outcome.version}"
 
@@ -277,7 +277,7 @@ def alike(kernels: Sequence[Kernel], empties: Sequence[Kernel]) -> tuple[Kernel,
     return max(pairs, key=lambda pair: (not _total(pair[0], SPILLS), pair[0].simd_width), default=None)
 
 
-def _unlike(kernels: Iterable[Kernel], empties: Iterable[Kernel]) -> str:
+def _width_mismatch(kernels: Iterable[Kernel], empties: Iterable[Kernel]) -> str:
     ours, theirs = (" and ".join(str(k.simd_width) for k in some) for some in (kernels, empties))
     return f"compiled for {ours} lanes, where the empty kernel is compiled for {theirs}: their counts do not compare"
 
@@ -307,7 +307,7 @@ def _listed(assembly: str, total: int, family: str) -> Mapping[str, int | None] 
     return {"issue_slots": read.issue_slots(counts, family), **counts, **some, "branches": branches, "loops": loops}
 
 
-def _executed(case: Case, row: Row, assembly: str) -> float | None:
+def _executed_slots(case: Case, row: Row, assembly: str) -> float | None:
     """The issue slots that a case's loops make of its static ones; None where that is not known."""
     read, family = listings_of(row["family"]), row["family"]
     if (rates := read.rates(family)) is None or any(row[kind] is None for kind in read.KINDS):

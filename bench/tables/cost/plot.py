@@ -63,15 +63,15 @@ def panels(
 
     What is left out is said on standard error.
     """
-    wanted = list(_wanted(rows, chosen, sets))
+    wanted = list(_wanted_panels(rows, chosen, sets))
     drawing = Drawing(rows, encodings, error)
     made = [panel for want in wanted[: pareto.MOST_PANELS] if (panel := drawing.panel(want)).points]
-    for line in (*drawing.left_out(), *_beyond(wanted[pareto.MOST_PANELS :])):
+    for line in (*drawing.left_out(), *_left_out_lines(wanted[pareto.MOST_PANELS :])):
         tell(f"--plot: {line}")
     return made
 
 
-def _wanted(rows: Sequence[Row], chosen: Sequence[Storage], sets: Sequence[NormalSet]) -> Iterator[Wanted]:
+def _wanted_panels(rows: Sequence[Row], chosen: Sequence[Storage], sets: Sequence[NormalSet]) -> Iterator[Wanted]:
     for storage, normals, (measure, (column, *_)) in product(chosen, sets, UNITS.items()):
         known = [r for r in rows if r["measure"] == measure and r["encoding"] and r[column] is not None]
         where = dict.fromkeys((r["family"], r["stage"], r["operation"]) for r in known)
@@ -79,7 +79,7 @@ def _wanted(rows: Sequence[Row], chosen: Sequence[Storage], sets: Sequence[Norma
             yield Wanted(storage, normals, Where(measure, family, stage), operation)
 
 
-def _beyond(wanted: Sequence[Wanted]) -> Iterator[str]:
+def _left_out_lines(wanted: Sequence[Wanted]) -> Iterator[str]:
     if wanted:
         names = ", ".join(want.name for want in wanted)
         yield f"there is room for {pareto.MOST_PANELS} panels; left out: {names}"

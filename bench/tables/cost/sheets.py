@@ -72,11 +72,11 @@ def order_notes(listed: Sequence[tuple[Row, str]], article: Sequence[Row]) -> li
         ordered = sorted(chosen, key=lambda one: slots[one[0]["encoding"], operation])
         said = ", ".join(f"{r['encoding']} {slots[r['encoding'], operation]}/{r['instructions']}" for r, _ in ordered)
         notes.append(f"{operation}, ps_3_0 slots / {family} {stage} instructions: {said}")
-        notes += _turned(ordered, {name: count for (name, of), count in slots.items() if of == operation})
+        notes += _turned_lines(ordered, {name: count for (name, of), count in slots.items() if of == operation})
     return notes
 
 
-def _turned(ordered: Sequence[tuple[Row, str]], slots: dict[str, int]) -> list[str]:
+def _turned_lines(ordered: Sequence[tuple[Row, str]], slots: dict[str, int]) -> list[str]:
     """Which pairs of rows, in the order of their slots, change places, and a line on each row of such a pair."""
     pairs = [
         (cheap, dear)
@@ -88,10 +88,10 @@ def _turned(ordered: Sequence[tuple[Row, str]], slots: dict[str, int]) -> list[s
         return []
     said = ", ".join(f"{cheap[0]['encoding']} and {dear[0]['encoding']}" for cheap, dear in pairs)
     rows = [one for one in ordered if any(one in pair for pair in pairs)]
-    return [f"  the other way round: {said}", *(_holds(row, text, slots[row["encoding"]]) for row, text in rows)]
+    return [f"  the other way round: {said}", *(_holding_line(row, text, slots[row["encoding"]]) for row, text in rows)]
 
 
-def _holds(row: Row, text: str, slots: int) -> str:
+def _holding_line(row: Row, text: str, slots: int) -> str:
     """One line about what a row's listing holds."""
     read = listings_of(row["family"])
     guards = sum(name.startswith(read.GUARDS) for name in read.names(text))

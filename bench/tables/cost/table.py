@@ -8,6 +8,7 @@ from typing import Annotated
 
 from ...ground.options.gpu_families import CHOICES, titled
 from ...ground.options.option import Arithmetics, Encodings, Option, Plot, Seed
+from ...shaders.languages.source_options import SourceOptions
 from .. import shared_columns as shared
 from ..quality.table import COMMON
 from ..table import Column, Role, Section, Table
@@ -16,7 +17,7 @@ KEY, HOW, TIME = Role.KEY, Role.HOW, Role.TIME
 
 
 @dataclass(frozen=True, kw_only=True)
-class CostOptions:
+class CostOptions(SourceOptions):
     """What `cost` measures. Names are comma-separated."""
 
     encoding: Encodings = "all"
@@ -36,7 +37,7 @@ class CostOptions:
     ] = "radeon"
     stage: Annotated[str, Option("--stage", "fragment, compute; comma-separated, or all.")] = "fragment,compute"
     operation: Annotated[str, Option("--operation", "encode, decode; comma-separated, or all.")] = "encode,decode"
-    arithmetic: Arithmetics = "float"
+    arithmetic: Arithmetics = "declared"
     storage: Annotated[
         str, Option("--storage", "Storages and packings whose own cost is shown, comma-separated, or all.", in_run=True)
     ] = "rgba8,rgba8_snorm,11:11,12:12,16:16,11:10:11,depth16,depth24,depth24_sign"
@@ -63,7 +64,7 @@ class CostOutputs:
     plot: Plot = None
 
 
-def _count(name: str, says: str, drops: int = 0) -> Column:
+def _count_column(name: str, says: str, drops: int = 0) -> Column:
     return Column(name, says, better="less", drops=drops)
 
 
@@ -74,79 +75,83 @@ COLUMNS = (
     Column("operation", "encode or decode; pack or unpack.", KEY),
     Column("stage", "The kind of shader.", KEY),
     Column("family", "The GPU family that it was compiled for.", KEY),
-    _count(
+    _count_column(
         "instructions",
         "Instructions of one lane, less those of an empty kernel that moves the same numbers. The columns full_rate, "
         "conversion, quarter_rate, transcendental, scalar, memory, waiting, control_flow and other_alu add up to it "
         "where there is a disassembly. TeraScale: a bundle of up to five operations is one instruction. "
         "Qualcomm: cycles that a program waits in words count.",
     ),
-    _count(
+    _count_column(
         "issue_slots",
         "How long they keep the vector unit busy, in full-rate instructions: on GCN slow ones count 4, on RDNA a "
         "transcendental one issues once and runs in another unit. TeraScale: bundles. Broadcom: instructions. Empty "
         "for Intel, NVIDIA and Qualcomm.",
     ),
-    _count(
+    _count_column(
         "executed_slots",
         "Issue slots that one lane takes: each loop as often as it runs in the mean over the sphere, counted on the GL "
         "device. A transcendental instruction takes what the vendor's compiler or documents say: 4 on GCN, 2 on Intel "
         "from Broadwell on, 4 on Turing, 8 on later GPUs of NVIDIA, 1 elsewhere. Empty where the turns of a loop are "
         "not known.",
     ),
-    _count("full_rate", "Radeon: instructions at the full rate.", 17),
-    _count(
+    _count_column("full_rate", "Radeon: instructions at the full rate.", 17),
+    _count_column(
         "conversion",
         "Between floats and integers: at a quarter of the rate on Polaris and Vega. Intel, Qualcomm: also between two "
         "sizes of floats. NVIDIA: also rounding to whole numbers, in the same unit.",
         13,
     ),
-    _count(
+    _count_column(
         "quarter_rate",
         "Radeon: products of 32-bit integers, and on Polaris fused multiply-adds, at a quarter of the rate.",
         11,
     ),
-    _count(
+    _count_column(
         "transcendental",
         "Reciprocal, root, logarithm, sine: at a quarter of the rate, from Navi on in a unit of their own. Intel: "
         "`math`, which also divides integers. NVIDIA: `MUFU`. TeraScale, Broadcom: instructions that hold one.",
     ),
-    _count("scalar", "Radeon, Intel, NVIDIA: instructions once for all lanes.", 14),
-    _count(
+    _count_column("scalar", "Radeon, Intel, NVIDIA: instructions once for all lanes.", 14),
+    _count_column(
         "memory",
         "Loads, stores, export; Radeon: interpolation, too; Intel: messages (`send`); NVIDIA: reads of constants, too; "
         "Broadcom: instructions that only read inputs, or write results.",
         15,
     ),
-    _count(
+    _count_column(
         "waiting",
         "Waits and hints about order; Qualcomm: `nop`; NVIDIA: without the padding behind a kernel's end.",
         10,
     ),
-    _count("control_flow", "Jumps and what ends a branch or a program. Radeon: in `scalar`.", 18),
-    _count("other_alu", "All other arithmetic, moves, compares and selections; interpolation, too. Radeon: empty.", 19),
-    _count("packed", "Radeon: of full_rate those on two numbers of 16 bits at once.", 20),
-    _count(
+    _count_column("control_flow", "Jumps and what ends a branch or a program. Radeon: in `scalar`.", 18),
+    _count_column(
+        "other_alu", "All other arithmetic, moves, compares and selections; interpolation, too. Radeon: empty.", 19
+    ),
+    _count_column("packed", "Radeon: of full_rate those on two numbers of 16 bits at once.", 20),
+    _count_column(
         "vliw_slots", "Operations in all instructions, where one holds several: TeraScale up to five, Broadcom two.", 20
     ),
-    _count("t_slots", "TeraScale: operations in the fifth slot, t, the only one for transcendental ones.", 21),
-    _count("branches", "Conditional jumps, more than the empty kernel's. Both sides of a branch count.", 12),
-    _count("loops", "Jumps back, more than the empty kernel's. A loop's body counts once."),
-    _count("looped", "Of instructions those in loops, which run again at each turn.", 21),
-    _count(
+    _count_column("t_slots", "TeraScale: operations in the fifth slot, t, the only one for transcendental ones.", 21),
+    _count_column("branches", "Conditional jumps, more than the empty kernel's. Both sides of a branch count.", 12),
+    _count_column("loops", "Jumps back, more than the empty kernel's. A loop's body counts once."),
+    _count_column("looped", "Of instructions those in loops, which run again at each turn.", 21),
+    _count_column(
         "spirv_instructions",
         "SPIR-V instructions after spirv-opt, loops unrolled: portable, and of vectors; they depend on the spelling. "
         "Empty where a loop is left.",
     ),
-    _count(
+    _count_column(
         "vgprs",
         "Vector registers, more than the empty kernel's; a driver allots 4, 8 or more at once. NVIDIA: all registers.",
         16,
     ),
-    _count("sgprs", "Scalar registers, more than the empty kernel's.", 8),
-    _count("spills", "Registers spilled to memory, or Intel's messages that do so, more than the empty kernel's.", 9),
-    _count("code_bytes", "Bytes of code, more than the empty kernel's.", 7),
-    _count(
+    _count_column("sgprs", "Scalar registers, more than the empty kernel's.", 8),
+    _count_column(
+        "spills", "Registers spilled to memory, or Intel's messages that do so, more than the empty kernel's.", 9
+    ),
+    _count_column("code_bytes", "Bytes of code, more than the empty kernel's.", 7),
+    _count_column(
         "stall_cycles",
         "NVIDIA: cycles that the compiler has a warp wait after its instructions, added up along the code, more than "
         "the empty kernel's. Results that a warp waits for at barriers, such as memory's, are not in it.",

@@ -126,7 +126,8 @@ def costing(options: CostOptions) -> Costing:
 
 def _encodings(options: CostOptions) -> list[Encoding]:
     named = encodings_named(options.encoding)
-    if options.arithmetic == FLOAT:
+    is_usual = options.arithmetic == CostOptions.arithmetic
+    if options.arithmetic == FLOAT or (is_usual and not any(one.is_also_half for one in named)):
         return named
     from ...subjects.codecs.names import with_arithmetics
 
@@ -282,7 +283,7 @@ def _plotted(done: Measured) -> Iterable[Chart]:
     return charts(done.rows, asked.encodings, asked.drawn_storages, sets, options.error)
 
 
-def _joined(found: Any) -> Iterator[Chart]:
+def _front_charts(found: Any) -> Iterator[Chart]:
     """Instructions against each error of a run."""
     for at, front in enumerate(found.extras.get("fronts", ())):
         subtitle = f"Instructions against {front.error.label.removesuffix(', dB')}"
@@ -330,7 +331,7 @@ WORK = Work(
     warnings=_warnings,
     write=_write,
     plotted=_plotted,
-    joined=_joined,
+    joined=_front_charts,
     listing=_listing,
     lacking=_lacking,
     missing=_missing,

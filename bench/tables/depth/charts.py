@@ -25,7 +25,7 @@ def depth_chart(rows: Sequence[Row]) -> Chart:
     """
     points = [
         {name: row[name] for name in ("depth", "storage", "rebuilt")}
-        | {"line": _line(row, rows), "range": _range(row), "x": row["distance"], "y": row["error_max"]}
+        | {"line": _line_name(row, rows), "range": _range_text(row), "x": row["distance"], "y": row["error_max"]}
         for row in sorted(rows, key=lambda row: row["distance"])
         if row["error_max"] > 0
     ]
@@ -34,7 +34,7 @@ def depth_chart(rows: Sequence[Row]) -> Chart:
     first = rows[0]
     return Chart(
         name="depth",
-        title=_finding(points),
+        title=_finding_sentence(points),
         subtitle=f"Position error over distance; field of view {first['fov']:g} degrees; "
         f"{first['backend']}, {first['device']}",
         description="The largest distance between true and rebuilt position over the distance from the eye, both on "
@@ -44,7 +44,7 @@ def depth_chart(rows: Sequence[Row]) -> Chart:
         rows=tuple(points),
         colour=Names("depth", distinct(rows, "depth")),
         dash=Names("storage", distinct(rows, "storage")),
-        panels=Names("range", tuple(dict.fromkeys(map(_range, rows)))),
+        panels=Names("range", tuple(dict.fromkeys(map(_range_text, rows)))),
         height=420,
         marks=(
             Mark(kind=Kind.LINES, **looks, dash="storage", tips=tips),
@@ -53,18 +53,18 @@ def depth_chart(rows: Sequence[Row]) -> Chart:
     )
 
 
-def _range(row: Row) -> str:
+def _range_text(row: Row) -> str:
     return f"near {row['near']:g}, far {row['far']:g}"
 
 
-def _line(row: Row, rows: Sequence[Row]) -> str:
+def _line_name(row: Row, rows: Sequence[Row]) -> str:
     """What a line is called; with the way to its positions where codes have several."""
     several = len({(one["depth"], one["rebuilt"]) for one in rows}) > len({one["depth"] for one in rows})
     words = (row["depth"], row["storage"], row["rebuilt"] if several else "")
     return " ".join(filter(None, words)).replace("_", " ")
 
 
-def _finding(points: Sequence[Row]) -> str:
+def _finding_sentence(points: Sequence[Row]) -> str:
     """Which line is the best and the worst at the greatest distance."""
     if not points:
         return "Nothing is lost"

@@ -121,7 +121,7 @@ def _in_blocks(function: Callable[..., Sequence[Any]], *arrays: np.ndarray) -> l
     return [np.concatenate([np.asarray(part) for part in parts])[:count] for parts in zip(*made, strict=True)]
 
 
-def _by_jax(case: Case, signed: np.ndarray, places: np.ndarray) -> tuple[Rebuilt, dict[str, str]]:
+def _rebuilt_by_jax(case: Case, signed: np.ndarray, places: np.ndarray) -> tuple[Rebuilt, dict[str, str]]:
     codec, seen = case.codec, case.camera.seen(case.codec.encoding.projection)
 
     # Not compiled as a whole: for so few points that would take longer than all else.
@@ -134,7 +134,7 @@ def _by_jax(case: Case, signed: np.ndarray, places: np.ndarray) -> tuple[Rebuilt
     return Rebuilt(*_in_blocks(rebuilt, signed, places[:, 0], places[:, 1])), how
 
 
-def _by_glsl(case: Case, signed: np.ndarray, places: np.ndarray) -> tuple[Rebuilt, dict[str, str]]:
+def _rebuilt_by_glsl(case: Case, signed: np.ndarray, places: np.ndarray) -> tuple[Rebuilt, dict[str, str]]:
     gl, count = device(), len(signed)
     height = -(-count // WIDTH)
     pixels = np.ones((height * WIDTH, 3), np.float32)
@@ -147,7 +147,7 @@ def _by_glsl(case: Case, signed: np.ndarray, places: np.ndarray) -> tuple[Rebuil
 
 
 BACKENDS: Mapping[str, Callable[[Case, np.ndarray, np.ndarray], tuple[Rebuilt, dict[str, str]]]] = MappingProxyType(
-    {"jax": _by_jax, "glsl": _by_glsl}
+    {"jax": _rebuilt_by_jax, "glsl": _rebuilt_by_glsl}
 )
 
 

@@ -53,7 +53,7 @@ def sentences(rows: Sequence[Row]) -> list[str]:
     parts = by_device(rows)
     off = {name: part for name, part in parts.items() if any(map(differs, part))}
     whole = [name for name in parts if name not in off]
-    first = [_whole(whole, [row for name in whole for row in parts[name]])] if whole else []
+    first = [_agreement_sentence(whole, [row for name in whole for row in parts[name]])] if whole else []
     worst = sorted(off, key=lambda name: min(row["same_percent"] for row in off[name]))
     made = [*first, *(f"{name} {difference(off[name])}." for name in worst)]
     return [*made, *_other_runs(rows)]
@@ -66,7 +66,7 @@ def _other_runs(rows: Sequence[Row]) -> Iterator[str]:
         yield f"The pages that were measured on came from {versions} versions of the program, whose codes may differ."
 
 
-def _whole(names: Sequence[str], rows: Sequence[Row]) -> str:
+def _agreement_sentence(names: Sequence[str], rows: Sequence[Row]) -> str:
     who = _listed(names) if len(names) <= MOST_NAMED else f"{len(names)} devices"
     verb = "agrees" if len(names) == 1 else "agree"
     return f"{who} {verb} with the run in every code of {many(len({codec_of(row) for row in rows}), 'codec')}."
@@ -83,7 +83,7 @@ def difference(rows: Sequence[Row]) -> str:
     if not off:
         return f"agrees with the run in every code of {many(len(rows), 'codec')}"
     worst = min(off, key=lambda row: row["same_percent"])
-    share = f"{share_of(worst)} of its codes, {_how_far(worst)}"
+    share = f"{share_of(worst)} of its codes, {_distance_text(worst)}"
     return f"differs in {len(off)} of {many(len(rows), 'codec')}, most in {codec_name(worst)}: {share}"
 
 
@@ -93,7 +93,7 @@ def share_of(row: Row) -> str:
     return f"{share:.3g} %" if share >= 0.001 else "less than 0.001 %"
 
 
-def _how_far(row: Row) -> str:
+def _distance_text(row: Row) -> str:
     return f"{row['further']} by more than one step" if row["further"] else "by one step each"
 
 
@@ -124,10 +124,10 @@ def sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
 
 def overview(rows: Sequence[Row]) -> list[Row]:
     """A row for each device: in how many codecs it agrees, and where it differs most."""
-    return [_overview(part) for part in by_device(rows).values()]
+    return [_overview_row(part) for part in by_device(rows).values()]
 
 
-def _overview(rows: Sequence[Row]) -> Row:
+def _overview_row(rows: Sequence[Row]) -> Row:
     off = [row for row in rows if differs(row)]
     worst = min(off, key=lambda row: row["same_percent"], default=None)
     quick = fastest(rows)

@@ -22,7 +22,7 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
         tips = (("codec", "codec"), ("device", "device"), ("ms", "ms per megapixel"))
         yield Chart(
             name="devices",
-            title=_finding(drawn),
+            title=_finding_sentence(drawn),
             subtitle="How long codecs take on readers' devices",
             description="Milliseconds per megapixel to encode and to decode, a dot for each device. The fastest codec "
             f"is on top. At most {MOST_DRAWN} codecs are drawn. The figures are in the table.",
@@ -49,7 +49,7 @@ def timed(rows: Sequence[Row]) -> list[Row]:
     return sorted((row for row in made if row["codec"] in order), key=lambda row: order.index(row["codec"]))
 
 
-def _finding(drawn: Sequence[Row]) -> str:
+def _finding_sentence(drawn: Sequence[Row]) -> str:
     """Which codec is the fastest, and by how much."""
     first, last = drawn[0]["codec"], drawn[-1]["codec"]
     least, most = (min(row["ms"] for row in drawn if row["codec"] == codec) for codec in (first, last))

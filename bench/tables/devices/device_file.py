@@ -44,11 +44,11 @@ AHEAD = timedelta(days=2)
 SHOWN = 40
 
 
-def _plain(text: str) -> str:
+def _plain_line(text: str) -> str:
     return " ".join(str(plain_text(text)).split())
 
 
-def _time(text: str) -> str:
+def _utc_time(text: str) -> str:
     """A time as UTC, to the second, so that the order of texts is that of times."""
     try:
         made = datetime.fromisoformat(text)
@@ -61,11 +61,11 @@ def _time(text: str) -> str:
     return made.strftime("%Y-%m-%dT%H:%M:%SZ")
 
 
-def _fact(value: Any) -> Any:
+def _checked_fact(value: Any) -> Any:
     if isinstance(value, str) and len(value) > TEXT:
         raise ValueError(f"is longer than {TEXT} letters")
     if isinstance(value, str):
-        return _plain(value)
+        return _plain_line(value)
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise ValueError("is neither text nor a number")
     # A whole number may have more digits than a float holds.
@@ -74,23 +74,23 @@ def _fact(value: Any) -> Any:
     return value
 
 
-def _facts(facts: dict[str, Any]) -> dict[str, Any]:
-    plain = {_plain(name): value for name, value in facts.items()}
+def _checked_facts(facts: dict[str, Any]) -> dict[str, Any]:
+    plain = {_plain_line(name): value for name, value in facts.items()}
     if len(plain) < len(facts) or "" in plain:
         raise ValueError("has two names that read alike, or one without letters")
     return plain
 
 
-Text = Annotated[str, StringConstraints(max_length=TEXT), AfterValidator(_plain)]
-Plain = Annotated[str, StringConstraints(max_length=NAME), AfterValidator(_plain)]
-Name = Annotated[str, StringConstraints(max_length=NAME), AfterValidator(_plain), StringConstraints(min_length=1)]
-Time = Annotated[str, StringConstraints(max_length=NAME), AfterValidator(_time)]
+Text = Annotated[str, StringConstraints(max_length=TEXT), AfterValidator(_plain_line)]
+Plain = Annotated[str, StringConstraints(max_length=NAME), AfterValidator(_plain_line)]
+Name = Annotated[str, StringConstraints(max_length=NAME), AfterValidator(_plain_line), StringConstraints(min_length=1)]
+Time = Annotated[str, StringConstraints(max_length=NAME), AfterValidator(_utc_time)]
 Count = Annotated[int, Field(ge=0, le=MOST_NORMALS)]
 Degrees = Annotated[FiniteFloat, Field(ge=0, le=HALF_TURN_DEG)]
 # Of a pass that takes less than the clock tells, what is left may be below 0.
 Milliseconds = Annotated[FiniteFloat, Field(ge=-MOST_MS, le=MOST_MS)] | None
 FactName = Annotated[str, StringConstraints(max_length=NAME)]
-FactValue = Annotated[Any, AfterValidator(_fact)]
+FactValue = Annotated[Any, AfterValidator(_checked_fact)]
 # A later version may say more.
 STRICT = ConfigDict(strict=True, extra="ignore", frozen=True)
 
@@ -149,7 +149,7 @@ class DeviceFile(BaseModel):
     program: Plain
     sources: Plain
     codecs: Annotated[list[CodecRow], Field(min_length=1, max_length=MOST_CODECS)]
-    facts: Annotated[dict[FactName, FactValue], Field(max_length=MOST_FACTS), AfterValidator(_facts)]
+    facts: Annotated[dict[FactName, FactValue], Field(max_length=MOST_FACTS), AfterValidator(_checked_facts)]
 
     @model_validator(mode="after")
     def has_each_codec_once(self) -> DeviceFile:
@@ -185,7 +185,7 @@ def read_device_file(path: Path) -> Read:
         UsageError: it cannot be read or is not one; the message names the file, and the place in it.
     """
     try:
-        return Read(path, _checked(_parsed(file_bytes(path, MOST_BYTES))))
+        return Read(path, _checked_file(_parsed(file_bytes(path, MOST_BYTES))))
     except (OSError, ValueError) as error:
         raise UsageError(f"{path}: {error}") from None
 
@@ -201,7 +201,7 @@ def _parsed(data: bytes) -> Any:
     except UnicodeDecodeError as error:
         raise ValueError(f"byte {error.start + 1}: it is not text in UTF-8") from None
     try:
-        return json.loads(text, object_pairs_hook=_once, parse_constant=_no_constant)
+        return json.loads(text, object_pairs_hook=_object_without_repeats, parse_constant=_no_constant)
     except _SaidError:
         raise
     except (ValueError, RecursionError) as error:
@@ -212,29 +212,32 @@ class _SaidError(ValueError):
     """What is wrong with a file, in words."""
 
 
-def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+def _object_without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     made = dict(pairs)
     if len(made) < len(pairs):
         twice = Counter(name for name, _ in pairs).most_common(1)[0][0]
-        raise _SaidError(f"{_short(twice)} is given twice in one object")
+        raise _SaidError(f"{_short_text(twice)} is given twice in one object")
     return made
 
 
 def _no_constant(name: str) -> Any:
+    """Raises: JSON has no NaN and no infinity."""
     raise _SaidError(f"{name} is not a number of JSON; write null where nothing was measured")
 
 
-def _checked(found: Any) -> DeviceFile:
+def _checked_file(found: Any) -> DeviceFile:
     """Raises ValueError where it is not a device's, or of another version."""
     if not isinstance(found, dict) or "normalbench_device" not in found:
         raise ValueError('it is not a device file, which the live section of a page saves by "Save this device"')
     version = found["normalbench_device"]
     if type(version) is not int or version != FORMAT:
-        raise ValueError(f"normalbench_device: {_short(version)} is not {FORMAT}, the version that this program reads")
+        raise ValueError(
+            f"normalbench_device: {_short_text(version)} is not {FORMAT}, the version that this program reads"
+        )
     try:
         return DeviceFile.model_validate(found)
     except ValidationError as error:
-        raise ValueError(_wrong(error)) from None
+        raise ValueError(_first_fault(error)) from None
 
 
 # What pydantic puts behind a name that is wrong itself.
@@ -256,10 +259,10 @@ WRONG = {
 }
 
 
-def _wrong(error: ValidationError) -> str:
+def _first_fault(error: ValidationError) -> str:
     """The first that is wrong, and its place in the file."""
     first = error.errors(include_url=False)[0]
-    names = [f"row {part + 1}" if isinstance(part, int) else _short(part) for part in first["loc"] if part != KEY]
+    names = [f"row {part + 1}" if isinstance(part, int) else _short_text(part) for part in first["loc"] if part != KEY]
     where, context = ", ".join(names), first.get("ctx", {})
     if first["type"] == "missing":
         return f"{where} is missing"
@@ -270,10 +273,10 @@ def _wrong(error: ValidationError) -> str:
     if "error" in context and isinstance(first["input"], dict):
         return ": ".join(filter(None, (where, str(context["error"]))))
     said = context.get("error") or WRONG.get(first["type"], first["msg"]).format(**context)
-    return f"{where}: {_short(first['input'])} {said}"
+    return f"{where}: {_short_text(first['input'])} {said}"
 
 
-def _short(value: Any) -> str:
+def _short_text(value: Any) -> str:
     """The beginning of a value's text; a number may have more digits than Python prints."""
     try:
         text = value if isinstance(value, str) else repr(value)

@@ -35,7 +35,7 @@ BROWSERS = (
 def device_name(renderer: str) -> str:
     """A GPU's short name: `GeForce RTX 4090` of `ANGLE (NVIDIA, NVIDIA GeForce RTX 4090 Direct3D11 vs_5_0, D3D11)`."""
     wrapped = ANGLE.fullmatch(renderer.strip())
-    parts = _parts(wrapped[1]) if wrapped else [renderer]
+    parts = _comma_parts(wrapped[1]) if wrapped else [renderer]
     name = parts[1] if len(parts) > 1 else parts[0]
     similar = " or similar" if "or similar" in renderer else ""
     name = name.replace(", or similar", "").strip()
@@ -48,7 +48,7 @@ def device_name(renderer: str) -> str:
     return (" ".join(name.split())[: LONGEST - len(similar)].rstrip(" ,") + similar).strip() or UNKNOWN_DEVICE
 
 
-def _parts(text: str) -> list[str]:
+def _comma_parts(text: str) -> list[str]:
     """What commas separate, but for those inside parentheses."""
     found, depth = [""], 0
     for letter in text:
@@ -75,16 +75,16 @@ def told_apart(renderers: Iterable[str]) -> dict[str, str]:
     """
     every = sorted(set(renderers))
     made = {renderer: device_name(renderer) for renderer in every}
-    for more in (_api, _hash):
+    for more in (_api_name, _renderer_hash):
         names = list(made.values())
         made = {r: f"{name} ({more(r)})" if names.count(name) > 1 and more(r) else name for r, name in made.items()}
     return made
 
 
-def _api(renderer: str) -> str:
+def _api_name(renderer: str) -> str:
     # The last: ANGLE says it behind the GPU's name.
     return next(reversed(APIS.findall(renderer)), "")
 
 
-def _hash(renderer: str) -> str:
+def _renderer_hash(renderer: str) -> str:
     return hashlib.sha256(renderer.encode()).hexdigest()[:4]

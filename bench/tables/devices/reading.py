@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ...ground.choose import check_comma, names_a_folder
+from ...ground.choose import file_names, names_a_folder
 from ...ground.output.errors import UsageError, tell
 from ..table import Row, Step
 from .device_file import CodecRow, DeviceFile, Read, read_device_file
@@ -52,16 +52,15 @@ def files_named(words: str) -> list[Path]:
     Raises:
         UsageError: none is named, a folder has none, or there are too many.
     """
-    check_comma(words)
     found: dict[Path, None] = {}
-    for word in filter(None, map(str.strip, words.split(","))):
-        found |= dict.fromkeys(_in_folder(Path(word)) if names_a_folder(word) else [Path(word)])
+    for word in filter(None, file_names(words)):
+        found |= dict.fromkeys(_folder_files(Path(word)) if names_a_folder(word) else [Path(word)])
     if not found:
         raise UsageError(f"no device file named; --devices FILE,FILE names them, and {SAVED}")
     return checked_number(list(found))
 
 
-def _in_folder(folder: Path) -> list[Path]:
+def _folder_files(folder: Path) -> list[Path]:
     try:
         found = sorted(folder.glob("*.json"))
     except OSError as error:
@@ -111,10 +110,10 @@ def rows_of(device: Device, row_of: str) -> list[Row]:
 
 def codec_rows(device: Device) -> list[Row]:
     """A row for each codec."""
-    return [_about(device, CODEC) | _codec(row) for row in device.file.codecs]
+    return [_device_row(device, CODEC) | _codec_row(row) for row in device.file.codecs]
 
 
-def _codec(row: CodecRow) -> Row:
+def _codec_row(row: CodecRow) -> Row:
     said = row.model_dump(exclude={"equal"})
     # A clock that was not read has no name.
     timer = row.timer if row.encode_ms is not None or row.decode_ms is not None else None
@@ -124,12 +123,13 @@ def _codec(row: CodecRow) -> Row:
 def fact_rows(device: Device) -> list[Row]:
     """A row for each fact."""
     return [
-        _about(device, FACT) | {"name": name, "value": str(value), "number": None if isinstance(value, str) else value}
+        _device_row(device, FACT)
+        | {"name": name, "value": str(value), "number": None if isinstance(value, str) else value}
         for name, value in device.file.facts.items()
     ]
 
 
-def _about(device: Device, row_of: str) -> Row:
+def _device_row(device: Device, row_of: str) -> Row:
     file = device.file
     about = {"device": device.name, "browser": device.browser, "row_of": row_of, "renderer": file.renderer}
     return about | {"vendor": file.vendor, "made": file.made, "program": file.program, "sources": file.sources}

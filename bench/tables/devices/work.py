@@ -42,7 +42,7 @@ WORK = Work(
     finish=_finish,
     summary=_summary,
     warnings=_warnings,
-    charts=lambda rows: charts(_of_codecs(_finish(rows))),
+    charts=lambda rows: charts(_of_codecs(rows)),
     needs=lambda _: frozenset(),
     # Reading a file here takes less time than sending it.
     stays=True,

@@ -27,7 +27,7 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
     if points:
         yield Chart(
             name="effects",
-            title=_finding(points),
+            title=_finding_sentence(points),
             subtitle="What effects make of an error in the normals",
             description="PSNR in dB of each effect's own image over the mean angle of the normals that it read. The "
             "figures are in the table below.",
@@ -40,7 +40,7 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
         )
 
 
-def _finding(points: Sequence[Row]) -> str:
+def _finding_sentence(points: Sequence[Row]) -> str:
     """Which effect suffers the most, and by which codec."""
     worst = min(points, key=lambda point: point["y"])
     best = max(points, key=lambda point: point["y"])

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ....gbuffer.display import Display, measured_exposure
+from ....gbuffer.display import Display
 from ....gbuffer.effects.effect import ChosenEffect
 from ....gbuffer.effects.occlusion.passes import AmbientOcclusion
 from ....gbuffer.frame.plan import Plan
@@ -102,46 +102,45 @@ class Bench:
         self._references: dict[Case, Drawn] = {}
         self._methods: dict[Case, Row] = {}
         # Cases of one scene follow each other, and a head takes longer to make than to render.
-        self._scene = lru_cache(maxsize=1)(_made)
+        self._scene = lru_cache(maxsize=1)(_made_scene)
 
     def reference(self, case: Case) -> Drawn:
         """The frame of a case's reference."""
         case = case.reference
         if case not in self._references:
-            drawn = self._drawn(case)
-            exposure = case.maker.exposure
-            if exposure is None:
-                exposure = measured_exposure(drawn.linear[drawn.covered])
-            self._references[case] = replace(drawn, display=Display(exposure))
+            drawn = self._drawn_case(case)
+            self._references[case] = replace(drawn, display=case.maker.display(drawn.linear[drawn.covered]))
         return self._references[case]
 
     def measure(self, case: Case) -> tuple[Row, Drawn | None]:
         """One row of the table, and the frame; a row that the device cannot give has its reason in `skipped`."""
-        row = TABLE.empty(stage.name for stage in case.effect.passes()) | _described(case)
+        row = TABLE.empty(stage.name for stage in case.effect.passes()) | _case_columns(case)
         row["device"] = self._device.renderer
         try:
-            exact, drawn = self.reference(case), self._drawn(case)
+            exact, drawn = self.reference(case), self._drawn_case(case)
         except UNMEASURABLE as error:
             return row | {"skipped": str(error)}, None
         if not np.any(exact.covered):
             return row | {"skipped": f"{case.effect.effect.name} shows nothing in this picture"}, None
         drawn = replace(drawn, display=exact.display)
-        row |= _apart(drawn, exact) | _image(drawn, exact) | drawn.times | self._method(case.reference)
+        row |= (
+            _distance_columns(drawn, exact) | _image_columns(drawn, exact) | drawn.times | self._method(case.reference)
+        )
         if self._with_flip:
             row["flip"] = float(np.mean(flip(drawn.shown, exact.shown)))
         return row, drawn
 
-    def _drawn(self, case: Case) -> Drawn:
+    def _drawn_case(self, case: Case) -> Drawn:
         scene = self._scene(case.maker, case.setting)
         with rendering(self._device, case.pipeline, scene, case.plan) as made:
             made.draw()
             position, direction, *_ = made.gbuffer()
             own = made.read(case.effect.effect.result)[0]
             covered = drawn_at(own, position[..., 2] != 0)
-            times = self._times(case, made) if self._repeats else {}
+            times = self._time_columns(case, made) if self._repeats else {}
             return Drawn(made.image(), own[..., :3], direction[..., :3], covered, Display(0.0), times)
 
-    def _times(self, case: Case, made: Rendering) -> Row:
+    def _time_columns(self, case: Case, made: Rendering) -> Row:
         timings, clock = made.timings(self._repeats)
         names = [stage.name for stage in case.effect.passes()]
         row: Row = {f"ms_{name}": timings[name].median for name in (*names, "frame")}
@@ -152,10 +151,10 @@ class Bench:
         if not self._rays or not isinstance(case.effect.effect, AmbientOcclusion):
             return {}
         if case not in self._methods:
-            self._methods[case] = self._by_rays(case)
+            self._methods[case] = self._method_columns(case)
         return self._methods[case]
 
-    def _by_rays(self, case: Case) -> Row:
+    def _method_columns(self, case: Case) -> Row:
         scene = self._scene(case.maker, case.setting)
         try:
             found = method_error(self._device, case.effect, scene, case.plan.size, rays=self._rays)
@@ -165,7 +164,7 @@ class Bench:
         return {"method_rms": found.rms, "method_mean": found.mean}
 
 
-def _made(maker: SceneMaker, setting: Setting) -> Scene:
+def _made_scene(maker: SceneMaker, setting: Setting) -> Scene:
     return maker.make(setting)
 
 
@@ -174,7 +173,7 @@ def drawn_at(own: np.ndarray, surfaces: np.ndarray) -> np.ndarray:
     return own[..., 3] > 0 if own.shape[-1] == 4 else surfaces
 
 
-def _apart(drawn: Drawn, exact: Drawn) -> Row:
+def _distance_columns(drawn: Drawn, exact: Drawn) -> Row:
     """How far the effect's own image is from the exact one's, and the normals from the exact ones."""
     covered = exact.covered
     one, other = (frame.own[covered].astype(np.float64) for frame in (drawn, exact))
@@ -197,13 +196,13 @@ def _angles(drawn: Drawn, exact: Drawn) -> np.ndarray:
     return np.nan_to_num(angles_deg(other[there], one[there]), nan=180.0) if np.any(there) else np.zeros(1)
 
 
-def _image(drawn: Drawn, exact: Drawn) -> Row:
+def _image_columns(drawn: Drawn, exact: Drawn) -> Row:
     mse, broken = squared_error(drawn.shown, exact.shown)
     lost = np.count_nonzero(~np.isfinite(drawn.own[exact.covered]).all(axis=-1))
     return {"psnr_db": psnr_db(mse), "invalid": max(broken, int(lost))}
 
 
-def _described(case: Case) -> Row:
+def _case_columns(case: Case) -> Row:
     layout, setting, size = case.plan.layout, case.setting, case.plan.size
     row: Row = {"effect": case.effect.name, "pipeline": case.pipeline.name, "scene": case.maker.name}
     row |= {"size": f"{size[0]}x{size[1]}", "lights": setting.lights, "objects": setting.objects, "seed": setting.seed}

@@ -20,7 +20,7 @@ REFERENCE = "reference"
 OWN, IMAGE = "effect", "final"
 
 
-def _stem(row: Row, of_reference: bool = False) -> str:
+def _file_stem(row: Row, of_reference: bool = False) -> str:
     """What the files of a row are called, without what they show."""
     start = [name_of_file(row["effect"]), row["scene"], row["pipeline"]]
     code = [row["depth"].replace("/", "-")] if row["depth"] else [row["encoding"], row["storage"], row["rounding"]]
@@ -30,7 +30,7 @@ def _stem(row: Row, of_reference: bool = False) -> str:
 def write(folder: Path, row: Row, drawn: Drawn, exact: Drawn) -> None:
     """The effect's own image and the final one, and those of the reference, which rows of one effect share."""
     peak = float(np.max(exact.own)) or 1.0
-    for stem, frame in ((_stem(row), drawn), (f"{_stem(row, True)}-{REFERENCE}", exact)):
+    for stem, frame in ((_file_stem(row), drawn), (f"{_file_stem(row, True)}-{REFERENCE}", exact)):
         for name, shown in ((OWN, own_picture(frame.own, peak)), (IMAGE, pictures.picture(frame.shown))):
             with whole_file(folder / f"{stem}-{name}.png") as partial_file:
                 pictures.write_png(partial_file, shown)
@@ -53,24 +53,24 @@ def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
     groups: dict[str, list[Row]] = {}
     for row in rows:
         if row.get("effect") and row.get("scene") and row.get("pipeline") and "depth" in row and "encoding" in row:
-            groups.setdefault(_stem(row, True), []).append(row)
+            groups.setdefault(_file_stem(row, True), []).append(row)
     for name, part in groups.items():
         original = there.get(f"{name}-{REFERENCE}-{OWN}.png")
-        found = [one for rank, row in enumerate(in_order(part)) if (one := _pictured(there, row, rank))]
+        found = [one for rank, row in enumerate(in_order(part)) if (one := _pictured_or_none(there, row, rank))]
         if original and found:
             title = f"{part[0]['effect']} alone, on {part[0]['scene']}"
             yield Subject(title, "image", partial(read_png, original), found)
 
 
-def _pictured(there: Mapping[str, Path], row: Row, rank: int) -> Pictured | None:
-    own = there.get(f"{_stem(row)}-{OWN}.png")
+def _pictured_or_none(there: Mapping[str, Path], row: Row, rank: int) -> Pictured | None:
+    own = there.get(f"{_file_stem(row)}-{OWN}.png")
     if own is None:
         return None
     key = CodecKey.of(row)
     label = f"depth {row['depth']}" if row["depth"] else key.label
-    return Pictured(key, label, "" if row["depth"] else key.label, partial(_read, own), rank)
+    return Pictured(key, label, "" if row["depth"] else key.label, partial(_pixels, own), rank)
 
 
-def _read(own: Path) -> ImagePixels | None:
+def _pixels(own: Path) -> ImagePixels | None:
     image = read_png(own)
     return None if image is None else ImagePixels(image, None)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from ...ground.options.option import Images, Layouts, Lights, Names, Objects, Option, Pipelines, Repeats, Seed, Size
+from ...shaders.languages.source_options import SourceOptions
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
@@ -25,7 +26,7 @@ DEPTHS = "linear/packed16,window/depth24,window/depth32f"
 
 
 @dataclass(frozen=True, kw_only=True)
-class EffectsOptions:
+class EffectsOptions(SourceOptions):
     """What `effects` measures. Names are comma-separated."""
 
     effect: Annotated[

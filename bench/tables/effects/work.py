@@ -22,7 +22,7 @@ from ...ground.choose import choose, choose_one
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.counts import MAX_REPEATS, in_range
 from ...ground.options.effect_names import effects_named, lacking, pipeline_with
-from ...ground.options.scene_names import scenes_named
+from ...ground.options.scene_names import scene_makers_named
 from ...ground.options.targets import checked_setting, checked_target, what_is_left
 from ...ground.output.errors import UsageError
 from ...ground.output.writing import check_folder
@@ -102,24 +102,27 @@ def cases(options: EffectsOptions, device: Device) -> list[Case]:
                 one = replace(exact, light_targets=max(pipeline.light_targets, default=1))
                 plans = [(replace(one, layout=layout), depth) for layout, depth in inside]
                 chosen = [Case(effect, with_effect, plan, m, setting, depth) for m in makers for plan, depth in plans]
-                made += [case for case in chosen if _is_possible(device, case, complaints)]
+                made += [case for case in chosen if _is_possible(device, case, makers[case.maker], complaints)]
     return what_is_left(made, complaints)
 
 
-def _suitable(effect: ChosenEffect, names: str | None, setting: Setting, complaints: list[str]) -> list[SceneMaker]:
-    """The scenes asked for, or the effect's own, that have something for it."""
-    made: list[SceneMaker] = []
-    for maker in scenes_named(names or effect.effect.scene):
-        if why := lacking([effect], maker.name, maker.make(setting)):
+def _suitable(
+    effect: ChosenEffect, names: str | None, setting: Setting, complaints: list[str]
+) -> dict[SceneMaker, bool]:
+    """The scenes asked for, or the effect's own, that have something for it; whether each is metal/rough."""
+    made: dict[SceneMaker, bool] = {}
+    for maker in scene_makers_named(names or effect.effect.scene):
+        scene = maker.make(setting)
+        if why := lacking([effect], maker.name, scene):
             complaints.append(why)
         else:
-            made.append(maker)
+            made[maker] = scene.is_metal_rough
     return made
 
 
-def _is_possible(device: Device, case: Case, complaints: list[str]) -> bool:
+def _is_possible(device: Device, case: Case, is_metal_rough: bool, complaints: list[str]) -> bool:
     try:
-        check(device, case.pipeline, case.plan)
+        check(device, case.pipeline, case.plan, is_metal_rough)
     except LayoutError as error:
         complaints.append(str(error))
         return False
@@ -156,7 +159,7 @@ def _warnings(rows: Sequence[Row]) -> Iterator[str]:
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     names = ("encoding", "storage", "depth", "effect_psnr_db", "effect_rms", "method_rms", "psnr_db")
     for effect, pipeline, scene in dict.fromkeys(group_of(row) for row in rows):
-        part = [row for row in in_order(rows) if group_of(row) == (effect, pipeline, scene)]
+        part = [row for row in rows if group_of(row) == (effect, pipeline, scene)]
         shown = [{name: row[name] for name in names} for row in part if row["effect_rms"] is not None]
         if shown:
             yield Sheet(f"{effect} on {scene} by {pipeline}", shown, keys={"effect": effect, "scene": scene})

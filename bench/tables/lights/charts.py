@@ -18,7 +18,7 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
     """What is lost over the number of lights, of the experiments equal and random."""
     equal = [r for r in having(rows, "sum", "lights", "error", "bound") if r.get("experiment") == "equal"]
     random = [r for r in having(rows, "lights", "model_max", "bound") if r.get("experiment") == "random"]
-    points = [*_equal(equal), *_random(random)]
+    points = [*_equal_rows(equal), *_random_rows(random)]
     if points:
         yield lights_chart(points, distinct([*equal, *random], "light_buffer"))
 
@@ -30,7 +30,7 @@ def lights_chart(points: Sequence[Row], buffers: tuple[Any, ...]) -> Chart:
     counts = sorted({point["x"] for point in points})
     return Chart(
         name="lights",
-        title=_finding(points),
+        title=_finding_sentence(points),
         subtitle="Error over the number of lights; dotted: blends times half a step; errors below 1e-6 are drawn at "
         "1e-6",
         description="What is lost of the sum over the number of lights, by the model, a line for each light buffer; "
@@ -49,14 +49,14 @@ def lights_chart(points: Sequence[Row], buffers: tuple[Any, ...]) -> Chart:
     )
 
 
-def _equal(rows: Sequence[Row]) -> list[Row]:
+def _equal_rows(rows: Sequence[Row]) -> list[Row]:
     """Of equal lights of the least sum: each buffer's worst channel."""
     total = min((row["sum"] for row in rows), default=0.0)
     panel = f"equal lights that sum to {total:g}, worst channel"
     return _worst(panel, [(row, abs(row["error"])) for row in rows if row["sum"] == total])
 
 
-def _random(rows: Sequence[Row]) -> list[Row]:
+def _random_rows(rows: Sequence[Row]) -> list[Row]:
     """Of coloured lights: the largest error of the worst order."""
     return _worst(RANDOM, [(row, row["model_max"]) for row in rows])
 
@@ -73,7 +73,7 @@ def _worst(panel: str, errors: Sequence[tuple[Row, float]]) -> list[Row]:
     ]
 
 
-def _finding(points: Sequence[Row]) -> str:
+def _finding_sentence(points: Sequence[Row]) -> str:
     """Which buffers lose the least and the most of the most lights, in the last panel."""
     panel, most = points[-1]["panel"], max(point["x"] for point in points)
     last = sorted((p for p in points if (p["panel"], p["x"]) == (panel, most)), key=lambda p: p["y"])

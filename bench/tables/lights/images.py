@@ -24,7 +24,8 @@ from ....gbuffer.gl.shader import ShaderError
 from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.pipelines import PIPELINES, Pipeline
 from ....gbuffer.render import Rendering, rendering
-from ....gbuffer.scenes.scene import Colour, Scene
+from ....gbuffer.scenes.metal_rough import MetalRough
+from ....gbuffer.scenes.scene import Colour, Material, Scene
 from ...ground.output.errors import UsageError
 from ...measures.metrics.images import squared_error
 from ...measures.metrics.totals import psnr_db
@@ -98,10 +99,10 @@ class Resolves:
     def model(self, encoding: LightCodec) -> Resolved:
         """By the model, of the same samples, as displayed."""
         if encoding not in self._model:
-            self._model[encoding] = self._modelled(encoding)
+            self._model[encoding] = self._model_images(encoding)
         return self._model[encoding]
 
-    def _modelled(self, encoding: LightCodec) -> Resolved:
+    def _model_images(self, encoding: LightCodec) -> Resolved:
         flat = jnp.asarray(self._light.reshape(len(self._light), -1, 3))
         found = (np.asarray(a).reshape(self._light.shape[1:]) for a in _by_model(encoding, flat))
         return Resolved(*map(displayed, found))
@@ -124,18 +125,24 @@ def brighter(scene: Scene, exposure: float) -> Scene:
         r, g, b = (channel * exposure for channel in colour)
         return r, g, b
 
+    def glowing(material: Material | MetalRough) -> Material | MetalRough:
+        if isinstance(material, MetalRough):
+            return replace(material, emission=times(material.emission))
+        return replace(material, emissive=times(material.emissive))
+
+    around = scene.environment
     return replace(
         scene,
         ambient=times(scene.ambient),
         lights=tuple(replace(light, colour=times(light.colour)) for light in scene.lights),
-        materials=tuple(replace(material, emissive=times(material.emissive)) for material in scene.materials),
+        materials=tuple(glowing(material) for material in scene.materials),
+        environment=around and replace(around, radiance=around.radiance * np.float32(exposure)),
     )
 
 
 def with_power(shot: Shot, power: float) -> Shot:
     """A shot in which every material has one specular power."""
-    materials = tuple(replace(material, power=power) for material in shot.scene.materials)
-    return replace(shot, scene=replace(shot.scene, materials=materials))
+    return replace(shot, scene=shot.scene.with_power(power))
 
 
 class Lit:
@@ -147,7 +154,7 @@ class Lit:
 
     def __init__(self, device: Device, pipeline: Pipeline, shot: Shot):
         self._device, self._pipeline, self._shot = device, pipeline, shot
-        with self._rendered(REFERENCE, max(pipeline.light_targets)) as made:
+        with self._open_rendering(REFERENCE, max(pipeline.light_targets)) as made:
             self.reference = displayed(made.image())
             # The most light that any target keeps in a pixel.
             self._brightest = np.max([light[..., :3].max(axis=-1) for light in made.read(LIGHT)], axis=0)
@@ -155,7 +162,7 @@ class Lit:
             raise UsageError(f"{shot.name}: no light reaches what its camera sees; every light buffer would be exact")
 
     @contextmanager
-    def _rendered(self, encoding: LightCodec, targets: int) -> Iterator[Rendering]:
+    def _open_rendering(self, encoding: LightCodec, targets: int) -> Iterator[Rendering]:
         plan = replace(self._shot.plan(), light_buffer=encoding, light_targets=targets)
         with rendering(self._device, self._pipeline, self._shot.scene, plan) as made:
             made.draw()
@@ -163,7 +170,7 @@ class Lit:
 
     def measure(self, encoding: LightCodec, targets: int) -> tuple[Row, np.ndarray]:
         """Figures of a frame, and the frame as displayed. Raises FormatError and ShaderError."""
-        with self._rendered(encoding, targets) as made:
+        with self._open_rendering(encoding, targets) as made:
             image = displayed(made.image())
         mse, broken = squared_error(image, self.reference)
         held = self._brightest <= encoding.limit

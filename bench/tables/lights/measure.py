@@ -88,7 +88,7 @@ def check_light_twin(encoding: LightCodec) -> None:
         raise UsageError(f"{place}: {type(error).__name__}: {error}") from error
 
 
-def _row(experiment: str, encoding: LightCodec, device: Device | None, **more: Any) -> Row:
+def _filled_row(experiment: str, encoding: LightCodec, device: Device | None, **more: Any) -> Row:
     described = {"experiment": experiment, "light_buffer": encoding.name}
     return TABLE.empty() | described | {"device": device.renderer if device else None} | more
 
@@ -105,7 +105,7 @@ def sum_rows(names: list[str], encoding: LightCodec, sums: Sums, device: Device 
         return
     how = {"rounds": rounding.name, "agree_percent": 100 * rounding.share} if rounding else {}
     for name, row in found:
-        yield _row(name, encoding, device, seed=sums.seed, **how, **row)
+        yield _filled_row(name, encoding, device, seed=sums.seed, **how, **row)
 
 
 def resolve_rows(
@@ -124,7 +124,7 @@ def resolve_rows(
             described = {"scene": shot.name, "size": f"{shot.size[0]}x{shot.size[1]}", "seed": shot.seed}
             described |= {"samples": samples, "samples_asked": ",".join(map(str, asked))}
             if encoding in made.failed:
-                yield _row("resolve", encoding, device, **described, skipped=made.failed[encoding])
+                yield _filled_row("resolve", encoding, device, **described, skipped=made.failed[encoding])
                 continue
             images: dict[str, tuple[Resolved, Resolved]] = {
                 "model": (made.model(encoding), single.model(encoding)),
@@ -132,7 +132,7 @@ def resolve_rows(
             }
             for backend, (found, aliased) in images.items():
                 figures = made.compared(found, aliased)
-                yield _row("resolve", encoding, device, backend=backend, **described, **figures)
+                yield _filled_row("resolve", encoding, device, backend=backend, **described, **figures)
             seen(encoding, samples, *images["gl"], made.right)
 
 
@@ -159,9 +159,9 @@ def image_rows(
             try:
                 figures, image = lit.measure(encoding, count)
             except UNMEASURABLE as error:
-                yield _row("image", encoding, device, **described, skipped=str(error))
+                yield _filled_row("image", encoding, device, **described, skipped=str(error))
                 continue
-            yield _row("image", encoding, device, **described, **figures)
+            yield _filled_row("image", encoding, device, **described, **figures)
             seen(encoding, count, image, lit.reference)
 
 

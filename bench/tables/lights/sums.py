@@ -50,7 +50,7 @@ def array(planes: Sequence[Any]) -> np.ndarray:
 
 
 @partial(jax.jit, static_argnames=("encoding", "blending"))
-def _summed(encoding: LightCodec, lights: Vec4, count, blending: Blending) -> tuple[Vec4, Vec4]:
+def _sum_and_texels(encoding: LightCodec, lights: Vec4, count, blending: Blending) -> tuple[Vec4, Vec4]:
     texels = accumulate(encoding, lights, count, blending)
     return encoding.decode(texels), texels
 
@@ -88,7 +88,9 @@ class Adder:
 
     def model(self, lights: np.ndarray, count: int | None = None, blending: Blending = IDEAL) -> Sum:
         """The first `count` of lights, float32 of shape (lights, width, 4), added up by the model."""
-        light, texels = _summed(self.encoding, planes(lights), len(lights) if count is None else count, blending)
+        light, texels = _sum_and_texels(
+            self.encoding, planes(lights), len(lights) if count is None else count, blending
+        )
         return Sum(array(light), array(texels))
 
     def device(self, lights: np.ndarray, count: int | None = None) -> Sum | None:
@@ -104,7 +106,7 @@ class Adder:
             return None
         shares: dict[str, float] = {}
         for name, blending in ROUNDINGS.items():
-            shares[name] = self._explained(lights, blending, got)
+            shares[name] = self._explained_share(lights, blending, got)
             if shares[name] == 1.0:
                 break
         name = max(shares, key=lambda name: shares[name])
@@ -112,11 +114,11 @@ class Adder:
             return Rounding(name, shares[name])
         alone = self.device(lights[:1])
         assert alone
-        if any(self._explained(lights[:1], blending, alone) >= EXPLAINED for blending in ROUNDINGS.values()):
+        if any(self._explained_share(lights[:1], blending, alone) >= EXPLAINED for blending in ROUNDINGS.values()):
             return Rounding("its own blending", shares[name])
         return Rounding(f"its own conversion{self._conversion_error()}", shares[name])
 
-    def _explained(self, lights: np.ndarray, blending: Blending, got: Sum) -> float:
+    def _explained_share(self, lights: np.ndarray, blending: Blending, got: Sum) -> float:
         apart = steps_apart(self.encoding.storage, self.model(lights, None, blending).texels, got.texels)
         # An integer is the same or is not; floats may be a unit apart.
         allowed = 0.5 if self.encoding.storage.kind == "unorm" else 1.0
@@ -160,7 +162,7 @@ def worst_rounding(adder: Adder, light: np.ndarray) -> np.ndarray:
     return np.abs(adder.model(below[None]).light - below).max(axis=0)
 
 
-def _labelled(found: list[tuple[Any, ...]]) -> dict[tuple[Any, ...], str]:
+def _channel_labels(found: list[tuple[Any, ...]]) -> dict[tuple[Any, ...], str]:
     """Channels that agree in everything go by one name: rgba, or rgb and a."""
     names: dict[tuple[Any, ...], str] = {}
     for channel, what in zip(CHANNELS, found, strict=False):
@@ -184,7 +186,7 @@ def equal_lights(adder: Adder, sums: Sequence[float], counts: Sequence[int]) -> 
                 )
                 for i in range(adder.channels)
             ]
-            for (by_model, by_gl, bound), channel in _labelled(found).items():
+            for (by_model, by_gl, bound), channel in _channel_labels(found).items():
                 row: Row = {"channel": channel, "sum": total, "lights": count, "model": by_model, "gl": by_gl}
                 yield row | {"error": by_model - total, "gl_error": by_gl - total if gl else None, "bound": bound}
 
@@ -253,14 +255,16 @@ def banding(adder: Adder, peaks: Sequence[float]) -> Iterator[Row]:
         found: list[tuple[Any, ...]] = []
         kept = [adder.model(light[None]), adder.device(light[None])]
         for i in range(adder.channels):
-            found.append(tuple(value for one in kept for value in (_bands(one.light[:, i]) if one else (None,) * 3)))
-        for figures, channel in _labelled(found).items():
+            found.append(
+                tuple(value for one in kept for value in (_band_figures(one.light[:, i]) if one else (None,) * 3))
+            )
+        for figures, channel in _channel_labels(found).items():
             row: Row = {"channel": channel, "peak": peak, "exact_step": float(np.abs(np.diff(light[:, 0])).max())}
             names = ("levels", "largest_step", "shown_step", "gl_levels", "gl_largest_step", "gl_shown_step")
             yield row | dict(zip(names, figures, strict=True))
 
 
-def _bands(light: np.ndarray) -> tuple[int, float, float]:
+def _band_figures(light: np.ndarray) -> tuple[int, float, float]:
     steps = np.abs(np.diff(light.astype(np.float64)))
     shown = np.abs(np.diff(displayed(light))) * 255
     return len(np.unique(light)), float(steps.max()), float(shown.max())

@@ -14,13 +14,15 @@ from ....encodings.codecs.light_codec import LightCodec
 from ....gbuffer.codecs.light_passes import Resolved
 from ....gbuffer.display import displayed
 from ....gbuffer.gl.device import Device
+from ....gbuffer.layouts.words import LayoutError
 from ....gbuffer.pipelines import PIPELINES, Pipeline
+from ....gbuffer.render import check_metal_rough
 from ....reports.charts import pictures
 from ...ground.choose import choose
 from ...ground.machine.devices import found_device, require_jax
 from ...ground.options.counts import checked_numbers
 from ...ground.options.light_names import MOST_LIGHT, light_buffers_named
-from ...ground.options.scene_names import scenes_named
+from ...ground.options.scene_names import scene_makers_named
 from ...ground.options.targets import TARGETS, checked_setting, checked_target
 from ...ground.output.errors import MissingError, UsageError
 from ...ground.output.writing import check_folder, whole_file
@@ -68,7 +70,7 @@ def shots(options: LightsOptions, gl: Device) -> list[Shot]:
     """The scenes asked for. Raises UsageError."""
     size, _ = checked_target(options.size, max(all_samples(options)), 1, gl)
     setting = checked_setting(options.objects, options.lights, options.seed)
-    return [Shot(maker.name, maker.make(setting), size, options.seed) for maker in scenes_named(options.scene)]
+    return [Shot(maker.name, maker.make(setting), size, options.seed) for maker in scene_makers_named(options.scene)]
 
 
 def given_samples(options: LightsOptions, gl: Device) -> dict[int, list[int]]:
@@ -115,6 +117,8 @@ def _steps(options: LightsOptions, outputs: LightsOutputs) -> list[Step]:
     pipelines, powers, _ = _pipelines(options), _powers(options), all_samples(options)
     targets = choose("number of light targets", options.light_targets, TARGETS)
     seen = shots(options, gl) if gl and set(measure.IMAGE_EXPERIMENTS) & set(names) else []
+    if "image" in names:
+        _check_materials(seen, pipelines)
     _check(outputs, names)
     album = Album(outputs.images)
     summed = [name for name in measure.SUM_EXPERIMENTS if name in names]
@@ -128,6 +132,16 @@ def _steps(options: LightsOptions, outputs: LightsOutputs) -> list[Step]:
             made += [_image_step(gl, p, shot, power, chosen, targets, album) for p in pipelines for power in powers]
     lacking = [name for name in measure.IMAGE_EXPERIMENTS if name in names and not gl]
     return made + [Step({"experiment": name}, partial(_lacking, name, missing), name) for name in lacking]
+
+
+def _check_materials(seen: Sequence[Shot], pipelines: Sequence[Pipeline]) -> None:
+    """Raises UsageError where a pipeline cannot draw a scene's materials."""
+    for shot in seen:
+        for pipeline in pipelines if shot.scene.is_metal_rough else ():
+            try:
+                check_metal_rough(pipeline)
+            except LayoutError as error:
+                raise UsageError(f"{shot.name}: {error}; name one by --pipeline") from error
 
 
 def _powers(options: LightsOptions) -> tuple[float, ...]:

@@ -28,7 +28,7 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
 def _chart(at: int, group: tuple[str, str], rows: Sequence[Row]) -> Chart:
     """Angles of each code in each format, a line for each, in the order of the rows, the first on top."""
     lines = [
-        {"codec": f"{row['encoding']} {row['block']}", "line": _label(row)}
+        {"codec": f"{row['encoding']} {row['block']}", "line": _line_name(row)}
         | {column: max(row[column], LEAST_DEG) for column in COLUMNS}
         for row in rows
     ]
@@ -37,7 +37,7 @@ def _chart(at: int, group: tuple[str, str], rows: Sequence[Row]) -> Chart:
     tips = (("line", "code"), ("what", "angle"), ("x", "degrees"))
     return Chart(
         name=f"maps-{at}",
-        title=_finding(group[0], rows),
+        title=_finding_sentence(group[0], rows),
         subtitle=f"What blocks lose of {group[0]}, decoded by {group[1]}",
         description="The mean angle, the angle that 99 % are below, and the largest, in degrees, for each code and "
         "format. The figures are in the table below.",
@@ -53,15 +53,15 @@ def _chart(at: int, group: tuple[str, str], rows: Sequence[Row]) -> Chart:
     )
 
 
-def _finding(name: str, rows: Sequence[Row]) -> str:
+def _finding_sentence(name: str, rows: Sequence[Row]) -> str:
     """Which code and format of each number of bits lose the least."""
     best: dict[float, Row] = {}
     for row in sorted(rows, key=lambda row: (row["bits_per_texel"], row["angle_mean_deg"])):
         best.setdefault(row["bits_per_texel"], row)
-    said = [f"{_label(row)} ({row['angle_mean_deg']:.2g})" for row in best.values()]
+    said = [f"{_line_name(row)} ({row['angle_mean_deg']:.2g})" for row in best.values()]
     return f"The smallest mean angles on {name}, in degrees, have {'; '.join(said)}"
 
 
-def _label(row: Row) -> str:
+def _line_name(row: Row) -> str:
     """What a line is called: the code, the format, its swizzle, and its bits."""
     return f"{row['encoding']} {row['block']} {row['swizzle']}, {row['bits_per_texel']} bits"

@@ -70,17 +70,17 @@ class Encoder:
 
     def encoded(self, given: Texels) -> bytes:
         """The blocks of an image, row by row. Raises MissingError where the package is not installed."""
-        return self.make(self._found(), given)
+        return self.make(self._found_modules(), given)
 
     def decoded(self, blocks: bytes, size: tuple[int, int]) -> np.ndarray:
         """The texels of blocks, float32 of shape (height, width, 4) in [0, 1]. Raises MissingError as `encoded`."""
         assert self.undo
-        return self.undo(self._found(), blocks, size)
+        return self.undo(self._found_modules(), blocks, size)
 
     def _modules(self) -> list[Any]:
         return [import_module(name) for name in self.modules]
 
-    def _found(self) -> list[Any]:
+    def _found_modules(self) -> list[Any]:
         if missing := self.missing:
             raise MissingError(missing)
         return self._modules()
@@ -94,12 +94,12 @@ def _as_it_was(_: Sequence[Any], texels: bytes, size: tuple[int, int]) -> np.nda
     return np.frombuffer(texels, np.uint8).reshape(size[1], size[0], 4).astype(np.float32) / np.float32(255)
 
 
-def _bc5(modules: Sequence[Any], given: Texels) -> bytes:
+def _bc5_bytes(modules: Sequence[Any], given: Texels) -> bytes:
     quicktex, bc5 = modules
     return bc5.BC5Encoder().encode(quicktex.RawTexture.frombytes(given.texels, *given.size)).tobytes()
 
 
-def _bc7(modules: Sequence[Any], given: Texels) -> bytes:
+def _bc7_bytes(modules: Sequence[Any], given: Texels) -> bytes:
     (etcpak,) = modules
     effort = etcpak.BC7CompressBlockParams()
     effort.init_linear_weights()
@@ -108,7 +108,7 @@ def _bc7(modules: Sequence[Any], given: Texels) -> bytes:
     return etcpak.compress_bc7(given.texels, *given.size, effort)
 
 
-def _rg11(modules: Sequence[Any], given: Texels) -> bytes:
+def _rg11_bytes(modules: Sequence[Any], given: Texels) -> bytes:
     (etcpak,) = modules
     return etcpak.compress_eac_rg(given.texels, *given.size)
 
@@ -120,7 +120,7 @@ def _astc_context(astc: Any, used: str) -> Any:
     return astc.ASTCContext(settings)
 
 
-def _astc(modules: Sequence[Any], given: Texels) -> bytes:
+def _astc_bytes(modules: Sequence[Any], given: Texels) -> bytes:
     (astc,) = modules
     image = astc.ASTCImage(astc.ASTCType.U8, *given.size, data=given.texels)
     return _astc_context(astc, given.used).compress(image, astc.ASTCSwizzle())
@@ -135,7 +135,7 @@ def _astc_texels(modules: Sequence[Any], blocks: bytes, size: tuple[int, int]) -
 
 
 NONE = Encoder("", (), "uncompressed", _as_it_is, _as_it_was)
-QUICKTEX = Encoder("quicktex", ("quicktex", "quicktex.s3tc.bc5"), "rgbcx, default search", _bc5)
-BC7 = Encoder("etcpak", ("etcpak",), f"bc7enc, effort {BC7_EFFORT} of 4", _bc7)
-RG11 = Encoder("etcpak", ("etcpak",), "EAC", _rg11)
-ASTC = Encoder("astc-encoder-py", ("astc_encoder",), f"astcenc, effort {ASTC_EFFORT} of 100", _astc, _astc_texels)
+QUICKTEX = Encoder("quicktex", ("quicktex", "quicktex.s3tc.bc5"), "rgbcx, default search", _bc5_bytes)
+BC7 = Encoder("etcpak", ("etcpak",), f"bc7enc, effort {BC7_EFFORT} of 4", _bc7_bytes)
+RG11 = Encoder("etcpak", ("etcpak",), "EAC", _rg11_bytes)
+ASTC = Encoder("astc-encoder-py", ("astc_encoder",), f"astcenc, effort {ASTC_EFFORT} of 100", _astc_bytes, _astc_texels)

@@ -99,7 +99,7 @@ class BlockFormat:
         return texels.transpose(0, 2, 1, 3, 4).reshape(height, width, self.channels)
 
 
-def _bc7(blocks: np.ndarray) -> np.ndarray:
+def _bc7_texels(blocks: np.ndarray) -> np.ndarray:
     return decode_bc7(blocks).astype(np.float32) / np.float32(ONE)
 
 
@@ -107,7 +107,7 @@ FORMATS: Mapping[str, BlockFormat] = MappingProxyType(
     {
         "none": BlockFormat("none", "8 bits", 4, NONE),
         "bc5": BlockFormat("bc5", "BC5", 2, QUICKTEX, decode_bc5, 0x8DBD),
-        "bc7": BlockFormat("bc7", "BC7", 4, BC7, _bc7, 0x8E8C),
+        "bc7": BlockFormat("bc7", "BC7", 4, BC7, _bc7_texels, 0x8E8C),
         "eac_rg11": BlockFormat("eac_rg11", "EAC RG11", 2, RG11, decode_rg11, 0x9272),
         "astc_4x4": BlockFormat("astc_4x4", "ASTC 4x4", 4, ASTC, None, 0x93B0),
     }

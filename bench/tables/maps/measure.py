@@ -102,12 +102,12 @@ def bands(normals: NormalSet) -> Iterator[Band]:
 
 
 @cache
-def _encode(codec: Codec) -> Callable[[Vec3, Vec3], Any]:
+def _encoder(codec: Codec) -> Callable[[Vec3, Vec3], Any]:
     return jax.jit(codec.stored)
 
 
 @cache
-def _decode(encoding: Encoding) -> Callable[[Any, Vec3], Vec3]:
+def _decoder(encoding: Encoding) -> Callable[[Any, Vec3], Vec3]:
     return jax.jit(encoding.decode)
 
 
@@ -130,7 +130,7 @@ def _pixels(planes: Any, shape: tuple[int, ...]) -> np.ndarray:
 
 def code_texels(codec: Codec, band: Band) -> np.ndarray:
     """The code of each normal in 8 bits, uint8 of shape (height, width, components): c/2 + 1/2 of 255."""
-    code = _encode(codec)(*(Vec3(*_vectors(a)) for a in (band.n, band.view)))
+    code = _encoder(codec)(*(Vec3(*_vectors(a)) for a in (band.n, band.view)))
     numbers = _pixels(code, band.n.shape[:2])
     return np.rint((numbers * 0.5 + 0.5) * ONE).astype(np.uint8)
 
@@ -139,21 +139,21 @@ def decoded_normals(encoding: Encoding, numbers: np.ndarray, view: np.ndarray) -
     """The normals of codes that are stored as numbers in [0, 1], float32 of shape (height, width, 3)."""
     code = _vectors(numbers.astype(np.float32) * 2 - 1)
     kind = type(jax.eval_shape(encoding.encode, *[Vec3(*[code[0]] * 3)] * 2))
-    return _pixels(_decode(encoding)(kind(*code), Vec3(*_vectors(view))), numbers.shape[:2])
+    return _pixels(_decoder(encoding)(kind(*code), Vec3(*_vectors(view))), numbers.shape[:2])
 
 
-def _by_model(case: Case, blocks: bytes, size: tuple[int, int]) -> np.ndarray:
+def _texels_by_model(case: Case, blocks: bytes, size: tuple[int, int]) -> np.ndarray:
     return case.block.by_specification(blocks, size)
 
 
-def _by_device(case: Case, blocks: bytes, size: tuple[int, int]) -> np.ndarray:
+def _texels_by_device(case: Case, blocks: bytes, size: tuple[int, int]) -> np.ndarray:
     if not case.block.is_compressed:
         return case.block.by_specification(blocks, size)
     return device_texels(device(), blocks, size, case.block.internal_format)
 
 
 DECODERS: Mapping[str, Callable[[Case, bytes, tuple[int, int]], np.ndarray]] = MappingProxyType(
-    {"model": _by_model, "device": _by_device}
+    {"model": _texels_by_model, "device": _texels_by_device}
 )
 
 
@@ -176,7 +176,7 @@ def through(case: Case, band: Band, clock: Clock) -> np.ndarray:
 
 def measure(case: Case) -> list[Row]:
     """One row; one that cannot be measured here has its reason in `skipped` and no figures."""
-    row, clock, whole = _described(case), Clock(), case.normal_set
+    row, clock, whole = _case_columns(case), Clock(), case.normal_set
 
     def loads() -> Iterator[Callable[[], Decoded]]:
         for band in bands(whole):
@@ -187,12 +187,12 @@ def measure(case: Case) -> list[Row]:
             yield partial(identity, Decoded(n, back, jnp.asarray(covered.reshape(n.z.shape))))
 
     try:
-        return [row | _figures(_meter().measure(loads(), whole.count), clock) | _how(case)]
+        return [row | _figures(_meter().measure(loads(), whole.count), clock) | _decoder_columns(case)]
     except UNMEASURABLE as error:
         return [row | {"skipped": str(error)}]
 
 
-def _described(case: Case) -> Row:
+def _case_columns(case: Case) -> Row:
     return TABLE.empty() | {
         "encoding": case.encoding.name,
         "block": case.block.name,
@@ -217,7 +217,7 @@ def _figures(s: Statistics, clock: Clock) -> Row:
     }
 
 
-def _how(case: Case) -> Row:
+def _decoder_columns(case: Case) -> Row:
     by_device = case.decoder == "device" and case.block.is_compressed
     # What there is no decoder of here is decoded by the package that encodes it.
     by_package = case.block.encoder.release if case.block.decode is None else ""

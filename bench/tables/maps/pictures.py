@@ -25,7 +25,7 @@ def write(cases: Iterable[Case], folder: Path) -> None:
     """The decoded normals and their error, times `pictures.GAIN`, of each case. Raises OSError."""
     for case in cases:
         try:
-            found = _drawn(case)
+            found = _case_pictures(case)
         except UNMEASURABLE:
             continue
         for kind in KINDS:
@@ -33,7 +33,7 @@ def write(cases: Iterable[Case], folder: Path) -> None:
                 pictures.write_png(partial, found[kind])
 
 
-def _drawn(case: Case) -> dict[str, np.ndarray]:
+def _case_pictures(case: Case) -> dict[str, np.ndarray]:
     parts = list(bands(case.normal_set))
     decoded = np.concatenate([through(case, band, Clock()) for band in parts])
     n = np.concatenate([band.n[: band.real[0], : band.real[1]] for band in parts])

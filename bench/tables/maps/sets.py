@@ -36,7 +36,7 @@ def _grain() -> np.ndarray:
     return np.random.default_rng(SEED).normal(size=(SIZE, SIZE, 2))
 
 
-def _map(name: str, title: str, slopes: np.ndarray) -> NormalSet:
+def _normal_map(name: str, title: str, slopes: np.ndarray) -> NormalSet:
     slopes = slopes * (SLOPE / np.sqrt(np.mean(slopes**2)))
     n = np.concatenate([-slopes, np.ones((SIZE, SIZE, 1))], axis=-1)
     n = (n / np.linalg.norm(n, axis=-1, keepdims=True)).astype(np.float32)
@@ -47,13 +47,13 @@ def _map(name: str, title: str, slopes: np.ndarray) -> NormalSet:
 @cache
 def bumps() -> NormalSet:
     """A smooth map."""
-    return _map("bumps", "a smooth normal map", _bumps())
+    return _normal_map("bumps", "a smooth normal map", _bumps())
 
 
 @cache
 def grain() -> NormalSet:
     """A map of noise."""
-    return _map("grain", "a normal map of noise", _grain())
+    return _normal_map("grain", "a normal map of noise", _grain())
 
 
 MAPS: Mapping[str, Callable[[], NormalSet]] = MappingProxyType({"bumps": bumps, "grain": grain})

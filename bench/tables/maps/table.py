@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import Annotated
 
 from ...ground.options.option import Encodings, Images, Option, Plot, Reading
+from ...shaders.languages.source_options import SourceOptions
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
@@ -39,12 +40,12 @@ DECODERS: Mapping[str, str] = MappingProxyType(
 )
 
 
-def _listed(known: Mapping[str, str]) -> str:
+def _listed_text(known: Mapping[str, str]) -> str:
     return "; ".join(f"{name}: {said}" for name, said in known.items())
 
 
 @dataclass(frozen=True, kw_only=True)
-class MapsOptions(Reading):
+class MapsOptions(Reading, SourceOptions):
     """What `maps` measures. Names are comma-separated."""
 
     encoding: Encodings = "xy,hemi_octahedral,octahedral,xyz"
@@ -71,21 +72,21 @@ class MapsOutputs:
     plot: Plot = None
 
 
-def _angle(name: str, says: str, drops: int = 0) -> Column:
+def _angle_column(name: str, says: str, drops: int = 0) -> Column:
     return Column(name, says, unit="degrees", better="less", drops=drops)
 
 
 COLUMNS = (
     shared.ENCODING,
-    Column("block", f"The texture format. {_listed(BLOCKS)}.", KEY),
-    Column("swizzle", f"The channels that hold the code. {_listed(SWIZZLES)}.", KEY),
+    Column("block", f"The texture format. {_listed_text(BLOCKS)}.", KEY),
+    Column("swizzle", f"The channels that hold the code. {_listed_text(SWIZZLES)}.", KEY),
     Column("normals", "The image of normals that was measured.", KEY),
-    Column("decoder", f"What decoded the blocks. {_listed(DECODERS)}.", KEY, drops=5),
+    Column("decoder", f"What decoded the blocks. {_listed_text(DECODERS)}.", KEY, drops=5),
     Column("bits_per_texel", "Bits that a texel takes in memory.", unit="bits", better="less"),
-    _angle("angle_mean_deg", "Mean angle between normal and decode."),
-    _angle("angle_rms_deg", "Root of the mean squared angle."),
-    _angle("angle_p99_deg", "99 % of the angles are below it."),
-    _angle("angle_max_deg", "The largest angle."),
+    _angle_column("angle_mean_deg", "Mean angle between normal and decode."),
+    _angle_column("angle_rms_deg", "Root of the mean squared angle."),
+    _angle_column("angle_p99_deg", "99 % of the angles are below it."),
+    _angle_column("angle_max_deg", "The largest angle."),
     Column(
         "psnr_db",
         "Peak signal-to-noise ratio of the normals, peak 1; decodes are compared as they come, not renormalised.",

@@ -130,7 +130,7 @@ def _warnings(rows: Sequence[Row]) -> Iterator[str]:
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     names = ("encoding", "block", "swizzle", "bits_per_texel", "angle_mean_deg", "angle_rms_deg", "angle_p99_deg")
     names += ("angle_max_deg", "psnr_db")
-    known = [row for row in in_order(rows) if row["angle_rms_deg"] is not None]
+    known = [row for row in rows if row["angle_rms_deg"] is not None]
     for normals, decoder in dict.fromkeys(map(group_of, rows)):
         part = [row for row in known if group_of(row) == (normals, decoder)]
         if part:

@@ -6,32 +6,32 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from ....reports.charts.chart import Axis, Chart, Kind, Mark, Scale, Shades, distinct
-from ....reports.page.codec_key import CodecKey
-from ..charts import backends_of
+from ..charts import backends_of, having, one_backend
 from ..table import Row
+from .verdict import decides, worst_of_each
 
 # Angles from the least to the largest that the colours of mixes tell apart, and from where a cell is bright.
 LEAST, MOST, BRIGHT = 0.1, 180.0, 10.0
 
 
-def mix_chart(rows: Sequence[Row]) -> Iterator[Chart]:
+def charts(rows: Sequence[Row]) -> Iterator[Chart]:
     """What mixing makes of each codec: a cell for each operation, coloured by the largest error, its garbage in it.
 
     Args:
-        rows: of the mix table, one for each codec and operation; none give no chart.
+        rows: of the mix table; the worst of those that decide are drawn, or of all where none does.
     """
-    cells = mix_cells(rows)
+    cells = _cells(_deciding_rows(rows))
     tips = (("codec", "codec"), ("operation", "operation"), ("angle", "largest error, degrees"))
     if cells:
         place: dict[str, Any] = {"x": "operation", "y": "codec"}
         yield Chart(
             name="mix",
-            title=_finding(cells),
+            title=_finding_sentence(cells),
             subtitle=f"What mixing makes of each code, by {backends_of(rows)}; "
             "in a cell: the share of results that are garbage",
             description="The largest error of each operation and the share of garbage, of the rows that decide the "
             "verdicts. The figures are in the tables below.",
-            x=Axis(title="", scale=Scale.NAMES, names=tuple(dict.fromkeys(_operation(row) for row in rows))),
+            x=Axis(title="", scale=Scale.NAMES, names=tuple(dict.fromkeys(_operation_text(row) for row in rows))),
             y=Axis(title="", scale=Scale.NAMES, names=distinct(cells, "codec")),
             rows=tuple(cells),
             colour=Shades("angle", "largest error, degrees", LEAST, MOST),
@@ -42,15 +42,16 @@ def mix_chart(rows: Sequence[Row]) -> Iterator[Chart]:
         )
 
 
-def mix_cells(rows: Sequence[Row]) -> list[Row]:
-    """Of each codec and operation the largest error of a mix, and its garbage as a text; the codes with the most last.
-
-    Args:
-        rows: as `mix_chart` takes them.
-    """
+def _cells(rows: Sequence[Row]) -> list[Row]:
+    """Of each codec and operation, one row each, the largest error of a mix, and its garbage as a text; the codes with
+    the most last."""
     cells: list[Row] = [
-        {"codec": CodecKey.of(row).label, "operation": _operation(row), "angle": max(row["angle_max_deg"], LEAST)}
-        | {"garbage": row["garbage_percent"], "said": _garbage(row["garbage_percent"])}
+        {
+            "codec": f"{row['encoding']} {row['storage']}",
+            "operation": _operation_text(row),
+            "angle": max(row["angle_max_deg"], LEAST),
+        }
+        | {"garbage": row["garbage_percent"], "said": _garbage_text(row["garbage_percent"])}
         | {"on": "#000000" if row["angle_max_deg"] > BRIGHT else "#FFFFFF"}
         for row in rows
     ]
@@ -61,15 +62,20 @@ def mix_cells(rows: Sequence[Row]) -> list[Row]:
     return sorted(cells, key=lambda cell: total[cell["codec"]])
 
 
-def _operation(row: Row) -> str:
+def _deciding_rows(rows: Sequence[Row]) -> list[Row]:
+    usable = one_backend(having(rows, "garbage_percent", "angle_max_deg"))
+    return worst_of_each([row for row in usable if decides(row)] or usable)
+
+
+def _operation_text(row: Row) -> str:
     return str(row["operation"]).replace("_", " ")
 
 
-def _garbage(percent: float) -> str:
+def _garbage_text(percent: float) -> str:
     return "" if not percent else f"{percent:.0f} %" if percent >= 1 else "< 1 %"
 
 
-def _finding(cells: Sequence[Row]) -> str:
+def _finding_sentence(cells: Sequence[Row]) -> str:
     """How many codes survive all mixing, and which suffers the most."""
     codecs = distinct(cells, "codec")
     bad = {cell["codec"] for cell in cells if cell["garbage"]}

@@ -34,14 +34,14 @@ class Figures:
     def errors(self, operation: str) -> np.ndarray:
         """How far each mix is off in degrees, (patches,); -1 where the encoding cannot hold it."""
         found = angles_between(self._mixed[operation], right_of(self._mixes, operation).normals)
-        return np.where(self._held_by(operation), found, -1.0)
+        return np.where(self._held_mask(operation), found, -1.0)
 
-    def _held_by(self, operation: str) -> np.ndarray:
+    def _held_mask(self, operation: str) -> np.ndarray:
         return self._held & self._mixes.held_by(operation, self._domain)
 
     def of(self, operation: str) -> Row:
         """The figures of an operation; the reason where the encoding can hold none of its mixes."""
-        held = self._held_by(operation)
+        held = self._held_mask(operation)
         if not held.any():
             return {"skipped": outside(self._mixes.patches.name, self._domain)}
         right, mixed = right_of(self._mixes, operation), self._mixed[operation][held]
@@ -64,10 +64,10 @@ class Figures:
             "garbage_error_percent": error_of_percent(garbage),
         }
         at = int(errors.argmax())
-        row |= _worst(right.used[:, held][:, at], right.normals[held][at], mixed[at])
-        return row | (self._powers(operation, held, right.mean[held], mixed) if operation in AVERAGES else {})
+        row |= _worst_columns(right.used[:, held][:, at], right.normals[held][at], mixed[at])
+        return row | (self._power_columns(operation, held, right.mean[held], mixed) if operation in AVERAGES else {})
 
-    def _powers(self, operation: str, held: np.ndarray, mean: np.ndarray, mixed: np.ndarray) -> Row:
+    def _power_columns(self, operation: str, held: np.ndarray, mean: np.ndarray, mixed: np.ndarray) -> Row:
         """Errors of the specular power that Toksvig's formula gives, in percent."""
         texels = np.nan_to_num(self._texels.astype(np.float64))
         decoded = MEANS[operation](texels, self._mixes)[held]
@@ -84,7 +84,7 @@ def excused(operation: str, alone_deg: float) -> float:
     return alone_deg if operation in BY_NORMALS else min(alone_deg, MOST_ALONE_DEG)
 
 
-def _worst(texels: np.ndarray, right: np.ndarray, mixed: np.ndarray) -> Row:
+def _worst_columns(texels: np.ndarray, right: np.ndarray, mixed: np.ndarray) -> Row:
     """The two of the texels (count, 3) that are farthest apart, what is right and what came back, as text."""
     one, other = np.unravel_index(np.argmin(texels @ texels.T), (len(texels), len(texels)))
     named = {"worst_first": texels[min(one, other)], "worst_second": texels[max(one, other)]}

@@ -11,8 +11,9 @@ from ....encodings.codecs.codec import Codec
 from ...shaders.code.twin import has_twin
 from ...subjects.normals.normal_sets import NORMAL_SETS, NormalSet
 from .measure import Case, measure
+from .model import BY_MODEL
 from .patches import Mixes, mixes_of, patches_of
-from .table import COUNT, USES
+from .table import COUNT, OF_INTEGER, USES
 from .verdict import Row, decides, decides_across, summed_up, worst_fault
 
 # All around, and about the six axes, where seams lie.
@@ -25,16 +26,16 @@ EDGE = 60.0
 
 
 @cache
-def _usual(seed: int) -> tuple[Mixes, ...]:
+def _usual_mixes(seed: int) -> tuple[Mixes, ...]:
     chosen = (NORMAL_SETS[name](COUNT, seed) for name in SETS)
     made = (patches for one in chosen for patches in patches_of(one, ANGLES, COUNT, seed, (EDGE,)))
     return tuple(mixes_of(patches, SAMPLES) for patches in made)
 
 
-def _mixes(normals: NormalSet) -> tuple[Mixes, ...]:
+def _mixes_of_set(normals: NormalSet) -> tuple[Mixes, ...]:
     """An image's own neighbours; of any other set, the usual ones."""
     if not normals.shape:
-        return _usual(normals.seed)
+        return _usual_mixes(normals.seed)
     return tuple(mixes_of(patches, SAMPLES) for patches in patches_of(normals, ANGLES, COUNT, normals.seed))
 
 
@@ -66,15 +67,23 @@ def judgement(codec: Codec, uses: Sequence[str], normals: NormalSet, domain: str
     """
     operations = tuple(operation for use in uses for operation in USES[use])
     backend = "jax" if has_twin(codec.encoding) else "glsl"
-    cases = (Case(codec, mixes, backend, operations, POWER, domain) for mixes in _mixes(normals))
+    cases = (Case(codec, mixes, backend, operations, POWER, domain) for mixes in _mixes_of_set(normals))
     rows = [row for case in cases for row in measure(case)]
     inside, across = ([row for row in rows if is_decisive(row)] for is_decisive in (decides, decides_across))
     # Seams lie about the axes: a mean over these is not that of a surface.
     means = [row["angle_mean_deg"] for row in inside if row["normals"] != AXES]
     largest = max((row["angle_max_deg"] for row in inside), default=None)
-    return Judgement(_summed(inside, uses), _summed(across, uses), fmean(means) if means else None, largest)
+    integer = dict.fromkeys((use for use in uses if _is_of_codes(use)), OF_INTEGER) if codec.encoding.is_packed else {}
+    return Judgement(
+        _faults_by_use(inside, uses) | integer, _faults_by_use(across, uses), fmean(means) if means else None, largest
+    )
 
 
-def _summed(rows: Sequence[Row], uses: Sequence[str]) -> dict[str, str]:
+def _is_of_codes(use: str) -> bool:
+    """Whether a use mixes stored codes, and not the normals that they decode to."""
+    return any(operation in BY_MODEL for operation in USES[use])
+
+
+def _faults_by_use(rows: Sequence[Row], uses: Sequence[str]) -> dict[str, str]:
     found = {use: worst_fault([row for row in rows if row["operation"] in USES[use]]) for use in uses}
     return {use: summed_up(row) for use, row in found.items() if row}

@@ -22,7 +22,7 @@ from .model import BY_MODEL, MODEL, WAYS, Given, Texels, Way
 from .patches import TEXELS, Mixes
 from .programs import Programs
 from .reference import angles_between
-from .table import AGREE_DEG, TABLE
+from .table import AGREE_DEG, OF_INTEGER, TABLE
 from .worst import climbed
 
 Row = dict[str, Any]
@@ -93,7 +93,7 @@ class Modelled:
         views = np.broadcast_to(self._views, (*shape, 3)).reshape(-1, 3)
         return self._programs.normals(codes.reshape(len(codes), -1), views).reshape(*shape, 3)
 
-    def _codes(self, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _raw_and_stored(self, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         shape = normals.shape[:-1]
         views = np.broadcast_to(self._views, normals.shape).reshape(-1, 3)
         made = self._programs.codes(normals.reshape(-1, 3), views)
@@ -102,12 +102,12 @@ class Modelled:
 
     def texels(self) -> np.ndarray:
         """Stored codes of the patches' texels, (numbers, TEXELS, patches)."""
-        return self._codes(self._mixes.patches.normals)[1]
+        return self._raw_and_stored(self._mixes.patches.normals)[1]
 
     def given(self, codes: np.ndarray) -> Given:
         """What the model mixes: stored codes of the texels, and what shaders write over them."""
         over = np.stack([self._mixes.patches.normals[1], self._mixes.decals])
-        written = self._texels.of(self._codes(over)[0])
+        written = self._texels.of(self._raw_and_stored(over)[0])
         # What was stored is written once more: float32 has moved it by a unit, and means of texels lie on ties.
         return Given(self._texels.written(self._texels.of(codes), self._codec.rounding), written[:, 0], written[:, 1])
 
@@ -118,10 +118,10 @@ class Modelled:
     def of_normals(self, operation: str, texels: np.ndarray) -> np.ndarray:
         """What an operation on decoded texels (TEXELS, patches, 3) gives, (patches, 3)."""
         made = BY_NORMALS[operation](texels.astype(np.float64), self._mixes)
-        return self.decoded(self._codes(made)[1]) if operation in STORED_AGAIN else made
+        return self.decoded(self._raw_and_stored(made)[1]) if operation in STORED_AGAIN else made
 
 
-def _by_jax(case: Case) -> Result:
+def _result_by_jax(case: Case) -> Result:
     made = Modelled(case.codec, case.mixes)
     codes = made.texels()
     texels, given = made.decoded(codes), made.given(codes)
@@ -133,13 +133,13 @@ def _by_jax(case: Case) -> Result:
     return Result(texels, mixed, how, {"device": jax.devices()[0].device_kind})
 
 
-def _by_glsl(case: Case) -> Result:
+def _result_by_glsl(case: Case) -> Result:
     gl: Device = device()
     with MixPasses(gl, case.codec, case.mixes.meetings(), case.mixes.samples) as passes:
         texels = passes.texels()
         found = {name: BY_DEVICE[name](passes) for name in case.operations}
     height, width, _ = texels.normals.shape
-    blocks = (_blocked(a, height // SIDE, width // SIDE) for a in (texels.normals, texels.codes))
+    blocks = (_blocked_image(a, height // SIDE, width // SIDE) for a in (texels.normals, texels.codes))
     decoded, codes = blocks
     flat = {name: Decoded(one.normals.reshape(-1, 3), one.codes.reshape(-1, 4)) for name, one in found.items()}
     numbers = case.codec.encoding.components + case.codec.encoding.sign_bits
@@ -147,7 +147,7 @@ def _by_glsl(case: Case) -> Result:
     return Result(decoded, {name: one.normals for name, one in flat.items()}, how, {"device": gl.renderer})
 
 
-def _blocked(image: np.ndarray, height: int, width: int) -> np.ndarray:
+def _blocked_image(image: np.ndarray, height: int, width: int) -> np.ndarray:
     """An image of patches as (TEXELS, patches, ...)."""
     split = image.reshape(height, SIDE, width, SIDE, -1)
     return split.transpose(1, 3, 0, 2, 4).reshape(TEXELS, height * width, -1)
@@ -163,19 +163,19 @@ def _compared(case: Case, codes: np.ndarray, found: Mapping[str, Decoded]) -> di
     made = Modelled(case.codec, case.mixes)
     given = made.given(codes)
     return {
-        name: _way(made, name, given, one, case.mixes.patches.count)
+        name: _way_columns(made, name, given, one, case.mixes.patches.count)
         if name in BY_MODEL
-        else {"agree_percent": _agreed(made.of_normals(name, made.decoded(codes)), one.normals, case)}
+        else {"agree_percent": _agreed_percent(made.of_normals(name, made.decoded(codes)), one.normals, case)}
         for name, one in found.items()
     }
 
 
-def _agreed(model: np.ndarray, normals: np.ndarray, case: Case) -> float:
+def _agreed_percent(model: np.ndarray, normals: np.ndarray, case: Case) -> float:
     count = case.mixes.patches.count
     return percent(angles_between(model[:count], normals[:count]) <= AGREE_DEG)
 
 
-def _way(made: Modelled, operation: str, given: Given, found: Decoded, count: int) -> Row:
+def _way_columns(made: Modelled, operation: str, given: Given, found: Decoded, count: int) -> Row:
     best, least, numbers, off = MODEL, np.inf, np.empty(0), 0.0
     for way in WAYS[operation]:
         tried = made.mixed(operation, given, way)
@@ -191,28 +191,45 @@ def _way(made: Modelled, operation: str, given: Given, found: Decoded, count: in
 
 
 BY_THE_MODEL = "jax"
-BACKENDS: Mapping[str, Callable[[Case], Result]] = MappingProxyType({BY_THE_MODEL: _by_jax, "glsl": _by_glsl})
+BACKENDS: Mapping[str, Callable[[Case], Result]] = MappingProxyType(
+    {BY_THE_MODEL: _result_by_jax, "glsl": _result_by_glsl}
+)
 
 
 def measure(case: Case) -> list[Row]:
     """A row for each operation; rows that cannot be measured have the reason in `skipped`."""
-    described = _described(case)
+    described = _case_columns(case)
     domain = case.domain or case.codec.encoding.domain
     if not case.mixes.patches.held_by(domain).any():
         said = outside(case.mixes.patches.name, domain)
         return [described | {"operation": name, "skipped": said} for name in case.operations]
+    refused = [name for name in case.operations if name in BY_MODEL] if case.codec.encoding.is_packed else []
+    allowed = tuple(name for name in case.operations if name not in refused)
+    rows = [described | {"operation": name, "skipped": OF_INTEGER} for name in refused]
+    rows += _measured(replace(case, operations=allowed), domain) if allowed else []
+    return sorted(rows, key=lambda row: case.operations.index(row["operation"]))
+
+
+def _measured(case: Case, domain: str) -> list[Row]:
+    """A row for each operation that a code allows."""
+    described = _case_columns(case)
     try:
         found = BACKENDS[case.backend](case)
     except UNMEASURABLE as error:
         return [described | {"operation": name, "skipped": str(error)} for name in case.operations]
     figures = Figures(case.mixes, domain, case.power, found.texels, found.mixed)
     return [
-        described | {"operation": name} | figures.of(name) | _worst(case, figures, name) | found.how[name] | found.said
+        described
+        | {"operation": name}
+        | figures.of(name)
+        | _worst_columns(case, figures, name)
+        | found.how[name]
+        | found.said
         for name in case.operations
     ]
 
 
-def _worst(case: Case, figures: Figures, operation: str) -> Row:
+def _worst_columns(case: Case, figures: Figures, operation: str) -> Row:
     """The worst mix of codes, searched for by the model, where that is asked for; its angle and its normals."""
     is_searched = case.worst_case and operation in BY_MODEL and case.backend == BY_THE_MODEL
     errors = figures.errors(operation) if is_searched else np.array([-1.0])
@@ -221,7 +238,7 @@ def _worst(case: Case, figures: Figures, operation: str) -> Row:
     domain = case.domain or case.codec.encoding.domain
 
     def figures_of(mixes: Mixes) -> Figures:
-        result = _by_jax(replace(case, mixes=mixes, operations=(operation,)))
+        result = _result_by_jax(replace(case, mixes=mixes, operations=(operation,)))
         return Figures(mixes, domain, case.power, result.texels, result.mixed)
 
     found = climbed(case.mixes, errors, lambda mixes: figures_of(mixes).errors(operation), case.mixes.patches.seed)
@@ -230,7 +247,7 @@ def _worst(case: Case, figures: Figures, operation: str) -> Row:
     return {"angle_worst_deg": row["angle_max_deg"]} | named
 
 
-def _described(case: Case) -> Row:
+def _case_columns(case: Case) -> Row:
     patches = case.mixes.patches
     return TABLE.empty() | {
         "encoding": case.codec.encoding.name,

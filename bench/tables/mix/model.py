@@ -78,7 +78,7 @@ WAYS: Mapping[str, Sequence[Way]] = MappingProxyType(
 
 
 @partial(jax.jit, static_argnames=("storage", "rounding"))
-def _stored(planes, storage: Storage, rounding: str):
+def _stored_planes(planes, storage: Storage, rounding: str):
     return [store_texel(x, storage, channel, rounding) for channel, x in enumerate(planes)]
 
 
@@ -102,35 +102,35 @@ class Texels:
         """
         signs = code[self._components : self._components + self._signs]
         if self._codec.storage.is_packed:
-            return np.concatenate([self._packed(code), signs])
+            return np.concatenate([self._packed_channels(code), signs])
         numbers = code[: self._components]
         return np.concatenate([numbers * F32(0.5) + F32(0.5) if self._codec.storage.is_biased else numbers, signs])
 
     def code(self, texels: np.ndarray) -> np.ndarray:
-        """The numbers that texels stand for."""
+        """The numbers that texels stand for, as floats: a row each, signs last, not decoded yet."""
         signs = np.where(np.signbit(texels[len(texels) - self._signs :]), F32(-1), F32(1))
         if self._codec.storage.is_packed:
-            return np.concatenate([self._unpacked(texels), signs])
+            return np.concatenate([self._unpacked_numbers(texels), signs])
         numbers = texels[: self._components]
         numbers = numbers * F32(2) - F32(1) if self._codec.storage.is_biased else numbers
         return np.concatenate([numbers, signs])
 
-    def _packed(self, code: np.ndarray) -> np.ndarray:
+    def _packed_channels(self, code: np.ndarray) -> np.ndarray:
         storage = self._codec.storage
         whole = np.zeros(code.shape[1:], np.uint64)
         for channel, bits in enumerate(storage.bits):
             # A channel that the encoding has no number for holds 0.
             number = code[channel] if channel < self._components else np.zeros_like(code[0])
             whole = whole << np.uint64(bits) | words(number, storage, channel).astype(np.uint64)
-        whole = whole << np.uint64(self._spare)
+        whole = whole << np.uint64(self._spare_bits)
         shifts = range(32 - BYTE, -1, -BYTE)
         return np.stack([(whole >> np.uint64(s) & np.uint64(255)).astype(F32) * F32(1 / 255) for s in shifts])
 
     @property
-    def _spare(self) -> int:
+    def _spare_bits(self) -> int:
         return 32 - sum(self._codec.storage.bits)
 
-    def _unpacked(self, texels: np.ndarray) -> np.ndarray:
+    def _unpacked_numbers(self, texels: np.ndarray) -> np.ndarray:
         storage, whole = self._codec.storage, np.zeros(texels.shape[1:], np.uint64)
         for byte in texels[:4]:
             whole = whole << np.uint64(BYTE) | np.floor(byte * F32(255) + F32(0.5)).astype(np.uint64)
@@ -148,11 +148,11 @@ class Texels:
         """Texels as the target keeps them; the depth's sign is kept as it is."""
         channels = len(texels) - self._signs
         if rounding == CUT:
-            return np.concatenate([self._cut(texels[:channels]), texels[channels:]])
-        kept = _stored([jnp.asarray(p) for p in texels[:channels]], self._storage, rounding)
+            return np.concatenate([self._cut_planes(texels[:channels]), texels[channels:]])
+        kept = _stored_planes([jnp.asarray(p) for p in texels[:channels]], self._storage, rounding)
         return np.concatenate([np.stack([np.asarray(p) for p in kept]), texels[channels:]])
 
-    def _cut(self, texels: np.ndarray) -> np.ndarray:
+    def _cut_planes(self, texels: np.ndarray) -> np.ndarray:
         """UNORM that is made of the upper bits of 16, of planes without a sign's; other formats as they are."""
         if self._storage.kind != "unorm":
             return texels
@@ -161,7 +161,7 @@ class Texels:
         sixteen = np.rint(np.clip(texels.astype(np.float64), 0, 1) * (2**16 - 1))
         return (np.floor(sixteen * (one + 1) / 2**16) / one).astype(F32)
 
-    def _whole(self, texels: np.ndarray) -> np.ndarray:
+    def _whole_values(self, texels: np.ndarray) -> np.ndarray:
         """What stands for 1 in each plane, of a shape that broadcasts; 0 for floats, and for the sign's."""
         channels = len(texels) - self._signs
         is_float = self._storage.kind == "float"
@@ -173,7 +173,7 @@ class Texels:
         step = 2.0**way.fraction_bits
         share = np.rint(share * step) / step if way.fraction_bits else share
         made = a + (b - a) * share.astype(F32)
-        one = self._whole(a)
+        one = self._whole_values(a)
         if not way.is_fixed or not one.any():
             return made
         low, high = np.rint(a * one), np.rint(b * one)
@@ -185,49 +185,52 @@ class Texels:
         source = self.written(source, self._codec.rounding) if way.rounds_source else source
         x = alpha.astype(F32)
         made = self.written(source * x + base * (F32(1) - x), way.rounding)
-        one = self._whole(base)
+        one = self._whole_values(base)
         if not way.is_fixed or not one.any():
             return made
         share = np.rint(alpha * one)
-        parts = (_product(np.rint(source * one), share, one), _product(np.rint(base * one), one - share, one))
+        parts = (
+            _scaled_product(np.rint(source * one), share, one),
+            _scaled_product(np.rint(base * one), one - share, one),
+        )
         # Products that go down may add up to one step below -1, which reads as -1.
         return np.where(one > 0, np.maximum(sum(parts) / np.maximum(one, 1), -1), made).astype(F32)
 
 
-def _product(a: np.ndarray, b: np.ndarray, one: np.ndarray) -> np.ndarray:
+def _scaled_product(a: np.ndarray, b: np.ndarray, one: np.ndarray) -> np.ndarray:
     """a b / one of whole numbers as shifts make it, which go down: of negative products too."""
     product = a * b
     return np.floor((product + np.floor(product / (one + 1)) + np.copysign((one + 1) / 2, product)) / (one + 1))
 
 
-def _filtered(texels: Texels, quad: np.ndarray, mixes: Mixes, way: Way) -> np.ndarray:
+def _filtered_texels(texels: Texels, quad: np.ndarray, mixes: Mixes, way: Way) -> np.ndarray:
     x, y = mixes.shares.T
     low, high = (texels.lerped(quad[:, at], quad[:, at + 1], x, way) for at in (0, 2))
     return texels.lerped(low, high, y, way)
 
 
-def _averaged(texels: Texels, quad: np.ndarray, way: Way) -> np.ndarray:
+def _averaged_texels(texels: Texels, quad: np.ndarray, way: Way) -> np.ndarray:
     """The mean of four texels (planes, 4, ...), written."""
     half = np.full(quad.shape[2:], 0.5)
     low, high = (texels.lerped(quad[:, at], quad[:, at + 1], half, way) for at in (0, 2))
     return texels.written(texels.lerped(low, high, half, way), way.rounding)
 
 
-def _reduced(texels: Texels, planes: np.ndarray, way: Way) -> np.ndarray:
+def _reduced_texels(texels: Texels, planes: np.ndarray, way: Way) -> np.ndarray:
     """The mip level below texels of shape (planes, side, side, patches)."""
     quad = np.stack([planes[:, y::2, x::2] for y in (0, 1) for x in (0, 1)], axis=1)
-    return _averaged(texels, quad, way)
+    return _averaged_texels(texels, quad, way)
 
 
-def _mip(level: int, texels: Texels, planes: np.ndarray, way: Way) -> np.ndarray:
+def _mip_texel(level: int, texels: Texels, planes: np.ndarray, way: Way) -> np.ndarray:
     side = int(planes.shape[1] ** 0.5)
     made = planes.reshape(len(planes), side, side, -1)
     for _ in range(level):
-        made = _reduced(texels, made, way)
+        made = _reduced_texels(texels, made, way)
     return made[:, 0, 0]
 
 
-def _resolved(texels: Texels, planes: np.ndarray, mixes: Mixes, way: Way) -> np.ndarray:
+def _resolved_texels(texels: Texels, planes: np.ndarray, mixes: Mixes, way: Way) -> np.ndarray:
     """The mean of a pixel's samples, the first `counts` of which are the first texel, written."""
     total = np.zeros_like(planes[:, 0])
     for sample in range(mixes.samples):
@@ -252,10 +255,10 @@ class Given:
 # By operation, how texels are mixed. What is not here mixes normals that are decoded.
 BY_MODEL: Mapping[str, Callable[[Texels, Given, Mixes, Way], np.ndarray]] = MappingProxyType(
     {
-        "filter": lambda texels, given, mixes, way: _filtered(texels, given.planes[:, QUAD], mixes, way),
-        "mip_2x2": lambda texels, given, _, way: _mip(1, texels, given.planes, way),
-        "mip_4x4": lambda texels, given, _, way: _mip(2, texels, given.planes, way),
-        "resolve": lambda texels, given, mixes, way: _resolved(texels, given.planes, mixes, way),
+        "filter": lambda texels, given, mixes, way: _filtered_texels(texels, given.planes[:, QUAD], mixes, way),
+        "mip_2x2": lambda texels, given, _, way: _mip_texel(1, texels, given.planes, way),
+        "mip_4x4": lambda texels, given, _, way: _mip_texel(2, texels, given.planes, way),
+        "resolve": lambda texels, given, mixes, way: _resolved_texels(texels, given.planes, mixes, way),
         "blend": lambda texels, given, mixes, way: texels.blended(given.planes[:, 0], given.second, mixes.alphas, way),
         "detail": lambda texels, given, mixes, way: texels.blended(given.planes[:, 0], given.detail, mixes.alphas, way),
     }

@@ -154,20 +154,22 @@ def patches_of(
     if normals.shape:
         yield from _own_neighbours(normals, count, seed)
         return
-    directions = _directions(normals, count, seed)
+    directions = _chosen_directions(normals, count, seed)
     is_anywhere = normals.area == SPHERE
-    made = [replace(_about(normals.name, directions, angle, seed), is_anywhere=is_anywhere) for angle in angles_deg]
+    made = [
+        replace(_turned_patches(normals.name, directions, angle, seed), is_anywhere=is_anywhere) for angle in angles_deg
+    ]
     yield from made
     yield from (_with_edge(made[0], edge, seed) for edge in edges_deg)
 
 
-def _filled(count: int) -> np.ndarray:
+def _patch_indices(count: int) -> np.ndarray:
     """Indices of `count` patches, and of as many again as make a power of two."""
     whole = max(1 << (count - 1).bit_length(), LEAST_SIDE**2)
     return np.arange(whole) % count
 
 
-def _planes(normals: NormalSet) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _set_arrays(normals: NormalSet) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Normals, views and coverage of a set: (count, 3), (count, 3) and (count,)."""
     found = ([], [], [])
     for load in normals.loads():
@@ -178,14 +180,14 @@ def _planes(normals: NormalSet) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return n, view, np.asarray(covered)
 
 
-def _directions(normals: NormalSet, count: int, seed: int) -> np.ndarray:
+def _chosen_directions(normals: NormalSet, count: int, seed: int) -> np.ndarray:
     """Some of a set's normals or each of them several times, evenly, in random order: alphas go by rows of patches."""
-    n, _, covered = _planes(normals)
+    n, _, covered = _set_arrays(normals)
     n = unit_rows(n[covered].astype(np.float64))
     return n[np.random.default_rng([seed, 2]).permutation(np.arange(count) * len(n) // count)]
 
 
-def _about(name: str, directions: np.ndarray, angle_deg: float, seed: int) -> Patches:
+def _turned_patches(name: str, directions: np.ndarray, angle_deg: float, seed: int) -> Patches:
     """Patches whose neighbours lie an angle apart, turned at random, their direction somewhere in the first quad.
 
     n(w) = cos |w| n + sin |w| w / |w|, w a step on the tangent plane.
@@ -198,7 +200,7 @@ def _about(name: str, directions: np.ndarray, angle_deg: float, seed: int) -> Pa
     across = tilted(np.full_like(length, np.pi / 2), way)
     tangents = reoriented(np.broadcast_to(directions, across.shape), across)
     n = np.cos(length)[..., None] * directions + np.sin(length)[..., None] * tangents
-    chosen = _filled(count)
+    chosen = _patch_indices(count)
     views = np.broadcast_to(np.array([0, 0, -1], np.float32), (len(chosen), 3))
     return Patches(name, angle_deg, count, rounded(n[:, chosen]), views, seed)
 
@@ -228,7 +230,7 @@ def _own_neighbours(normals: NormalSet, count: int, seed: int) -> Iterator[Patch
     """Squares of an image's pixels that are all covered, at random places; none of an image that has none."""
     assert normals.shape
     height, width = normals.shape
-    n, view, covered = (a.reshape(height, width, -1) for a in _planes(normals))
+    n, view, covered = (a.reshape(height, width, -1) for a in _set_arrays(normals))
     if min(height, width) < SIDE:
         return
     window = np.lib.stride_tricks.sliding_window_view(covered[..., 0], (SIDE, SIDE)).all(axis=(2, 3))
@@ -236,21 +238,21 @@ def _own_neighbours(normals: NormalSet, count: int, seed: int) -> Iterator[Patch
     if not len(places):
         return
     y, x = np.random.default_rng([seed, 0]).permutation(places)[:count].T
-    chosen = _filled(len(x))
+    chosen = _patch_indices(len(x))
     right, up = np.meshgrid(np.arange(SIDE), np.arange(SIDE))
     rows, columns = (a.reshape(TEXELS, 1) + b for a, b in ((up, y[chosen]), (right, x[chosen])))
     cut, seen = unit_rows(n[rows, columns].astype(np.float64)), view[rows[0], columns[0]]
-    steepest = _steepest(cut)
+    steepest = _steepest_deg(cut)
     for is_edge in (False, True):
         (which,) = np.nonzero((steepest[: len(x)] > LEAST_EDGE_DEG) == is_edge)
         if len(which):
-            again = which[_filled(len(which))]
+            again = which[_patch_indices(len(which))]
             edge = float(np.round(np.median(steepest[which]))) if is_edge else None
             cut_out = rounded(cut[:, again]), seen[again]
             yield Patches(normals.name, None, len(which), *cut_out, seed, edge, normals.code_space)
 
 
-def _steepest(normals: np.ndarray) -> np.ndarray:
+def _steepest_deg(normals: np.ndarray) -> np.ndarray:
     """The largest angle between neighbours of each patch (TEXELS, patches, 3), in degrees."""
     grid = normals.reshape(SIDE, SIDE, *normals.shape[1:])
     pairs = ((grid[1:], grid[:-1]), (grid[:, 1:], grid[:, :-1]))

@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import Annotated
 
 from ...ground.options.option import Backends, Encodings, Normals, Option, Plot, Reading, Seed, StorageNames
+from ...shaders.languages.source_options import SourceOptions
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
@@ -26,6 +27,8 @@ OPERATIONS: Mapping[str, str] = MappingProxyType(
         "upsample": "texels of half the size decoded, then weighed by distance and by how close their normals are",
     }
 )
+# Why a code that is an integer has no figures of the operations on stored codes.
+OF_INTEGER = "an integer cannot be filtered: decode the texels, then weigh the normals"
 # What a code can be used for, and the operations that decide.
 USES: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
@@ -59,7 +62,7 @@ MOST_COUNT = 2**16
 
 
 @dataclass(frozen=True, kw_only=True)
-class MixOptions(Reading):
+class MixOptions(Reading, SourceOptions):
     """What `mix` measures. Names and numbers are comma-separated."""
 
     encoding: Encodings = (
@@ -95,18 +98,18 @@ class MixOutputs:
     plot: Plot = None
 
 
-def _degrees(name: str, says: str, drops: int = 0) -> Column:
+def _degrees_column(name: str, says: str, drops: int = 0) -> Column:
     return Column(name, says, unit="degrees", better="less", drops=drops)
 
 
-def _verdict(use: str) -> Column:
+def _verdict_column(use: str) -> Column:
     decides = ", ".join(USES[use])
     said = f"The verdict, yes or no, by all rows of {decides} of this codec and back end "
     inside = f"inside a surface: those without an edge, with angle_deg of at most {MOST_JUDGED_DEG:g}."
     return Column(VERDICTS[use], f"{said}{inside}", HOW)
 
 
-def _across(use: str) -> Column:
+def _across_column(use: str) -> Column:
     said = f"The same across an edge: by rows of {', '.join(USES[use])} with an edge."
     return Column(f"{VERDICTS[use]}{ACROSS}", said, HOW, drops=3)
 
@@ -128,11 +131,11 @@ COLUMNS = (
     shared.BITS,
     Column("count", "How many mixes were measured: those whose texels all lie in the encoding's domain.", HOW, drops=9),
     Column("invalid", "Results that are NaN or infinite; each counts as 180 degrees.", better="less", drops=8),
-    _degrees("alone_mean_deg", "Mean error of the texels without any mixing.", 7),
-    _degrees("alone_max_deg", "Largest error of the texels without any mixing."),
-    _degrees("angle_mean_deg", "Mean angle between the result, decoded, and the right normal."),
-    _degrees("angle_p99_deg", "99 % of these angles are below it.", 6),
-    _degrees("angle_max_deg", "The largest of these angles, of the mixes that were sampled: not a bound."),
+    _degrees_column("alone_mean_deg", "Mean error of the texels without any mixing.", 7),
+    _degrees_column("alone_max_deg", "Largest error of the texels without any mixing."),
+    _degrees_column("angle_mean_deg", "Mean angle between the result, decoded, and the right normal."),
+    _degrees_column("angle_p99_deg", "99 % of these angles are below it.", 6),
+    _degrees_column("angle_max_deg", "The largest of these angles, of the mixes that were sampled: not a bound."),
     Column(
         "angle_worst_deg",
         "The largest angle that a search finds, which climbs from the worst of the sample by the model. Patches of the "
@@ -141,7 +144,7 @@ COLUMNS = (
         better="less",
         option="worst_case",
     ),
-    _degrees("added_max_deg", "What mixing adds: angle_max_deg less alone_max_deg.", 5),
+    _degrees_column("added_max_deg", "What mixing adds: angle_max_deg less alone_max_deg.", 5),
     Column(
         "geometry_max_deg",
         "Largest error that exact normals would have: 0 but for detail, as blending follows a straight line.",
@@ -189,8 +192,8 @@ COLUMNS = (
         better="less",
         drops=3,
     ),
-    *map(_verdict, USES),
-    *map(_across, USES),
+    *map(_verdict_column, USES),
+    *map(_across_column, USES),
     Column("why", "What decided a verdict of no.", HOW, drops=2),
     Column(
         "mixed_by",

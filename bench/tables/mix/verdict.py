@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from .figures import excused
-from .table import ACROSS, MOST_ADDED, MOST_JUDGED_DEG, USES, VERDICTS
+from .table import ACROSS, MOST_ADDED, MOST_JUDGED_DEG, OF_INTEGER, OPERATIONS, USES, VERDICTS
 
 Row = dict[str, Any]
 # What is done to codes, as a reason says it.
@@ -26,13 +26,13 @@ def _excess(row: Row) -> float:
     return row["angle_max_deg"] - row["geometry_max_deg"] - 2 * excused(row["operation"], row["alone_max_deg"])
 
 
-def _allowed(row: Row) -> float:
+def _allowed_deg(row: Row) -> float:
     return MOST_ADDED * row["reach_max_deg"]
 
 
 def is_faulty(row: Row) -> bool:
     """Whether a row speaks against its codec."""
-    return bool(row["garbage_percent"]) or _excess(row) > _allowed(row)
+    return bool(row["garbage_percent"]) or _excess(row) > _allowed_deg(row)
 
 
 def summed_up(row: Row) -> str:
@@ -46,7 +46,7 @@ def summed_up(row: Row) -> str:
     return f"{apart} on {row['normals']}, {DONE[row['operation']]}: {how}"
 
 
-def _reason(row: Row) -> str:
+def _fault_reason(row: Row) -> str:
     """The same, and the pair that shows it."""
     if not row["garbage_percent"]:
         return f"{summed_up(row)}, {row['alone_max_deg']:.3g} without mixing"
@@ -54,6 +54,7 @@ def _reason(row: Row) -> str:
 
 
 def _severity(row: Row) -> tuple[bool, float]:
+    """Whether there is garbage, and the excess error as a multiple of reach_max_deg: larger is worse."""
     return bool(row["garbage_percent"]), _excess(row) / max(row["reach_max_deg"], 1e-6)
 
 
@@ -63,7 +64,7 @@ def judged(rows: Sequence[Row]) -> list[Row]:
     groups: dict[tuple[str, ...], list[Row]] = {}
     for row in rows:
         groups.setdefault(codec_of(row), []).append(row)
-    found = {codec: _verdicts(group) for codec, group in groups.items()}
+    found = {codec: _verdict_columns(group) for codec, group in groups.items()}
     return [row | found[codec_of(row)] for row in rows]
 
 
@@ -72,7 +73,7 @@ def codec_of(row: Row) -> tuple[str, ...]:
     return row["encoding"], row["storage"], row["backend"]
 
 
-def _verdicts(rows: Sequence[Row]) -> Row:
+def _verdict_columns(rows: Sequence[Row]) -> Row:
     made: Row = {}
     reasons = []
     for suffix, is_decisive in (("", decides), (ACROSS, decides_across)):
@@ -80,12 +81,20 @@ def _verdicts(rows: Sequence[Row]) -> Row:
             part = [row for row in rows if row["operation"] in operations and is_decisive(row)]
             column = f"{VERDICTS[use]}{suffix}"
             made[column] = None
+            if any(row["operation"] in operations and _is_integer(row, suffix == ACROSS) for row in rows):
+                made[column] = "no"
+                reasons.append(OF_INTEGER)
             if {row["operation"] for row in part} != set(operations):
                 continue
             worst = worst_fault(part)
             made[column] = "no" if worst else "yes"
-            reasons += [_reason(worst)] if worst else []
+            reasons += [_fault_reason(worst)] if worst else []
     return made | {"why": "; ".join(dict.fromkeys(reasons)) or None}
+
+
+def _is_integer(row: Row, is_across: bool) -> bool:
+    """Whether a row has no figures because its code is an integer."""
+    return row.get("skipped") == OF_INTEGER and bool(row["edge_deg"]) == is_across
 
 
 def decides(row: Row) -> bool:
@@ -120,3 +129,18 @@ def lines(rows: Sequence[Row]) -> Iterator[Row]:
             part = [row["garbage_percent"] for row in group if row["operation"] in operations]
             line[f"{use}_garbage_percent"] = max(part, default=None)
         yield line | {"why": first["why"]}
+
+
+def worst_of_each(rows: Sequence[Row]) -> list[Row]:
+    """Of each operation on a codec by a back end, the row with the most garbage, or with the largest error."""
+    found: dict[tuple[Any, ...], Row] = {}
+    for row in rows:
+        key = (row["operation"], row["encoding"], row["storage"], row["backend"])
+        if row["angle_max_deg"] is not None and (key not in found or _badness(row) > _badness(found[key])):
+            found[key] = row
+    order = list(OPERATIONS)
+    return sorted(found.values(), key=lambda row: (order.index(row["operation"]), *_badness(row)))
+
+
+def _badness(row: Row) -> tuple[float, float]:
+    return row["garbage_percent"], row["angle_max_deg"]

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from ....encodings.codecs.codec import Codec
-from ....reports.charts.chart import Chart
 from ...ground.choose import choose
 from ...ground.machine.devices import found_device, require_device, require_jax
 from ...ground.options.backends import backends_named
@@ -14,14 +13,14 @@ from ...ground.options.counts import check_seed, checked_numbers, in_range
 from ...ground.output.errors import UsageError, leave_out
 from ...subjects.codecs.names import check_twin, codecs_named, fitting
 from ...subjects.normals.normal_names import normal_sets_named
-from ..charts import having, one_backend
+from ..charts import one_backend
 from ..table import Measured, Row, Sheet, Step, Work, each
 from . import measure
-from .charts import mix_chart
+from .charts import charts
 from .measure import Case
 from .patches import Patches, mixes_of, patches_of
 from .table import MOST_COUNT, MOST_JUDGED_DEG, OPERATIONS, TABLE, MixOptions, MixOutputs
-from .verdict import decides, judged, lines
+from .verdict import judged, lines, worst_of_each
 
 # Two neighbours further apart than this lie on no surface that a filter is for.
 MOST_ANGLE, MOST_SAMPLES, MOST_POWER = 60.0, 64, 65536
@@ -133,7 +132,7 @@ def _shown(done: Measured) -> Iterator[Sheet]:
     inside = [row for row in one_backend(done.rows) if not row["edge_deg"]]
     across = [row for row in one_backend(done.rows) if row["edge_deg"]]
     for title, rows in (("inside a surface, of all sets and angles", inside), ("across an edge", across)):
-        if worst := [{name: row[name] for name in shown} for row in _worst(rows)]:
+        if worst := [{name: row[name] for name in shown} for row in worst_of_each(rows)]:
             yield Sheet(f"The worst {title}, by operation", worst, TABLE.drops(worst))
     if ways := _ways(done.rows):
         yield Sheet("How the device mixes, and the least agreement with the model", ways)
@@ -150,21 +149,6 @@ def _ways(rows: Sequence[Row]) -> list[Row]:
     return [dict(zip(names, key, strict=True)) | {"agree_percent": least} for key, least in found.items()]
 
 
-def _worst(rows: Sequence[Row]) -> list[Row]:
-    """Of each operation on a codec by a back end, the row with the most garbage, or with the largest error."""
-    found: dict[tuple[Any, ...], Row] = {}
-    for row in rows:
-        key = (row["operation"], row["encoding"], row["storage"], row["backend"])
-        if row["angle_max_deg"] is not None and (key not in found or _badness(row) > _badness(found[key])):
-            found[key] = row
-    order = list(OPERATIONS)
-    return sorted(found.values(), key=lambda row: (order.index(row["operation"]), *_badness(row)))
-
-
-def _badness(row: Row) -> tuple[float, float]:
-    return row["garbage_percent"], row["angle_max_deg"]
-
-
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     made = list(lines(rows))
     if made:
@@ -177,16 +161,6 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
         yield Sheet(title, shown, SUMMARY_DROPS, notes=notes)
 
 
-def _charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    return mix_chart(_charted(rows))
-
-
-def _charted(rows: Sequence[Row]) -> list[Row]:
-    """The worst of the rows that decide, or of all where none does, as a chart takes them."""
-    usable = one_backend(having(rows, "garbage_percent", "angle_max_deg"))
-    return [row | {"rounding": NEAREST} for row in _worst([row for row in usable if decides(row)] or usable)]
-
-
 WORK = Work(
     steps=_steps,
     measure=each(measure.measure),
@@ -194,5 +168,5 @@ WORK = Work(
     shown=_shown,
     summary=_summary,
     warnings=_warnings,
-    charts=_charts,
+    charts=charts,
 )

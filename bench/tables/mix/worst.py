@@ -42,7 +42,7 @@ def climbed(mixes: Mixes, errors: np.ndarray, of: Errors, seed: int) -> Mixes:
         largest = found.max(axis=1)
         is_better = largest > known
         places = np.arange(len(known)) * TRIES + at
-        best = _where(is_better, chosen(tried, places), best)
+        best = _chosen_mixes(is_better, chosen(tried, places), best)
         known, steps = np.maximum(known, largest), steps * np.where(is_better, GROWS, SHRINKS)
     return chosen(best, np.array([known.argmax()]))
 
@@ -60,7 +60,7 @@ OF_EACH = ("shares", "quarters", "counts", "alphas", "decals", "details")
 def _moved(mixes: Mixes, steps: np.ndarray, random: np.random.Generator) -> Mixes:
     """Mixes turned and weighed otherwise, by steps in degrees, (patches,)."""
     count, patches = len(steps), mixes.patches
-    turn = _turns(steps * random.standard_normal(count) * patches.is_anywhere, random)
+    turn = _random_rotations(steps * random.standard_normal(count) * patches.is_anywhere, random)
     moved = mixes.shares + SHARE_OF_STEP * steps[:, None] * random.standard_normal((count, 2))
     unit = 2**FRACTION_BITS
     alphas = np.clip(mixes.alphas + random.integers(-1, 2, count) / 10, ALPHAS[0], ALPHAS[-1])
@@ -86,7 +86,7 @@ def _between(base: np.ndarray, detail: np.ndarray, alpha: np.ndarray) -> np.ndar
     return unit_rows(np.divide(made, whole, out=base.copy(), where=whole > 0))
 
 
-def _turns(degrees: np.ndarray, random: np.random.Generator) -> np.ndarray:
+def _random_rotations(degrees: np.ndarray, random: np.random.Generator) -> np.ndarray:
     """Rotations by angles about random axes, (count, 3, 3)."""
     k = unit_rows(random.standard_normal((len(degrees), 3)))
     c, s = np.cos(np.radians(degrees))[:, None, None], np.sin(np.radians(degrees))[:, None, None]
@@ -98,7 +98,7 @@ def _turns(degrees: np.ndarray, random: np.random.Generator) -> np.ndarray:
     return c * np.eye(3) + s * cross + (1 - c) * k[:, :, None] * k[:, None, :]
 
 
-def _where(first: np.ndarray, one: Mixes, other: Mixes) -> Mixes:
+def _chosen_mixes(first: np.ndarray, one: Mixes, other: Mixes) -> Mixes:
     """The one's mixes where `first` holds, (patches,), and the other's elsewhere."""
     normals = np.where(first[:, None], one.patches.normals, other.patches.normals)
     patches = replace(one.patches, normals=normals)

@@ -20,8 +20,8 @@ def wobble_chart(rows: Sequence[Row]) -> Chart:
         rows: of the motion table; none make an empty chart.
     """
     points = [
-        {"codec": CodecKey.of(row).label, "line": _line(row, rows), "x": row["turn_deg"], "y": row["wobble_deg"]}
-        | {"how": _conditions(row, rows), "ratio": row.get("ratio")}
+        {"codec": CodecKey.of(row).label, "line": _line_name(row, rows), "x": row["turn_deg"], "y": row["wobble_deg"]}
+        | {"how": _conditions_text(row, rows), "ratio": row.get("ratio")}
         for row in sorted(rows, key=lambda row: row["turn_deg"])
         if row["wobble_deg"] > 0
     ]
@@ -30,7 +30,7 @@ def wobble_chart(rows: Sequence[Row]) -> Chart:
     ways = distinct(sorted(points, key=lambda point: point["how"]), "how")
     return Chart(
         name="motion",
-        title=_finding(points),
+        title=_finding_sentence(points),
         subtitle="How much codes wobble",
         description="RMS change of a code's error from one frame to the next over the degrees that the camera or the "
         "object turns, a line for each code. Codes that stay, with a ratio of 0.01 or less, are not drawn. The figures "
@@ -48,16 +48,16 @@ def wobble_chart(rows: Sequence[Row]) -> Chart:
     )
 
 
-def _line(row: Row, rows: Sequence[Row]) -> str:
-    return " ".join(filter(None, (CodecKey.of(row).label, _conditions(row, rows))))
+def _line_name(row: Row, rows: Sequence[Row]) -> str:
+    return " ".join(filter(None, (CodecKey.of(row).label, _conditions_text(row, rows))))
 
 
-def _conditions(row: Row, rows: Sequence[Row]) -> str:
+def _conditions_text(row: Row, rows: Sequence[Row]) -> str:
     """What tells lines of one codec apart; empty where nothing does."""
     return " ".join(str(row.get(name)) for name in CONDITIONS if len({one.get(name) for one in rows}) > 1)
 
 
-def _finding(points: Sequence[Row]) -> str:
+def _finding_sentence(points: Sequence[Row]) -> str:
     """Which code wobbles the most."""
     if not points:
         return "No code wobbles"

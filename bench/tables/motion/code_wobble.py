@@ -56,7 +56,7 @@ class Total:
     def add_pair(self, one: Frame, other: Frame) -> None:
         """Add what changes from a frame to the next."""
         both = one.counts & other.counts
-        change = _length(other.error - one.error)[both]
+        change = _row_lengths(other.error - one.error)[both]
         jumped = reduce(np.logical_or, (other.codes != one.codes).T)[both]
         self.pairs += len(change)
         self.changes += float(np.sum(change**2))
@@ -134,8 +134,8 @@ def code_wobble(trip: Trip, domain: str, motion: Motion, count: int, seed: int) 
 
 def _frame(trip: Trip, domain: str, n: np.ndarray, view: np.ndarray, matrix: np.ndarray, total: Total) -> Frame:
     codes, decoded = trip(n, view)
-    n, decoded = _unit(n.astype(np.float64)), decoded.astype(np.float64)
-    length = _length(decoded)
+    n, decoded = _unit_rows(n.astype(np.float64)), decoded.astype(np.float64)
+    length = _row_lengths(decoded)
     valid = np.isfinite(length) & (length > 0)
     decoded = np.where(valid[:, None], decoded / np.where(valid, length, 1.0)[:, None], -n)
     counts = in_domain(domain, n, view)
@@ -144,14 +144,14 @@ def _frame(trip: Trip, domain: str, n: np.ndarray, view: np.ndarray, matrix: np.
     return Frame((decoded - n) @ matrix, codes, counts)
 
 
-def _length(v: np.ndarray) -> np.ndarray:
+def _row_lengths(v: np.ndarray) -> np.ndarray:
     """Of rows, by columns: to add up each row of three NumPy takes longer."""
     x, y, z = v.T
     return np.sqrt(x * x + y * y + z * z)
 
 
-def _unit(v: np.ndarray) -> np.ndarray:
-    return v / _length(v)[:, None]
+def _unit_rows(v: np.ndarray) -> np.ndarray:
+    return v / _row_lengths(v)[:, None]
 
 
 def in_domain(domain: str, n: np.ndarray, view: np.ndarray) -> np.ndarray:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ....gbuffer.scenes.gloss import POWERS
+from ....gbuffer.scenes.built_in.gloss import POWERS
 from ....gbuffer.scenes.scene import Light, Scene
 
 # A light in each channel of the image, so that three highlights of one sphere lie in one frame and none in another.

@@ -18,8 +18,8 @@ from ....gbuffer.gl.device import Device
 from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.pipelines import PIPELINES
 from ....gbuffer.render import Keeps, Rendering, rendering
+from ....gbuffer.scenes.built_in.gloss import POWERS
 from ....gbuffer.scenes.catalogue import SCENES
-from ....gbuffer.scenes.gloss import POWERS
 from ....gbuffer.scenes.scene import Scene, View
 from ....gbuffer.scenes.setting import Setting
 from ...measures.metrics.totals import psnr_db
@@ -123,13 +123,13 @@ class Bench:
 
     def measure(self, case: Case) -> tuple[Row, Filmed | None]:
         """One row of the table, and the frames; a row that cannot be measured has its reason in `skipped`."""
-        row = TABLE.empty([f"{power:g}" for power in POWERS]) | _described(case)
+        row = TABLE.empty([f"{power:g}" for power in POWERS]) | _case_columns(case)
         try:
             with trip_of(case.codec) as trip:
                 row |= code_wobble(trip, case.codec.encoding.domain, case.motion, case.count, case.seed)
                 if not case.pictures or not self._device:
                     return row, None
-                filmed, found = self._filmed(case, case.pictures, trip)
+                filmed, found = self._film_and_columns(case, case.pictures, trip)
         except UNMEASURABLE as error:
             return row | {"skipped": str(error)}, None
         return row | found | {"device": self._device.renderer}, filmed
@@ -141,10 +141,10 @@ class Bench:
         pictures = case.pictures
         if pictures not in self._references:
             with _projector(self._device, pictures) as projector:
-                self._references[pictures] = _exact(projector)
+                self._references[pictures] = _exact_film(projector)
         return self._references[pictures]
 
-    def _filmed(self, case: Case, pictures: FrameSequence, trip: Trip) -> tuple[Filmed, Row]:
+    def _film_and_columns(self, case: Case, pictures: FrameSequence, trip: Trip) -> tuple[Filmed, Row]:
         assert self._device
         exact, found, sums, fixed = self.reference(case), Filmed(), Differences(), Differences()
         assert exact.spheres is not None and exact.still is not None
@@ -225,7 +225,7 @@ def _projector(device: Device, pictures: FrameSequence) -> Iterator[Projector]:
         yield Projector(pictures, scene, one, other)
 
 
-def _exact(projector: Projector) -> Filmed:
+def _exact_film(projector: Projector) -> Filmed:
     found = Filmed()
     for view in projector.views():
         found.shown.append(projector.image(view))
@@ -281,19 +281,19 @@ def _of_highlights(found: Filmed, exact: Filmed) -> Row:
     if not np.isfinite(moved).any():
         return {}
     found.worst = int(np.nanargmax(moved)) + 1
-    row: Row = {"highlight_px": _root(moved), "peak_percent": _root(flickered)}
+    row: Row = {"highlight_px": _root_mean(moved), "peak_percent": _root_mean(flickered)}
     for power, pixels, percent in zip(POWERS, moved, flickered, strict=True):
-        row |= {f"highlight_px_{power:g}": _root([pixels]), f"peak_percent_{power:g}": _root([percent])}
+        row |= {f"highlight_px_{power:g}": _root_mean([pixels]), f"peak_percent_{power:g}": _root_mean([percent])}
     return row
 
 
-def _root(squares: Sequence[float] | np.ndarray) -> float | None:
+def _root_mean(squares: Sequence[float] | np.ndarray) -> float | None:
     """The root of the mean of what is a number; None where nothing is."""
     finite = np.asarray(squares)[np.isfinite(squares)]
     return float(np.sqrt(np.mean(finite))) if len(finite) else None
 
 
-def _described(case: Case) -> Row:
+def _case_columns(case: Case) -> Row:
     codec, motion, pictures = case.codec, case.motion, case.pictures
     row: Row = {"encoding": codec.encoding.name, "storage": codec.storage.name, "rounding": codec.rounding}
     row |= {"space": motion.space, "moves": motion.moves, "axis": motion.axis, "turn_deg": motion.turn}

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ....gbuffer.scenes.gloss import POWERS
+from ....gbuffer.scenes.built_in.gloss import POWERS
 from ....reports.charts import motion as chart
 from ....reports.page.pixels import Film
 from ...ground.output.writing import files_of, whole_file
@@ -19,7 +19,7 @@ from .measure import Filmed
 MARGIN = 3
 
 
-def _stem(row: Row) -> str:
+def _file_stem(row: Row) -> str:
     words = ("encoding", "storage", "rounding", "space", "axis")
     return "-".join([*(str(row[name]) for name in words), f"{row['turn_deg']:g}"])
 
@@ -31,7 +31,7 @@ def write(folder: Path, row: Row, filmed: Filmed, exact: Filmed) -> None:
     window = _window(where)
     title = f"{row['encoding']} {row['storage']}, {row['space']} space, power {POWERS[filmed.worst - 1]:g}"
     frames = [chart.beside(one[window], exact.lit[0][window], title) for one in filmed.lit]
-    with whole_file(folder / f"{_stem(row)}.png") as partial:
+    with whole_file(folder / f"{_file_stem(row)}.png") as partial:
         chart.write_animation(partial, frames)
 
 
@@ -47,7 +47,7 @@ def films(folder: Path, rows: Sequence[Row]) -> Iterator[Film]:
     there = files_of(folder)
     usable = sorted(having(rows, "highlight_px", "turn_deg"), key=lambda row: -row["highlight_px"])
     for row in usable[:1]:
-        if path := there.get(f"{_stem(row)}.png"):
+        if path := there.get(f"{_file_stem(row)}.png"):
             code = f"{row['encoding']} {row['storage']} in {row['space']} space"
             said = f"The highlight that moves the most, of {code}, at {row['turn_deg']:g} degrees a frame of "
             said += f"{row['axis']}: the code, exact normals, and {chart.GAIN:g} times their difference."

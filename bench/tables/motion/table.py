@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from ...ground.options.option import Encodings, Images, Lights, Option, Plot, Roundings, Seed, Size, StorageNames
+from ...shaders.languages.source_options import SourceOptions
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
@@ -15,7 +16,7 @@ USUAL = "octahedral,spheremap,per_pixel_view"
 
 
 @dataclass(frozen=True, kw_only=True)
-class MotionOptions:
+class MotionOptions(SourceOptions):
     """What `motion` measures. Names and numbers are comma-separated."""
 
     encoding: Encodings = USUAL

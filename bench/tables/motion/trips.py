@@ -35,10 +35,10 @@ def trip_of(codec: Codec) -> Iterator[Trip]:
         ShaderError, FormatError: the device cannot have it.
     """
     if has_twin(codec.encoding):
-        yield _in_chunks(_by_jax(codec))
+        yield _in_chunks(_trip_by_jax(codec))
         return
     with CodecPasses(require_device(), codec) as passes:
-        yield _in_chunks(_by_glsl(codec, passes))
+        yield _in_chunks(_trip_by_glsl(codec, passes))
 
 
 def backend_of(codec: Codec) -> str:
@@ -58,13 +58,13 @@ def _program(encoding: Encoding, like: Storage, rounding: str) -> Callable[..., 
     return jax.jit(through)
 
 
-def _by_jax(codec: Codec) -> Trip:
+def _trip_by_jax(codec: Codec) -> Trip:
     like, scales = shared(codec.storage, codec.encoding.components)
     program = _program(codec.encoding, like, codec.rounding)
 
     def trip(n: np.ndarray, view: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         codes, decoded = program(_planes(n), _planes(view), *scales)
-        return _rows(codes), _rows(decoded)
+        return _planes_as_rows(codes), _planes_as_rows(decoded)
 
     return trip
 
@@ -73,11 +73,11 @@ def _planes(rows: np.ndarray) -> Vec3:
     return Vec3(*np.ascontiguousarray(rows.T))
 
 
-def _rows(planes: Any) -> np.ndarray:
+def _planes_as_rows(planes: Any) -> np.ndarray:
     return np.stack([np.asarray(plane) for plane in planes], axis=1)
 
 
-def _by_glsl(codec: Codec, passes: CodecPasses) -> Trip:
+def _trip_by_glsl(codec: Codec, passes: CodecPasses) -> Trip:
     size = codec.encoding.components + codec.encoding.sign_bits
 
     def trip(n: np.ndarray, view: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -61,20 +61,20 @@ def places_of(row: Row) -> list[str]:
 
 def largest(row: Row) -> float | None:
     """The supremum, or the largest angle that was met: float32 may lose what exact arithmetic does not."""
-    return _most(row["angle_max_deg"], row["angle_sup_deg"])
+    return _largest_angle(row["angle_max_deg"], row["angle_sup_deg"])
 
 
 def mean(row: Row) -> float | None:
     """The mean angle, or the mean error after the mixing that is asked for, if that is larger."""
-    return _most(row["angle_mean_deg"], row.get("mixed_mean_deg"))
+    return _largest_angle(row["angle_mean_deg"], row.get("mixed_mean_deg"))
 
 
 def largest_mixed(row: Row) -> float | None:
     """The largest angle, or the largest error after the mixing that is asked for, if that is larger."""
-    return _most(largest(row), row.get("mixed_max_deg"))
+    return _largest_angle(largest(row), row.get("mixed_max_deg"))
 
 
-def _most(*angles: float | None) -> float | None:
+def _largest_angle(*angles: float | None) -> float | None:
     return max((angle for angle in angles if angle is not None), default=None)
 
 
@@ -96,7 +96,7 @@ def decibels(angle: float | None) -> float:
     return math.inf if angle is None else 20 * math.log10(max(angle, 1e-12))
 
 
-def _of_image(row: Row) -> float:
+def _image_loss(row: Row) -> float:
     found = image_db(row)
     return math.inf if found is None else -min(found, INDISTINGUISHABLE_DB)
 
@@ -106,7 +106,7 @@ AIMS: Mapping[str, Callable[[Row], float]] = MappingProxyType(
     {
         "angle": lambda row: decibels(mean(row)),
         "worst": lambda row: decibels(largest_mixed(row)),
-        "image": _of_image,
+        "image": _image_loss,
         "cost": lambda row: decibels(mean(row)),
     }
 )
@@ -147,7 +147,7 @@ def order(row: Row) -> tuple[float, ...]:
     Of codes that are enough and cost little the one of fewest bits is first, then the cheapest, to a doubling. The
     others follow by loss + worth log2(price / floor), to half a decibel, and then by the price.
     """
-    ties = (_to_a_step(_of_image(row)), price(row), _bits(row), row["slots"] or 0.0)
+    ties = (_to_a_step(_image_loss(row)), price(row), _bits(row), row["slots"] or 0.0)
     if row["aim"] == "cost":
         return (price(row), not is_enough(row), loss_db(row), *ties)
     if is_enough(row) and price(row) <= AFFORDABLE * floor(row):
@@ -231,29 +231,29 @@ def groups(rows: Sequence[Row]) -> dict[tuple[str, str, str], list[Row]]:
 def answered(rows: Sequence[Row]) -> list[Row]:
     """The rows with `left_out`, `front` and `place`: those that qualify by their order, then others, for each question.
     Of other storages of the same bytes those stay that are much better."""
-    return [row for group in groups(rows).values() for row in _answered(group)]
+    return [row for group in groups(rows).values() for row in _answered_rows(group)]
 
 
-def _answered(group: Sequence[Row]) -> list[Row]:
+def _answered_rows(group: Sequence[Row]) -> list[Row]:
     judged = [row | {"left_out": why_left_out(row) or None} for row in group]
-    judged = _unpriced(_holes(judged))
+    judged = _unpriced(_rows_with_holes(judged))
     fit = sorted((row for row in judged if not row["left_out"] and not row["beside"]), key=order)
     places = _places(fit)
     made = [
-        row | {"front": not any(beats(other, row) for other in fit), "place": _said(row, places[at])}
+        row | {"front": not any(beats(other, row) for other in fit), "place": _place_text(row, places[at])}
         for at, row in enumerate(fit)
     ]
     others = [
-        row | {"front": False, "place": _said(row, [])} for row in judged if row["left_out"] and not row["beside"]
+        row | {"front": False, "place": _place_text(row, [])} for row in judged if row["left_out"] and not row["beside"]
     ]
-    return [*made, *_elsewhere(judged, fit), *others]
+    return [*made, *_elsewhere_rows(judged, fit), *others]
 
 
-def _said(row: Row, places: Sequence[str]) -> str | None:
+def _place_text(row: Row, places: Sequence[str]) -> str | None:
     return ", ".join([*places, *([AGAINST] if row["against"] else [])]) or None
 
 
-def _holes(rows: Sequence[Row]) -> list[Row]:
+def _rows_with_holes(rows: Sequence[Row]) -> list[Row]:
     """The rows with the size of their hole, left out for it. The least error is that of all codes of the storage that
     could be asked for, whatever they cost and survive."""
     said = f"a hole: the largest error is over {HOLE:g} times the least; --accept-holes takes it"
@@ -263,13 +263,13 @@ def _holes(rows: Sequence[Row]) -> list[Row]:
             least[row["storage"]] = min(found, least.get(row["storage"], math.inf))
     made: list[Row] = []
     for row in rows:
-        hole = _hole(row, least.get(row["storage"], math.inf))
+        hole = _hole_text(row, least.get(row["storage"], math.inf))
         is_why = hole and (not row["left_out"] or str(row["left_out"]).startswith(NO_FIGURE))
         made.append(row | {"hole": hole or None, "left_out": said if is_why else row["left_out"]})
     return made
 
 
-def _hole(row: Row, least: float) -> str:
+def _hole_text(row: Row, least: float) -> str:
     """How large a code's hole is, and where; empty where it has none."""
     found = largest(row)
     if why_unfit(row) or row["accept_holes"] or found is None or found <= HOLE * least:
@@ -306,7 +306,7 @@ def _places(fit: Sequence[Row]) -> list[list[str]]:
     above = [at for at in rungs if loss_db(best) - loss_db(fit[at]) >= LEAST_DB and at != exact]
     below = [at for at in rungs if loss_db(fit[at]) >= loss_db(best)]
     for place, chosen in (
-        (MORE_EXACT, _apart(sorted(above, key=lambda at: -loss_db(fit[at])), fit)[:MOST_RUNGS]),
+        (MORE_EXACT, _rungs_apart(sorted(above, key=lambda at: -loss_db(fit[at])), fit)[:MOST_RUNGS]),
         (CHEAPER, [at for at in below if _is_cheaper(fit[at], best) and fit[at]["bits"] == best["bits"]][:1]),
         (FEWER_BITS, _first_of_each_size([at for at in below if _is_smaller(fit[at], best)], fit)[:MOST_RUNGS]),
     ):
@@ -339,7 +339,7 @@ def _first_of_each_size(chosen: Sequence[int], fit: Sequence[Row]) -> list[int]:
     return [first[size] for size in sorted(first, reverse=True)]
 
 
-def _apart(chosen: Sequence[int], fit: Sequence[Row]) -> list[int]:
+def _rungs_apart(chosen: Sequence[int], fit: Sequence[Row]) -> list[int]:
     """Of rungs, the least exact first, those that gain enough on the one before."""
     kept: list[int] = []
     for at in chosen:
@@ -354,7 +354,7 @@ def is_much_better(row: Row, best: Row) -> bool:
     return loss_db(best) - loss_db(row) >= MUCH_BETTER_DB and not is_worse
 
 
-def _elsewhere(judged: Sequence[Row], fit: Sequence[Row]) -> list[Row]:
+def _elsewhere_rows(judged: Sequence[Row], fit: Sequence[Row]) -> list[Row]:
     """The best code of other storages of the same bytes, where it is much better, at its worst as well."""
     others = [row for row in judged if row["beside"] and not row["left_out"]]
     better = [row for row in others if fit and is_much_better(row, fit[0])]

@@ -14,7 +14,6 @@ import numpy as np
 
 from ....encodings.catalogue import LIGHT_BUFFERS, is_in_catalogue
 from ....encodings.codecs.codec import Codec
-from ....gbuffer.display import Display, measured_exposure
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device
 from ....gbuffer.layouts.layout import Layout
@@ -110,23 +109,25 @@ class Question:
         self._pool, self._costs, self._aim = pool, costs, chosen[0].said["aim"]
         self._cases = {case.codec.name: case for case in chosen}
         self._suprema: dict[str, Future[float | None]] = {}
-        self._rows = {name: _described(case) | costs.of(case.codec) for name, case in self._cases.items()}
+        self._rows = {name: _case_columns(case) | costs.of(case.codec) for name, case in self._cases.items()}
         # Of other storages only codes are compared that cost little, of packings those that do not cost much.
-        chosen = [case for name, case in self._cases.items() if price(self._rows[name]) <= self._most(case)]
+        chosen = [case for name, case in self._cases.items() if price(self._rows[name]) <= self._most_price(case)]
         self._rows = {case.codec.name: self._rows[case.codec.name] for case in chosen}
         self._by_jax = [case for case in chosen if has_twin(case.codec.encoding)]
         # What has no twin is measured by GL, in the thread that draws.
         self._by_gl = [case for case in chosen if not has_twin(case.codec.encoding)]
-        self._angles = pool.submit(_angles, self._by_jax)
+        self._angle_columns = pool.submit(_angle_columns, self._by_jax)
 
-    def _most(self, case: Case) -> float:
+    def _most_price(self, case: Case) -> float:
         """The price up to which a code is compared."""
         cheap = AFFORDABLE * floor(self._rows[case.codec.name])
         return cheap if case.is_beside else 2 * cheap if case.said["packed"] else math.inf
 
     def measure(self, tick: Callable[[str], None]) -> None:
         """Angles; the suprema that they ask for are still computed in the other thread."""
-        measured = zip([*self._by_gl, *self._by_jax], [*_angles(self._by_gl), *self._angles.result()], strict=True)
+        measured = zip(
+            [*self._by_gl, *self._by_jax], [*_angle_columns(self._by_gl), *self._angle_columns.result()], strict=True
+        )
         angles = {case.codec.name: row for case, row in measured}
         for name in self._rows:
             self._rows[name] |= angles[name]
@@ -135,53 +136,55 @@ class Question:
         # Also of codes with a hole, which has none where the codes without it do not survive.
         for row in list(self._rows.values()):
             if row["mixing"] and not row["beside"] and not why_left_out(row | {"aim": "angle"}):
-                self._rows[_name(row)] |= _mixed(self._cases[_name(row)])
+                self._rows[_codec_name(row)] |= _mixing_columns(self._cases[_codec_name(row)])
         self._judge_others()
-        self._find_suprema(self._qualified("angle") if self._aim == "worst" else self._placed())
+        self._find_suprema(self._qualified_rows("angle") if self._aim == "worst" else self._placed_rows())
 
     def _judge_others(self) -> None:
         """What mixing does to the code of another storage that the answer would name; to the next one where it does not
         survive."""
         judged: set[str] = set()
-        while waits := [row for row in self._placed() if row["beside"] and row["mixing"] and _name(row) not in judged]:
+        while waits := [
+            row for row in self._placed_rows() if row["beside"] and row["mixing"] and _codec_name(row) not in judged
+        ]:
             for row in waits:
-                judged.add(_name(row))
-                self._rows[_name(row)] |= _mixed(self._cases[_name(row)])
+                judged.add(_codec_name(row))
+                self._rows[_codec_name(row)] |= _mixing_columns(self._cases[_codec_name(row)])
 
     def draw(self, pictures: Pictures | None) -> None:
         """Images, if there is what draws them, and the suprema of codes that have a place then."""
         if self._aim == "worst":
             self._take_suprema()
         if pictures:
-            for row in self._qualified("angle") if self._aim == "image" else self._placed():
-                self._rows[_name(row)] |= pictures.of(self._cases[_name(row)])
-        placed = self._placed()
+            for row in self._qualified_rows("angle") if self._aim == "image" else self._placed_rows():
+                self._rows[_codec_name(row)] |= pictures.of(self._cases[_codec_name(row)])
+        placed = self._placed_rows()
         self._find_suprema(placed)
-        self._measure_axes([self._cases[_name(row)] for row in placed])
+        self._measure_axes([self._cases[_codec_name(row)] for row in placed])
 
     def _measure_axes(self, cases: Sequence[Case]) -> None:
         """Errors of axis-aligned normals: of all, or of those with z >= 0 where the code need not hold others."""
-        axes = {case.codec.name: replace(case, normal_set=_axes(_is_half(case))) for case in cases}
-        for name, row in zip(axes, _angles(list(axes.values())), strict=True):
+        axes = {case.codec.name: replace(case, normal_set=_axis_set(_is_half(case))) for case in cases}
+        for name, row in zip(axes, _angle_columns(list(axes.values())), strict=True):
             self._rows[name][AXES] = row["angle_max_deg"]
 
     def answered(self) -> list[Row]:
         """The rows as far as they are known, the best first."""
         return answered(list(self._rows.values()))
 
-    def _placed(self) -> list[Row]:
+    def _placed_rows(self) -> list[Row]:
         """What has a place in the answer, which is by the angles where there are no images yet."""
         aim = "angle" if self._aim == "image" else self._aim
         return [row for row in answered([row | {"aim": aim} for row in self._rows.values()]) if row["place"]]
 
-    def _qualified(self, aim: str) -> list[Row]:
+    def _qualified_rows(self, aim: str) -> list[Row]:
         answer = answered([row | {"aim": aim} for row in self._rows.values()])
         return [row for row in answer if not row["left_out"] and not row["beside"]]
 
     def _find_suprema(self, wanted: Iterable[Row]) -> None:
-        for name in map(_name, wanted):
+        for name in map(_codec_name, wanted):
             if name not in self._suprema:
-                self._suprema[name] = self._pool.submit(_supremum, self._cases[name])
+                self._suprema[name] = self._pool.submit(_supremum_deg, self._cases[name])
 
     def _take_suprema(self) -> None:
         for name, found in self._suprema.items():
@@ -199,7 +202,7 @@ def _is_half(case: Case) -> bool:
 
 
 @cache
-def _axes(is_half: bool) -> NormalSet:
+def _axis_set(is_half: bool) -> NormalSet:
     """Axis-aligned normals, all or those with z >= 0: what faces the viewer of floors, walls and ceilings."""
     axes = NORMAL_SETS["axes"](0, 0)
     if not is_half:
@@ -213,17 +216,17 @@ def _axes(is_half: bool) -> NormalSet:
     return from_arrays("axes, z >= 0", axes.title, n[held], view[held], np.ones(held.sum(), bool), None)
 
 
-def _name(row: Row) -> str:
+def _codec_name(row: Row) -> str:
     """The name of a row's codec."""
     return f"{row['encoding']}/{row['storage']}"
 
 
-def _mixed(case: Case) -> Row:
+def _mixing_columns(case: Case) -> Row:
     """What the mixing that is asked for does to a code: why it does not survive, if it does not, and its errors."""
     uses, domain = case.said["mixing"], case.said["needs"] or case.codec.encoding.domain
-    if domain == "sphere" and not _lost(case.normal_set, "hemisphere"):
+    if domain == "sphere" and not _lost_percent(case.normal_set, "hemisphere"):
         domain = "hemisphere"
-    key = _key("mixing", case.codec, uses, domain, _normals(case))
+    key = _figures_key("mixing", case.codec, uses, domain, _normals_key(case))
 
     def judged() -> Row:
         found = judge.judgement(case.codec, uses.split(","), case.normal_set, domain)
@@ -238,7 +241,7 @@ def _mixed(case: Case) -> Row:
     return kept.kept(key, judged)
 
 
-def _described(case: Case) -> Row:
+def _case_columns(case: Case) -> Row:
     codec, encoding = case.codec, case.codec.encoding
     images = (f"{maker.name}_{power:g}" for maker in case.makers for power in case.powers)
     return (
@@ -250,14 +253,14 @@ def _described(case: Case) -> Row:
             "free_bits": 8 * codec.storage.texel_bytes - codec.bits + encoding.sign_bits,
             "table": encoding.has_tables,
         }
-        | {"seed": case.normal_set.seed, "lost_percent": _lost(case.normal_set, encoding.domain)}
+        | {"seed": case.normal_set.seed, "lost_percent": _lost_percent(case.normal_set, encoding.domain)}
         | {"code_bits": math.log2(codec.codes) if all(map(encoding.levels_of, range(encoding.components))) else None}
     )
 
 
-def _angles(chosen: Sequence[Case]) -> list[Row]:
+def _angle_columns(chosen: Sequence[Case]) -> list[Row]:
     """The columns of angles of each case, measured together where they are not kept."""
-    keys = [_key("angles", case.codec, _normals(case)) for case in chosen]
+    keys = [_figures_key("angles", case.codec, _normals_key(case)) for case in chosen]
     rows = [kept.read(key) if key else None for key in keys]
     missing = [_quality_case(case) for case, row in zip(chosen, rows, strict=True) if row is None]
     measured = quality.rows(missing, lambda _: None)
@@ -273,10 +276,17 @@ def _angles(chosen: Sequence[Case]) -> list[Row]:
 
 def length_shares(codecs: Sequence[Codec]) -> dict[str, float | None]:
     """By codec the share of the error of lengths, over a few normals of the sphere."""
-    said: Row = {"beside": False, "packed": False}
-    normals = NORMAL_SETS["sphere"](FEW, 0)
-    cases = [Case(codec, normals, (), Setting(), (), said) for codec in codecs]
-    return {case.codec.name: row["length_share"] for case, row in zip(cases, _angles(cases), strict=True)}
+    return {name: row["length_share"] for name, row in _angles_of(codecs, NORMAL_SETS["sphere"](FEW, 0))}
+
+
+def mean_angles(codecs: Sequence[Codec], normals: NormalSet) -> dict[str, float]:
+    """By codec the mean angle in degrees over normals; those without figures are left out."""
+    return {name: row["angle_mean_deg"] for name, row in _angles_of(codecs, normals) if not row["skipped"]}
+
+
+def _angles_of(codecs: Sequence[Codec], normals: NormalSet) -> Iterator[tuple[str, Row]]:
+    cases = [Case(codec, normals, (), Setting(), (), {"beside": False, "packed": False}) for codec in codecs]
+    yield from zip((codec.name for codec in codecs), _angle_columns(cases), strict=True)
 
 
 def _length_share(row: Row) -> float | None:
@@ -294,22 +304,22 @@ def _quality_case(case: Case) -> quality.Case:
     return quality.Case(case.codec, case.normal_set, "jax" if has_twin(case.codec.encoding) else "glsl")
 
 
-def _supremum(case: Case) -> float | None:
+def _supremum_deg(case: Case) -> float | None:
     """The largest angle in exact arithmetic; None of a code in GLSL alone and of a set without a domain."""
     one = _quality_case(case)
     if one.backend != "jax":
         return None
-    key = _key("supremum", case.codec, _normals(case))
+    key = _figures_key("supremum", case.codec, _normals_key(case))
     return kept.kept(key, lambda: {SUPREMUM: quality.measure(replace(one, worst_case=True))[SUPREMUM]})[SUPREMUM]
 
 
-def _normals(case: Case) -> list[Any] | None:
+def _normals_key(case: Case) -> list[Any] | None:
     """What is kept of a set of normals in a key; None of one that may be another next time."""
     chosen = case.normal_set
     return [chosen.name, chosen.count, chosen.seed] if chosen.name in NORMAL_SETS else None
 
 
-def _key(what: str, codec: Codec, *parts: Any) -> str:
+def _figures_key(what: str, codec: Codec, *parts: Any) -> str:
     """Where figures are kept for good; empty where they may be others next time."""
     if None in parts or not is_in_catalogue(codec.encoding):
         return ""
@@ -330,9 +340,9 @@ class Pictures:
         for maker in case.makers:
             known = maker.name if maker is SCENES.get(maker.name) else None
             asked = (case.setting, case.powers, case.said.get("effects") or "")
-            key = _key("image", case.codec, known, *asked, self._device.renderer)
+            key = _figures_key("image", case.codec, known, *asked, self._device.renderer)
             try:
-                found |= kept.kept(key, lambda maker=maker: self._measured(case, maker))
+                found |= kept.kept(key, lambda maker=maker: self._image_columns(case, maker))
             except (LayoutError, *render.UNMEASURABLE):
                 continue
         if case.codec.encoding.domain != "sphere":
@@ -347,7 +357,7 @@ class Pictures:
         covered, held = (np.count_nonzero(reference.held_by(one)) for one in ("sphere", case.codec.encoding.domain))
         return 100.0 * (1 - held / max(covered, 1))
 
-    def _measured(self, case: Case, maker: SceneMaker) -> Row:
+    def _image_columns(self, case: Case, maker: SceneMaker) -> Row:
         held = self._reference(case, maker).held_by(case.codec.encoding.domain)
         return {
             f"{IMAGE}{maker.name}_{power:g}": psnr_db(squared_error(image[held], right[held])[0])
@@ -363,14 +373,17 @@ class Pictures:
         """
         layout = LAYOUTS["fp32"].with_codec(case.codec)
         by_emulation = has_twin(case.codec.encoding)
+        if case.codec.encoding.is_half and not by_emulation:
+            raise LayoutError(f"{case.codec.name}: the renderer computes in 32 bits")
         images = self._relit(case, maker) if by_emulation else self._drawn(case, maker, layout)[0]
         found: dict[float, tuple[np.ndarray, np.ndarray]] = {}
         for power, image, right in zip(case.powers, images, self._reference(case, maker).images, strict=True):
-            display = _display(maker, right)
+            display = maker.display(right)
             found[power] = display.image(image), display.image(right)
         return found
 
     def _reference(self, case: Case, maker: SceneMaker) -> Reference:
+        """The exact images of a scene, rendered once for all codes."""
         question = (maker, case.setting, case.powers, case.pipeline)
         if question not in self._references:
             self._references[question] = Reference(*self._drawn(case, maker, LAYOUTS["fp32"]))
@@ -415,15 +428,8 @@ class Reference:
         return (self.position[..., 2] != 0) & in_domain(self.normals, self.position, domain)
 
 
-def _display(maker: SceneMaker, right: np.ndarray) -> Display:
-    """As the render table shows a scene, by its reference in linear light."""
-    if maker.exposure is not None:
-        return Display(maker.exposure)
-    return Display(measured_exposure(right.reshape(-1, 3)))
-
-
 @cache
-def _lost(normals: NormalSet, domain: str) -> float:
+def _lost_percent(normals: NormalSet, domain: str) -> float:
     """The percentage of normals that lie outside a domain."""
     if domain == "sphere":
         return 0.0

@@ -30,12 +30,12 @@ def write(folder: Path, chosen: Sequence[Case], rows: Sequence[Row], drawing: Pi
         # A code that the device has no room for has no image.
         with suppress(LayoutError, *render.UNMEASURABLE):
             for power, (image, exact) in drawing.shown(case, maker).items():
-                scene = _scene(maker.name, power)
+                scene = _scene_stem(maker.name, power)
                 _write(folder / f"{scene}-reference.png", exact)
                 _write(folder / f"{scene}-{case.codec.encoding.name}-{case.codec.storage.name}-final.png", image)
 
 
-def _scene(name: str, power: float) -> str:
+def _scene_stem(name: str, power: float) -> str:
     return f"pick-{name}-power{power:g}"
 
 
@@ -49,23 +49,23 @@ def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
     there = files_of(folder)
     storages = list(dict.fromkeys(row.get("storage") for row in rows))
     found = [row for row in rows if set(places_of(row)) & set(PLACES)]
-    placed = sorted(found, key=lambda row: (storages.index(row["storage"]), _place(row)))
+    placed = sorted(found, key=lambda row: (storages.index(row["storage"]), _place_index(row)))
     drawn = dict.fromkeys(key for row in placed for key in images(row))
     scenes = list(dict.fromkeys(scene for scene, _ in drawn))
     for scene, power in sorted(drawn, key=lambda key: (scenes.index(key[0]), -float(key[1]))):
-        stem = _scene(scene, float(power))
+        stem = _scene_stem(scene, float(power))
         exact = there.get(f"{stem}-reference.png")
         codecs = [CodecKey(str(row["encoding"]), str(row["storage"]), "nearest") for row in placed]
         paths = {key: there.get(f"{stem}-{key.encoding}-{key.storage}-final.png") for key in codecs}
-        known = [Pictured(key, key.label, key.label, partial(_read, path)) for key, path in paths.items() if path]
+        known = [Pictured(key, key.label, key.label, partial(_pixels, path)) for key, path in paths.items() if path]
         if exact and known:
             yield Subject(f"the answer on {scene} at power {power}", "image", partial(read_png, exact), known)
 
 
-def _place(row: Row) -> int:
+def _place_index(row: Row) -> int:
     return min(PLACES.index(word) for word in places_of(row) if word in PLACES)
 
 
-def _read(path: Path) -> ImagePixels | None:
+def _pixels(path: Path) -> ImagePixels | None:
     image = read_png(path)
     return None if image is None else ImagePixels(image, None)

@@ -29,10 +29,10 @@ class Costs:
 
     def of(self, codec: Codec) -> Row:
         """The columns of costs on the family where the code is dearest; none where nothing is known."""
-        found = [row for family in self._rows if (row := self._on(family, codec))]
+        found = [row for family in self._rows if (row := self._price_columns(family, codec))]
         return max(found, key=lambda row: (row["slots"] is None, row["slots"] or 0.0), default={})
 
-    def _on(self, family: str, codec: Codec) -> Row:
+    def _price_columns(self, family: str, codec: Codec) -> Row:
         rows, name = self._rows[family], codec.encoding.name
         parts = [[rows.get((name, operation))] for operation in cost.OPERATIONS]
         if codec.storage.is_packed:

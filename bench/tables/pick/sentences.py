@@ -73,14 +73,17 @@ def told(group: Sequence[Row]) -> list[str]:
     best = next((row for row in group if BEST in places_of(row)), None)
     where = f"{group[0]['asked']}, {_on(group[0])}"
     if best is None:
-        return [f"{where}: no code qualifies{_constraints(group[0])}.", *_instead(group)]
-    others = [*_not_held(best), *(_elsewhere(row, best) for row in _much_better(group, best))]
+        return [f"{where}: no code qualifies{_constraints_text(group[0])}.", *_instead(group)]
+    others = [*_not_held(best), *(_elsewhere_text(row, best) for row in _much_better(group, best))]
     made = [" ".join([f"{where}: take {_called(best)}.", *others])]
-    made += [f"{_figures(best)} {_seen(best)}", f"{_price(best)} {_bits(best)}{_reservation(best)}"]
-    made += list(filter(None, [_images(best), _mixing(best)]))
+    made += [
+        f"{_error_sentences(best)} {_seen_sentences(best)}",
+        f"{_price_sentence(best)} {_bits_sentence(best)}{_reservation_sentence(best)}",
+    ]
+    made += list(filter(None, [_images_text(best), _mixing_text(best)]))
     made += [WOBBLES] if best["needs"] in ("hemisphere", "view") else []
     made += rungs(group, best)
-    return made + [_against(row, best) for row in group if row["against"] and row is not best]
+    return made + [_rival_sentence(row, best) for row in group if row["against"] and row is not best]
 
 
 def _on(row: Row) -> str:
@@ -130,7 +133,7 @@ def rungs(group: Sequence[Row], best: Row) -> Iterator[str]:
     """A sentence for each rung of the ladder."""
     titles = RUNGS | (BETTER_IMAGE if best["aim"] == "image" else {})
     for place, title in titles.items():
-        yield from (f"{title}: {_rung(row, best)}" for row in group if place in places_of(row))
+        yield from (f"{title}: {_rung_text(row, best)}" for row in group if place in places_of(row))
 
 
 def _called(row: Row) -> str:
@@ -138,7 +141,7 @@ def _called(row: Row) -> str:
     return row["encoding"] if row["asked"] == row["storage"] else f"{row['encoding']} in {row['storage']}"
 
 
-def _constraints(row: Row) -> str:
+def _constraints_text(row: Row) -> str:
     said = [f"at most {row['most_instructions']} issue slots"] if row["most_instructions"] is not None else []
     said += [f"for {row['needs']}"] if row["needs"] else []
     said += [f"that survives {row['mixing'].replace(',', ', ')}"] if row["mixing"] else []
@@ -153,46 +156,46 @@ def decibels(value: float | None) -> str:
     return "no figure" if value is None else "no difference" if math.isinf(value) else f"{value:.1f} dB"
 
 
-def _figures(row: Row) -> str:
-    said = f"Its mean error is {degrees(row['angle_mean_deg'])}, {_largest(row)}."
+def _error_sentences(row: Row) -> str:
+    said = f"Its mean error is {degrees(row['angle_mean_deg'])}, {_largest_text(row)}."
     axes = row.get("angle_axes_deg")
     if axes is None:
         return said
     return f"{said} Floors and walls come back {'exact' if axes < EXACT_DEG else f'up to {degrees(axes)} off'}."
 
 
-def _largest(row: Row) -> str:
+def _largest_text(row: Row) -> str:
     """The supremum where it was searched, else what was met, which may be less."""
     return f"its largest {degrees(largest(row))}" + (" of those met" if row["angle_sup_deg"] is None else "")
 
 
-def _moved(row: Row) -> list[float]:
+def _moved_deg(row: Row) -> list[float]:
     """How far a mirror's reflection moves, in the mean and at most: by twice the angle that its normal is turned."""
     return [2 * value for value in (mean(row), largest_mixed(row)) if value is not None]
 
 
-def _seen(row: Row) -> str:
-    moved = _moved(row)
+def _seen_sentences(row: Row) -> str:
+    moved = _moved_deg(row)
     if len(moved) < 2:
         return ""
     texels = " and ".join(f"{value / TEXEL_DEG:.2g}" for value in moved)
-    far = " and ".join(_length(100 * FAR * math.tan(math.radians(min(value, 89.0)))) for value in moved)
+    far = " and ".join(_length_text(100 * FAR * math.tan(math.radians(min(value, 89.0)))) for value in moved)
     said = f"A mirror's reflection moves by {degrees(moved[0])} in the mean and at most {degrees(moved[1])}: "
     said += f"{texels} texels of {MAP}, {far} cm at {FAR:g} m."
     return f"{said} That is enough." if is_enough(row) else said
 
 
-def _length(value: float) -> str:
+def _length_text(value: float) -> str:
     return f"{value:.0f}" if value >= 10 else f"{value:.2g}"
 
 
-def _price(row: Row) -> str:
+def _price_sentence(row: Row) -> str:
     if row["slots"] is None:
         return "What it costs is not known on this machine."
     parts = f"{row['encode_slots']:g} issue slots to encode and {row['decode_slots']:g} to decode"
     parts += f" on {row['dearest_family']}"
     readers = f"{row['readers']} reader{'s' * (row['readers'] != 1)}"
-    return f"It takes {parts}, with {readers} {_of_hidden(row)}{_table(row)}."
+    return f"It takes {parts}, with {readers} {_of_hidden(row)}{_table_clause(row)}."
 
 
 def _of_hidden(row: Row) -> str:
@@ -202,21 +205,21 @@ def _of_hidden(row: Row) -> str:
     return f"{price(row):g}, {price(row) / floor(row):.2g} times what hides behind the traffic of the target"
 
 
-def _table(row: Row) -> str:
+def _table_clause(row: Row) -> str:
     return ", and it reads a table" if row["table"] else ""
 
 
-def _bits(row: Row) -> str:
+def _bits_sentence(row: Row) -> str:
     free = f"{row['free_bits']} stay free" if row["free_bits"] else "none stays free"
-    return f"It occupies {_of_bits(row)}; {free}."
+    return f"It occupies {_bits_text(row)}; {free}."
 
 
-def _of_bits(row: Row) -> str:
+def _bits_text(row: Row) -> str:
     has_sign = row["encoding"] in ENCODINGS and ENCODINGS[row["encoding"]].sign_bits
     return f"{row['bits']} bits" + (", one of them in the sign of the depth" if has_sign else "")
 
 
-def _images(row: Row) -> str:
+def _images_text(row: Row) -> str:
     """The worst of a row's images; empty where there is none."""
     found = images(row)
     if not found:
@@ -231,7 +234,7 @@ def _images(row: Row) -> str:
     return f"Of images of {scenes}{effects} the worst is {scene} at power {power}: {decibels(worst)}.{beyond}"
 
 
-def _mixing(row: Row) -> str:
+def _mixing_text(row: Row) -> str:
     """What mixing does to a code that survives it inside a surface; empty where it was not asked for."""
     if not row.get("mixing"):
         return ""
@@ -240,19 +243,19 @@ def _mixing(row: Row) -> str:
     across = row.get("mixed_across")
     left = f"mean error {degrees(mean(row))}, largest {degrees(largest_mixed(row))}"
     if across:
-        return f"{said}Inside a surface it survives {_uses(row)} ({left}). Across an edge it does not: {across}."
-    return f"{said}It survives {_uses(row)}, inside a surface ({left}) and across an edge."
+        return f"{said}Inside a surface it survives {_uses_text(row)} ({left}). Across an edge it does not: {across}."
+    return f"{said}It survives {_uses_text(row)}, inside a surface ({left}) and across an edge."
 
 
-def _uses(row: Row) -> str:
+def _uses_text(row: Row) -> str:
     return " and ".join(row["mixing"].split(","))
 
 
-def _reservation(row: Row) -> str:
+def _reservation_sentence(row: Row) -> str:
     return f" Note the {lost(row)}." if row["lost_percent"] else ""
 
 
-def _gain(row: Row, best: Row) -> str:
+def _gain_text(row: Row, best: Row) -> str:
     """How much better or worse a code is than the answer."""
     gain = loss_db(best) - loss_db(row)
     if math.isnan(gain) or abs(gain) < 0.05:
@@ -260,19 +263,19 @@ def _gain(row: Row, best: Row) -> str:
     return f"{abs(gain):.1f} dB {'better' if gain > 0 else 'worse'} by the {AIM_TITLES[row['aim']]}"
 
 
-def _rung(row: Row, best: Row) -> str:
+def _rung_text(row: Row, best: Row) -> str:
     """A rung of the ladder: what it gains, and for what price."""
-    said = f"{_called(row)}, {_gain(row, best)} ({_errors(row)})"
-    return f"{said}, {_priced(row, best)}{_spared(row, best)}."
+    said = f"{_called(row)}, {_gain_text(row, best)} ({_errors_text(row)})"
+    return f"{said}, {_price_text(row, best)}{_bits_clause(row, best)}."
 
 
-def _errors(row: Row) -> str:
+def _errors_text(row: Row) -> str:
     if not row.get("mixing"):
-        return f"mean {degrees(row['angle_mean_deg'])}, {_largest(row)}"
-    return f"after {_uses(row)} mean {degrees(mean(row))}, largest {degrees(largest_mixed(row))}"
+        return f"mean {degrees(row['angle_mean_deg'])}, {_largest_text(row)}"
+    return f"after {_uses_text(row)} mean {degrees(mean(row))}, largest {degrees(largest_mixed(row))}"
 
 
-def _priced(row: Row, best: Row) -> str:
+def _price_text(row: Row, best: Row) -> str:
     if row["slots"] is None:
         return "for an unknown price"
     table = " and a table" if row["table"] and not best["table"] else ""
@@ -289,13 +292,13 @@ def _priced(row: Row, best: Row) -> str:
     return f"{said}: {rate:.1f} dB a doubling{tie}"
 
 
-def _spared(row: Row, best: Row) -> str:
+def _bits_clause(row: Row, best: Row) -> str:
     if row["bits"] == best["bits"]:
         return ""
-    return f", in {_of_bits(row)}: {row['free_bits']} stay free" if row["free_bits"] else f", in {_of_bits(row)}"
+    return f", in {_bits_text(row)}: {row['free_bits']} stay free" if row["free_bits"] else f", in {_bits_text(row)}"
 
 
-def _elsewhere(row: Row, best: Row) -> str:
+def _elsewhere_text(row: Row, best: Row) -> str:
     """Another storage of the same bytes that is much better."""
     gain = loss_db(best) - loss_db(row)
     free = f"{row['free_bits']} bits stay free" if row["free_bits"] else "no bit stays free"
@@ -303,11 +306,11 @@ def _elsewhere(row: Row, best: Row) -> str:
     return f"{said} (mean {degrees(mean(row))}), and {free}."
 
 
-def _against(row: Row, best: Row) -> str:
+def _rival_sentence(row: Row, best: Row) -> str:
     if row["left_out"]:
         hole = f" ({row['hole']})" if row.get("hole") else ""
         return f"{row['encoding']} does not qualify: {row['left_out']}{hole}."
-    said = f"{row['encoding']}: {_rung(row, best).removesuffix('.')}; {_images(row) or 'no image.'}"
+    said = f"{row['encoding']}: {_rung_text(row, best).removesuffix('.')}; {_images_text(row) or 'no image.'}"
     if row["front"]:
         return f"{said} No other code beats it in every figure."
     return f"{said} {best['encoding']} beats it in every figure." if beats(best, row) else said
@@ -330,9 +333,13 @@ def _with_reason(rows: Sequence[Row], why: str) -> str:
     names = [f"{_called(row)} {row['hole']}" if row.get("hole") else _called(row) for row in rows]
     detail = str(rows[0].get("cannot_mix") or "").partition(":")[2]
     if not detail:
-        return f"{_named(names)} ({why})"
-    return f"{_named(names)} ({why}:{detail})" if len(rows) == 1 else f"{_named(names)} ({why}; {names[0]}:{detail})"
+        return f"{_names_text(names)} ({why})"
+    return (
+        f"{_names_text(names)} ({why}:{detail})"
+        if len(rows) == 1
+        else f"{_names_text(names)} ({why}; {names[0]}:{detail})"
+    )
 
 
-def _named(names: Sequence[str]) -> str:
+def _names_text(names: Sequence[str]) -> str:
     return ", ".join(names) if len(names) <= MOST_NAMED else f"{len(names)} codes"

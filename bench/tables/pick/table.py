@@ -17,6 +17,7 @@ from ...ground.options.option import (
     Seed,
     StorageNames,
 )
+from ...shaders.languages.source_options import SourceOptions
 from .. import shared_columns as shared
 from ..mix.table import USES
 from ..table import Column, Group, Role, Section, Table
@@ -35,7 +36,7 @@ TEXEL_DEG = 360 / 1024
 
 
 @dataclass(frozen=True, kw_only=True)
-class PickOptions(Reading):
+class PickOptions(Reading, SourceOptions):
     """What `pick` chooses from, and what it asks of the code. Names are comma-separated."""
 
     storage: StorageNames = "rg8,rgb10a2"

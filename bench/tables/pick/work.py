@@ -19,10 +19,10 @@ from ...ground.choose import choose, choose_one
 from ...ground.machine.devices import found_device, require_jax
 from ...ground.options.counts import check_seed, checked_count, in_range
 from ...ground.options.effect_names import effects_named, lacking, name_of, pipeline_with
-from ...ground.options.scene_names import powers_named, scenes_named
+from ...ground.options.scene_names import powers_named, scene_makers_named
 from ...ground.output.errors import UsageError, by_reason, leave_out, tell
 from ...ground.output.writing import check_folder
-from ...subjects.codecs.names import check_twin, codecs_named, storages_named
+from ...subjects.codecs.names import as_declared, check_twin, codecs_named, storages_named
 from ...subjects.normals.normal_names import normal_sets_named
 from ...subjects.normals.normal_sets import NormalSet
 from ..families_named import families_named
@@ -61,9 +61,10 @@ def questions(options: PickOptions) -> list[list[measure.Case]]:
     check_seed(options.seed)
     said = _question(options)
     asked = _asked(options)
-    against = codecs_named(options.against, ",".join(_names(asked)), "nearest") if options.against else []
+    names = ",".join(_names(asked))
+    against = as_declared(codecs_named(options.against, names, "nearest")) if options.against else []
     named = {codec.encoding.name for codec in against}
-    codecs = dict.fromkeys([*codecs_named(options.encoding, ",".join(_names(asked)), "nearest"), *against])
+    codecs = dict.fromkeys([*as_declared(codecs_named(options.encoding, names, "nearest")), *against])
     fit, misfits = _fitting(codecs)
     # Those of the catalogue are traced by tests.
     encodings = list(dict.fromkeys(codec.encoding for codec in codecs))
@@ -73,11 +74,16 @@ def questions(options: PickOptions) -> list[list[measure.Case]]:
     chosen = options.normals or SETS[said["needs"]]
     sets = normal_sets_named(chosen, count, options.seed, options.reading, needs_rays)
     _say_if_few(sets)
-    powers, makers = tuple(powers_named(options.power)), tuple(scenes_named(options.scene))
+    powers, makers = tuple(powers_named(options.power)), tuple(scene_makers_named(options.scene))
     effects = effects_named(options.effects) if options.effects else []
     setting = Setting(seed=options.seed)
     pipeline = _pipeline(effects, makers, setting)
     said |= {"effects": name_of(effects), "scene": ",".join(maker.name for maker in makers)}
+    for codec in (one for one in fit if one.encoding.is_packed):
+        for name in (name for name, storages in asked.items() if not _is_held(codec, storages)):
+            leave_out(
+                f"{codec.encoding.name} is an integer of {codec.storage.texel_bytes} bytes, not of those of {name}"
+            )
     for line in misfits if options.encoding.strip() != "all" else ():
         leave_out(line)
 
@@ -89,7 +95,7 @@ def questions(options: PickOptions) -> list[list[measure.Case]]:
     return [
         [case(codec, normals, about) for codec, about in _compared(name, storages, fit, encodings)]
         for name, storages in asked.items()
-        if any(codec.storage in storages for codec in fit)
+        if any(_is_held(codec, storages) for codec in fit)
         for normals in sets
     ]
 
@@ -127,11 +133,18 @@ def _compared(
     size, is_one = storages[0].texel_bytes, storages[0].name == name
     about: Row = {"asked": name, "bytes": size, "beside": False, "packed": False}
     for codec in fit:
-        if codec.storage in storages:
-            yield codec, about | {"packed": is_one and codec.storage.name != name}
+        if _is_held(codec, storages):
+            is_laid = is_one and codec.storage.name != name and not codec.encoding.is_packed
+            yield codec, about | {"packed": is_laid}
     others = [one for one in STORAGES.values() if one.texel_bytes == size and one not in storages] if is_one else []
-    codecs = (Codec(encoding, other) for other in others for encoding in encodings)
+    codecs = (Codec(encoding, other) for other in others for encoding in encodings if not encoding.is_packed)
     yield from ((codec, about | {"beside": True}) for codec in codecs if codec.fits)
+
+
+def _is_held(codec: Codec, storages: Sequence[Storage]) -> bool:
+    """Whether a code is one of a question: in its storages, or an integer in a texel of as many bytes."""
+    is_integer = codec.encoding.is_packed and codec.storage.texel_bytes == storages[0].texel_bytes
+    return is_integer or codec.storage in storages
 
 
 def _pipeline(effects: Sequence[ChosenEffect], makers: Sequence[SceneMaker], setting: Setting) -> Pipeline:
@@ -216,9 +229,9 @@ def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
     for (asked, normals, scene), group in groups(rows).items():
         front = [_short(row) for row in group if row["front"] or row["place"]]
         title = f"{asked}, on {normals}: the codes that no other one beats in error, price and bits"
-        about = {"said": tuple(told(group)), "aside": tuple(left_out(group))}
+        said, aside = tuple(told(group)), tuple(left_out(group))
         keys = {"storage": asked, "normals": normals, "scene": scene.split(",")[0]}
-        yield Sheet(title if front else "", front, TABLE.drops(front), keys=keys, **about)
+        yield Sheet(title if front else "", front, TABLE.drops(front), said=said, aside=aside, keys=keys)
 
 
 def _short(row: Row) -> Row:

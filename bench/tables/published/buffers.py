@@ -11,28 +11,28 @@ from .measures import Counted
 # Layouts and light
 
 
-def _bytes(layout: str, what: str, value: int, source: str) -> Figure:
+def _bytes_figure(layout: str, what: str, value: int, source: str) -> Figure:
     return Figure(what, "slides", value, 0, "bytes", Counted(partial(counts.bytes_of_targets, layout), source))
 
 
 DROBOT = (
-    _bytes("normal_depth", "normal 8:8 and depth of 16 bits", 4, "drobot"),
-    _bytes("normal_depth_material", "normal 16:16, depth and material", 8, "drobot"),
-    _bytes("normal_motion", "normal 8:8, motion, depth and material", 8, "drobot"),
+    _bytes_figure("normal_depth", "normal 8:8 and depth of 16 bits", 4, "drobot"),
+    _bytes_figure("normal_depth_material", "normal 16:16, depth and material", 8, "drobot"),
+    _bytes_figure("normal_motion", "normal 8:8, motion, depth and material", 8, "drobot"),
 )
-JO = (_bytes("hybrid", "RGBA8, two FP16 channels and RGBA8", 12, "jo kyeong"),)
+JO = (_bytes_figure("hybrid", "RGBA8, two FP16 channels and RGBA8", 12, "jo kyeong"),)
 
 
-def _light(what: str, light_buffer: str, value: float, source: str, bound: str = "") -> Figure:
+def _light_figure(what: str, light_buffer: str, value: float, source: str, bound: str = "") -> Figure:
     return Figure(what, "tests", value, 1, "", Counted(partial(counts.most_light, light_buffer), source), bound=bound)
 
 
 OLS_2010 = (
-    _light("most light of RGBA8 scaled to [0, 2]", "linear", 2.0, "blending"),
-    _light("most light of sRGB8 scaled to [0, 2]", "srgb", 2.0, "blending"),
+    _light_figure("most light of RGBA8 scaled to [0, 2]", "linear", 2.0, "blending"),
+    _light_figure("most light of sRGB8 scaled to [0, 2]", "srgb", 2.0, "blending"),
 )
-OLS_2009 = (_light("a lamp that log light holds", "log", 3.0, "log-lights", "above"),)
-SHARED_EXPONENT = (_light("largest number of RGB9E5", "rgb9e5", 65408.0, "shared_exponent"),)
+OLS_2009 = (_light_figure("a lamp that log light holds", "log", 3.0, "log-lights", "above"),)
+SHARED_EXPONENT = (_light_figure("largest number of RGB9E5", "rgb9e5", 65408.0, "shared_exponent"),)
 
 # Depth
 
@@ -43,29 +43,29 @@ OWN_LOGARITHM = (
 )
 
 
-def _kemen(c: float, at: float, value: float, digits: int) -> Figure:
+def _kemen_figure(c: float, at: float, value: float, digits: int) -> Figure:
     step = partial(counts.depth_step, "logarithmic", 1 / c, FAR, 2**24, at)
     what = f"step at {at / 1e3:g} km, C = {c:g}"
     return Figure(what, "table, 24 bits, far 10,000 km", value, digits, "m", Counted(step, "kemen"), OWN_LOGARITHM)
 
 
 KEMEN = (
-    _kemen(1, 1e0, 0.0000019, 7),
-    _kemen(1, 1e1, 0.000011, 6),
-    _kemen(1, 1e2, 0.000097, 6),
-    _kemen(1, 1e3, 0.001, 3),
-    _kemen(1, 1e4, 0.01, 2),
-    _kemen(1, 1e5, 0.096, 3),
-    _kemen(1, 1e6, 0.96, 2),
-    _kemen(1, 1e7, 9.6, 1),
-    _kemen(0.001, 1e0, 0.0005, 4),
-    _kemen(0.001, 1e1, 0.0005, 4),
-    _kemen(0.001, 1e2, 0.0006, 4),
-    _kemen(0.001, 1e3, 0.001, 3),
-    _kemen(0.001, 1e4, 0.006, 3),
-    _kemen(0.001, 1e5, 0.055, 3),
-    _kemen(0.001, 1e6, 0.549, 3),
-    _kemen(0.001, 1e7, 5.49, 2),
+    _kemen_figure(1, 1e0, 0.0000019, 7),
+    _kemen_figure(1, 1e1, 0.000011, 6),
+    _kemen_figure(1, 1e2, 0.000097, 6),
+    _kemen_figure(1, 1e3, 0.001, 3),
+    _kemen_figure(1, 1e4, 0.01, 2),
+    _kemen_figure(1, 1e5, 0.096, 3),
+    _kemen_figure(1, 1e6, 0.96, 2),
+    _kemen_figure(1, 1e7, 9.6, 1),
+    _kemen_figure(0.001, 1e0, 0.0005, 4),
+    _kemen_figure(0.001, 1e1, 0.0005, 4),
+    _kemen_figure(0.001, 1e2, 0.0006, 4),
+    _kemen_figure(0.001, 1e3, 0.001, 3),
+    _kemen_figure(0.001, 1e4, 0.006, 3),
+    _kemen_figure(0.001, 1e5, 0.055, 3),
+    _kemen_figure(0.001, 1e6, 0.549, 3),
+    _kemen_figure(0.001, 1e7, 5.49, 2),
 )
 KEMEN_2012 = (
     Figure(

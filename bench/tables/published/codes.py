@@ -78,7 +78,7 @@ KAPLANYAN = (
 )
 
 
-def _told_apart(encoding: str, title: str, count: float, share: float, why: str) -> tuple[Figure, ...]:
+def _told_apart_figures(encoding: str, title: str, count: float, share: float, why: str) -> tuple[Figure, ...]:
     return (
         Figure(
             f"directions told apart by {title}",
@@ -102,7 +102,7 @@ def _told_apart(encoding: str, title: str, count: float, share: float, why: str)
 
 
 HILLAIRE = (
-    *_told_apart("xyz_renormalised", "scale and bias", 219890, 55.9, UNSTATED),
+    *_told_apart_figures("xyz_renormalised", "scale and bias", 219890, 55.9, UNSTATED),
     Figure(
         "share of RGB8 texels that these use",
         "table",
@@ -112,7 +112,7 @@ HILLAIRE = (
         Counted(partial(counts.share_of_texels, "xyz_renormalised"), "hillaire"),
         UNSTATED,
     ),
-    *_told_apart(
+    *_told_apart_figures(
         "best_fit_searched",
         "best-fit normals",
         387107,

@@ -50,7 +50,7 @@ def _cube_map() -> np.ndarray:
 
 
 @cache
-def _told_apart(codec: Codec) -> int:
+def _told_apart_count(codec: Codec) -> int:
     n = Vec3(*(jnp.asarray(np.ascontiguousarray(plane)) for plane in _cube_map().T))
     view = Vec3(jnp.zeros_like(n.x), jnp.zeros_like(n.x), jnp.full_like(n.x, -1.0))
     stored = np.stack([np.asarray(number) for number in codec.stored(n, view)], axis=1)
@@ -59,7 +59,7 @@ def _told_apart(codec: Codec) -> int:
 
 def told_apart(encoding: str) -> float:
     """How many directions of a cube map of 256 x 256 x 6 have a code of their own in RGB8."""
-    return float(_told_apart(codec_of(encoding, "rgba8")))
+    return float(_told_apart_count(codec_of(encoding, "rgba8")))
 
 
 def share_told_apart(encoding: str) -> float:
@@ -97,18 +97,18 @@ def bits_above_the_optimum() -> float:
 # Angles by which codes differ
 
 
-def _mean(encoding: str, storage: str) -> float:
+def _mean_error(encoding: str, storage: str) -> float:
     return Quality(encoding, storage, "angle_mean_deg").figure() or math.nan
 
 
 def tetrahedral_over_octahedral() -> float:
     """The mean of tetrahedral 10:10:2 over that of octahedral 11:11."""
-    return _mean("tetrahedral", "rgb8_10_10_2") / _mean("octahedral", "rgb8_11_11")
+    return _mean_error("tetrahedral", "rgb8_10_10_2") / _mean_error("octahedral", "rgb8_11_11")
 
 
 def mean_in_a_cube_over_uniform() -> float:
     """By how many percent octahedral 8:8 has a larger mean on points of a cube than on uniform directions."""
-    return 100 * ((InACube("octahedral", "rg8").figure() or math.nan) / _mean("octahedral", "rg8") - 1)
+    return 100 * ((InACube("octahedral", "rg8").figure() or math.nan) / _mean_error("octahedral", "rg8") - 1)
 
 
 def mean_saved_by_precision() -> float:

@@ -35,7 +35,7 @@ INSTRUCTIONS_2009 = (
 )
 
 
-def _of_2010() -> tuple[Figure, ...]:
+def _figures_of_2010() -> tuple[Figure, ...]:
     pictures = [Quality(name, published.STORAGE, "psnr_article_db", published.NORMALS) for name in published.PSNR_DB]
     return (
         *(
@@ -64,7 +64,7 @@ def _of_2010() -> tuple[Figure, ...]:
     )
 
 
-def _of_2009() -> tuple[Figure, ...]:
+def _figures_of_2009() -> tuple[Figure, ...]:
     return tuple(_slots("instructions", "instruction slots, SM3.0", published.SLOTS_2009, INSTRUCTIONS_2009))
 
 
@@ -98,7 +98,7 @@ def _mean_and_maximum(
     )
 
 
-def _of_cigolle() -> tuple[Figure, ...]:
+def _figures_of_cigolle() -> tuple[Figure, ...]:
     table = "table of mean and maximum error"
     found = []
     for code, (encoding, storage, mean, most) in CIGOLLE.items():
@@ -148,7 +148,7 @@ TYLER = {
 CUBE = "on directions of points in a cube, normalize(2 rand - 1), which are denser towards its corners"
 
 
-def _of_tyler() -> tuple[Figure, ...]:
+def _figures_of_tyler() -> tuple[Figure, ...]:
     found = []
     for code, (encoding, storage, mean, most) in TYLER.items():
         is_half = ENCODINGS[encoding].domain == "hemisphere"
@@ -188,5 +188,5 @@ def _of_tyler() -> tuple[Figure, ...]:
     )
 
 
-PRANCKEVICIUS_2010, PRANCKEVICIUS_2009 = _of_2010(), _of_2009()
-CIGOLLE_2014, TYLER_2025 = _of_cigolle(), _of_tyler()
+PRANCKEVICIUS_2010, PRANCKEVICIUS_2009 = _figures_of_2010(), _figures_of_2009()
+CIGOLLE_2014, TYLER_2025 = _figures_of_cigolle(), _figures_of_tyler()

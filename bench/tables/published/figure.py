@@ -67,19 +67,19 @@ class Figure:
         if ours is None:
             return NOT_MEASURED
         if not self.is_comparable:
-            return self._other
+            return self._other_verdict
         if self.bound:
             is_kept = ours <= self.value if self.bound == "below" else ours >= self.value
-            return HOLDS if is_kept else self._other
+            return HOLDS if is_kept else self._other_verdict
         # Half a unit of the last digit, and what the two sets of samples scatter.
         if abs(ours - self.value) <= 0.5001 * 10.0**-self.digits + self.ours.scatter * abs(ours) + self.within:
             return REPRODUCED
         if self.is_maximum and 0 < ours - self.value <= SHORT_BY * ours:
             return SHORT
-        return self._other
+        return self._other_verdict
 
     @property
-    def _other(self) -> str:
+    def _other_verdict(self) -> str:
         return DIFFERENT if self.why else UNEXPLAINED
 
 

@@ -44,7 +44,7 @@ def _row(codec: Codec, normals: NormalSet, worst_case: bool) -> quality.Row:
 
 
 @cache
-def _set(name: str) -> NormalSet:
+def _normal_set(name: str) -> NormalSet:
     return NORMAL_SETS[name](COUNT, 0)
 
 
@@ -83,7 +83,7 @@ class Quality:
     def figure(self) -> float | None:
         """The column's value."""
         codec = codec_of(self.encoding, self.storage, self.rounding)
-        return _row(codec, _set(self.normals), self.column == SUPREMUM)[self.column]
+        return _row(codec, _normal_set(self.normals), self.column == SUPREMUM)[self.column]
 
 
 @dataclass(frozen=True)

@@ -39,9 +39,11 @@ def histogram_chart(at: int, rows: Sequence[Row]) -> Chart:
     """
     lines = lines_of(rows)
     feet = [float(len(rows) - 1 - at) for at in range(len(rows))]
-    abouts = [_about(row, line) for row, line in zip(rows, lines, strict=True)]
+    abouts = [_point_row(row, line) for row, line in zip(rows, lines, strict=True)]
     outlines = [
-        {**about, **point} for row, about, foot in zip(rows, abouts, feet, strict=True) for point in _outline(row, foot)
+        {**about, **point}
+        for row, about, foot in zip(rows, abouts, feet, strict=True)
+        for point in _outline_points(row, foot)
     ]
     figures = [
         {**about, "figure": name, "x": max(row[column], LEAST_DEG), "y": foot + MARKED}
@@ -53,7 +55,7 @@ def histogram_chart(at: int, rows: Sequence[Row]) -> Chart:
     tips = (("codec", "codec"), ("bits", "bits"), ("mean", "mean, degrees"), ("largest", "largest, degrees"))
     return Chart(
         name=f"angles-{at}",
-        title=_finding(rows),
+        title=_finding_sentence(rows),
         subtitle=f"Angles on {rows[0]['normals']}, by {backends_of(rows)}",
         description="The share of normals over their angle in degrees, on a logarithmic scale. The figures are in the "
         "tables of what normals lose.",
@@ -70,7 +72,7 @@ def histogram_chart(at: int, rows: Sequence[Row]) -> Chart:
     )
 
 
-def _about(row: Row, line: str) -> dict[str, Any]:
+def _point_row(row: Row, line: str) -> dict[str, Any]:
     return {"codec": CodecKey.of(row).label, "line": line, "bits": row["bits"]} | {
         "mean": row["angle_mean_deg"],
         "largest": row.get("angle_max_deg"),
@@ -99,7 +101,7 @@ def steps(found: Sequence[tuple[float, float, int]]) -> tuple[list[float], list[
     return edges, heights
 
 
-def _outline(row: Row, foot: float) -> list[Row]:
+def _outline_points(row: Row, foot: float) -> list[Row]:
     """A codec's histogram as the points of a line of steps, the highest as high as the others'."""
     edges, heights = steps(bins(row["angle_counts"]))
     highest = max(heights)
@@ -109,7 +111,7 @@ def _outline(row: Row, foot: float) -> list[Row]:
     ]
 
 
-def _finding(rows: Sequence[Row]) -> str:
+def _finding_sentence(rows: Sequence[Row]) -> str:
     """Which codec of each number of bits has the smallest mean angle, where several have as many."""
     alike: dict[int, list[Row]] = {}
     for row in rows:

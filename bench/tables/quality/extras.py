@@ -8,7 +8,7 @@ from typing import Any
 
 from ....reports.page.codec_key import CodecKey
 from ....reports.page.found import SphereMap
-from ....reports.page.verdict import is_count
+from ....reports.page.verdict import agreement, is_count
 from ...ground.output.writing import files_of
 from ..table import Row
 from . import sphere_maps
@@ -16,11 +16,13 @@ from .table import TABLE
 
 
 def extras(folder: Path, tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Mapping[str, Any]:  # noqa: ARG001
-    """`maps`: errors over the sphere, as `found.SphereMap`, of the folder of a run."""
-    return {"maps": list(_maps(folder / TABLE.files["maps"], tables.get(TABLE.name, ())))}
+    """`maps`: errors over the sphere, as `found.SphereMap`, of the folder of a run. `agreement`: how far the figures of
+    two back ends are apart, in a sentence; empty where no codec has both."""
+    rows = tables.get(TABLE.name, ())
+    return {"maps": list(_sphere_maps(folder / TABLE.files["maps"], rows)), "agreement": agreement(rows)}
 
 
-def _maps(folder: Path, rows: Sequence[Row]) -> Iterator[SphereMap]:
+def _sphere_maps(folder: Path, rows: Sequence[Row]) -> Iterator[SphereMap]:
     there = files_of(folder)
     bits = {CodecKey.of(row): row["bits"] for row in rows if is_count(row.get("bits"))}
     for key, count in bits.items():

@@ -14,20 +14,20 @@ SURVIVES = 10.0
 
 def with_half_loss(rows: Sequence[Row]) -> list[Row]:
     """Rows of half arithmetic get what it adds to the RMS angle, where the row in float32 is among them."""
-    known = {_key(row): row["angle_rms_deg"] for row in rows if not _is_half(row)}
-    return [row | _loss(row, known.get(_key(row))) if _is_half(row) else row for row in rows]
+    known = {_case_key(row): row["angle_rms_deg"] for row in rows if not _is_half(row)}
+    return [row | _loss_column(row, known.get(_case_key(row))) if _is_half(row) else row for row in rows]
 
 
 def survivors(rows: Sequence[Row]) -> tuple[str, ...]:
     """A line for each storage and set: which codes half arithmetic leaves nearly as they are, and which it does not."""
     found = [row for row in rows if row.get("half_loss_percent") is not None]
-    return tuple(_lines(found))
+    return tuple(_loss_lines(found))
 
 
-def _lines(rows: Sequence[Row]) -> Iterator[str]:
+def _loss_lines(rows: Sequence[Row]) -> Iterator[str]:
     for storage, normals in dict.fromkeys((row["storage"], row["normals"]) for row in rows):
         part = [row for row in rows if (row["storage"], row["normals"]) == (storage, normals)]
-        losses = {_base(row): row["half_loss_percent"] for row in part}
+        losses = {_base_name(row): row["half_loss_percent"] for row in part}
         kept = [name for name, loss in losses.items() if loss <= SURVIVES]
         lost = [f"{name} (+{loss:.3g} %)" for name, loss in losses.items() if loss > SURVIVES]
         said = f"In half arithmetic, {storage} on {normals}: the RMS angle of {{}} grows by at most {SURVIVES:g} %"
@@ -38,15 +38,15 @@ def _is_half(row: Row) -> bool:
     return row["encoding"].endswith(HALF_NAME)
 
 
-def _base(row: Row) -> str:
+def _base_name(row: Row) -> str:
     return row["encoding"].removesuffix(HALF_NAME)
 
 
-def _key(row: Row) -> tuple[Any, ...]:
-    return (_base(row), row["storage"], row["rounding"], row["normals"], row["backend"])
+def _case_key(row: Row) -> tuple[Any, ...]:
+    return (_base_name(row), row["storage"], row["rounding"], row["normals"], row["backend"])
 
 
-def _loss(row: Row, exact: float | None) -> Row:
+def _loss_column(row: Row, exact: float | None) -> Row:
     if not exact or row["angle_rms_deg"] is None:
         return {}
     return {"half_loss_percent": 100.0 * (row["angle_rms_deg"] / exact - 1.0)}

@@ -25,7 +25,7 @@ from ....gbuffer.gl.device import FormatError, NoDeviceError, device
 from ....gbuffer.gl.shader import ShaderError
 from ...ground.machine.cores import on_all_cores
 from ...ground.native.elementwise import NotElementwiseError
-from ...ground.native.library import NoCompilerError
+from ...ground.native.library import LARGE, NoCompilerError
 from ...ground.output.errors import MissingError
 from ...measures.metrics.code_limits import AREAS, effective_bits
 from ...measures.metrics.meter import Decoded, Load, Measures, Meter, idle, measure_together
@@ -41,9 +41,6 @@ from .table import TABLE
 
 # Why a device may not be able to give a row.
 UNMEASURABLE = (NoDeviceError, ShaderError, FormatError, NoTwinError, MissingError)
-# From so many normals on the C compiler's code measures. It rounds a few products otherwise than XLA does, which shows
-# in the printed digits of 32 of 430 codecs, so smaller sets, which take seconds by either, have one arithmetic.
-LARGE = 2**26
 # How many cases share a set's chunks: each keeps its own histogram.
 TOGETHER = 16
 # How many chunks the C compiler's code measures in turn: with fewer, what Python does for each shows.
@@ -167,7 +164,7 @@ class Decoding:
 
 
 @contextmanager
-def _by_jax(case: Case) -> Iterator[Decoding]:
+def _decodings_by_jax(case: Case) -> Iterator[Decoding]:
     meter = meter_of(case.codec, case.is_compiled)
     yield Decoding(meter, case.normal_set.loads(), _how_by_jax(meter), case.at_once)
 
@@ -177,7 +174,7 @@ def _how_by_jax(meter: Measures) -> dict[str, str]:
 
 
 @contextmanager
-def _by_glsl(case: Case) -> Iterator[Decoding]:
+def _decodings_by_glsl(case: Case) -> Iterator[Decoding]:
     if case.codec.encoding.is_half:
         yield _by_half_device(case)
         return
@@ -207,7 +204,7 @@ def _by_half_device(case: Case) -> Decoding:
 
 
 @contextmanager
-def _by_wgsl(case: Case) -> Iterator[Decoding]:
+def _decodings_by_wgsl(case: Case) -> Iterator[Decoding]:
     with wgsl_trip.by_wgsl(case.codec) as trip:
 
         def decoded(chunk: Chunk) -> Decoded:
@@ -225,7 +222,7 @@ def identity(value: Any) -> Any:
 
 
 BACKENDS: Mapping[str, Callable[[Case], AbstractContextManager[Decoding]]] = MappingProxyType(
-    {"jax": _by_jax, "glsl": _by_glsl, "wgsl": _by_wgsl}
+    {"jax": _decodings_by_jax, "glsl": _decodings_by_glsl, "wgsl": _decodings_by_wgsl}
 )
 
 
@@ -246,7 +243,7 @@ def measure(case: Case, tick: Tick = idle) -> Row:
         with BACKENDS[case.backend](case) as found:
             total = found.total(tick)
     except UNMEASURABLE as error:
-        return _described(case) | {"skipped": str(error)}
+        return _case_columns(case) | {"skipped": str(error)}
     return _row(case, total, found.how)
 
 
@@ -254,13 +251,13 @@ def _row(case: Case, total: Total, how: Mapping[str, str | None]) -> Row:
     """A row of the table; of a part of a set what `merged` makes one of."""
     if case.normal_set.of:
         return {TOTAL: total.as_text(), **how}
-    return _described(case) | _measured(case, statistics(case.normal_set.count, total)) | dict(how)
+    return _case_columns(case) | _measured_columns(case, statistics(case.normal_set.count, total)) | dict(how)
 
 
 def merged(case: Case, rows: Sequence[Row]) -> Row:
     """The row of a set that was measured in parts, of their rows in order."""
     if reason := next((row["skipped"] for row in rows if row.get("skipped")), None):
-        return _described(case) | {"skipped": reason}
+        return _case_columns(case) | {"skipped": reason}
     total = Total()
     for row in rows:
         total.add_total(total_of(row[TOTAL]))
@@ -270,7 +267,7 @@ def merged(case: Case, rows: Sequence[Row]) -> Row:
     return _row(case, total, how | {"compiled_by": "; ".join(compilers) or None})
 
 
-def _described(case: Case) -> Row:
+def _case_columns(case: Case) -> Row:
     return TABLE.empty() | {
         "encoding": case.codec.encoding.name,
         "storage": case.codec.storage.name,
@@ -288,7 +285,7 @@ def _described(case: Case) -> Row:
     }
 
 
-def _measured(case: Case, found: Statistics) -> Row:
+def _measured_columns(case: Case, found: Statistics) -> Row:
     row = _figures(found, case.normal_set.area)
     if case.worst_case:
         row |= exact_figures.supremum(case.codec, case.domain, case.normal_set.area or 0.0, found)
@@ -317,15 +314,15 @@ def _figures(s: Statistics, area: float | None) -> Row:
         "angle_rms_deg": s.angle_rms_deg,
         "angle_p99_deg": s.angle_p99_deg,
         "angle_max_deg": s.angle_max_deg,
-        "worst_normal": _components(s.worst.normal) if s.worst else None,
-        "worst_decode": _components(s.worst.decoded) if s.worst else None,
+        "worst_normal": _components_text(s.worst.normal) if s.worst else None,
+        "worst_decode": _components_text(s.worst.decoded) if s.worst else None,
         "angle_counts": " ".join(f"{edge:.6g}:{count}" for edge, count in s.angle_counts),
         "effective_bits": effective_bits(s.angle_rms_deg, area),
         "exact": s.mse == 0,
     }
 
 
-def _components(vector: np.ndarray) -> str:
+def _components_text(vector: np.ndarray) -> str:
     """A vector as text, with all digits of its three float32."""
     return f"({', '.join(map(str, vector))})"
 
@@ -340,6 +337,7 @@ def rows(chosen: Iterable[Case], tick: Callable[[Case], None]) -> Iterator[Row]:
 
 
 def _rows_together(group: list[Case], tick: Callable[[Case], None]) -> Iterator[Row]:
+    """A row for each case; cases that JAX can measure share the normals of their set."""
     shared = [case for case in group if case.backend == "jax" and has_twin(case.codec.encoding)]
     measured: dict[int, tuple[Total, Measures]] = {}
     if shared:

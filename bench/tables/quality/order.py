@@ -21,16 +21,18 @@ def in_order(rows: Sequence[Row]) -> list[Row]:
     sets = list(dict.fromkeys(row["normals"] for row in rows))
     best: dict[tuple, float] = {}
     for row in rows:
-        best[_codec(row)] = min(best.get(_codec(row), math.inf), _error(row))
+        best[_codec_key(row)] = min(best.get(_codec_key(row), math.inf), _error_key(row))
     # A row that a worker was lost for has no bits.
-    return sorted(rows, key=lambda row: (sets.index(row["normals"]), row["bits"] or 0, best[_codec(row)], _codec(row)))
+    return sorted(
+        rows, key=lambda row: (sets.index(row["normals"]), row["bits"] or 0, best[_codec_key(row)], _codec_key(row))
+    )
 
 
-def _codec(row: Row) -> tuple:
+def _codec_key(row: Row) -> tuple:
     return (row["normals"], row["encoding"], row["storage"], row["rounding"])
 
 
-def _error(row: Row) -> float:
+def _error_key(row: Row) -> float:
     """The RMS angle, which effective bits go by; rows without figures last."""
     return math.inf if row["angle_rms_deg"] is None else row["angle_rms_deg"]
 
@@ -38,14 +40,14 @@ def _error(row: Row) -> float:
 def with_limits(rows: Sequence[Row]) -> list[Row]:
     """Ordered rows, and after each group of one set and size the limit of that many bits."""
     shared = {column: rows[0][column] for column in SHARED if len({row[column] for row in rows}) == 1}
-    return [row for _, group in groupby(rows, _group) for row in _with_limit(list(group), shared)]
+    return [row for _, group in groupby(rows, _group_key) for row in _rows_with_limit(list(group), shared)]
 
 
-def _group(row: Row) -> tuple:
+def _group_key(row: Row) -> tuple:
     return (row["normals"], row["bits"])
 
 
-def _with_limit(group: list[Row], shared: Row) -> Iterator[Row]:
+def _rows_with_limit(group: list[Row], shared: Row) -> Iterator[Row]:
     yield from group
     if group[0]["bits"] is None:
         return

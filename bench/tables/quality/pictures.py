@@ -88,13 +88,13 @@ def _write_pixels(path: Path, codec: Codec, trip: measure.RoundTrip) -> None:
     """The angle and the stored bits of every pixel."""
     with np.errstate(invalid="ignore"):
         angle = angle_bytes(angles_deg(trip.normals, trip.decoded), trip.covered)
-    codes, bits = _codes(codec, trip.encoded)
+    codes, bits = _codes_and_bits(codec, trip.encoded)
     with whole_file(path) as partial, partial.open("wb") as file:
         small = codes.astype(np.min_scalar_type(2 ** max(bits) - 1))
         np.savez_compressed(file, angle=angle, codes=small, bits=np.array(bits, np.uint8))
 
 
-def _codes(codec: Codec, encoded: np.ndarray) -> tuple[np.ndarray, list[int]]:
+def _codes_and_bits(codec: Codec, encoded: np.ndarray) -> tuple[np.ndarray, list[int]]:
     """The stored bits of every component, uint32 of shape (height, width, components), and how many each has. A sign
     bit is 1 for +1."""
     stored = codec.encoding.components
@@ -136,8 +136,9 @@ def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
 
 
 def _pictured(there: dict[str, Path], name: str, key: CodecKey, rank: int) -> Pictured | None:
+    """What the page shows of a codec; None where a file of it is missing."""
     arrays, decoded = there.get(f"{name}.npz"), there.get(f"{name}-decoded.png")
-    return Pictured(key, key.label, key.label, partial(_read, arrays, decoded), rank) if arrays and decoded else None
+    return Pictured(key, key.label, key.label, partial(_pixels, arrays, decoded), rank) if arrays and decoded else None
 
 
 def in_order(rows: Sequence[Row]) -> dict[CodecKey, int]:
@@ -154,7 +155,7 @@ def in_order(rows: Sequence[Row]) -> dict[CodecKey, int]:
 ARTICLES = {CodecKey(name, published.STORAGE, "nearest") for name in published.PICTURED}
 
 
-def _read(arrays: Path, decoded: Path) -> NormalPixels | None:
+def _pixels(arrays: Path, decoded: Path) -> NormalPixels | None:
     """The files of a codec; None where they are damaged or do not fit together."""
     try:
         angle, codes, bits = read_npz(arrays, PIXELS, MOST_BYTES)

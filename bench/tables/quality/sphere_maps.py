@@ -81,11 +81,11 @@ def _angles(codec: Codec, n: Vec3) -> Any:
     given = np.stack([plane.ravel() for plane in n], axis=1)
     ahead = np.broadcast_to(np.array([0.0, 0.0, -1.0], np.float32), given.shape)
     decoded = round_trip(codec, given, ahead).T.reshape(3, *n.x.shape)
-    return _apart(n, Vec3(*decoded))
+    return _angles_apart(n, Vec3(*decoded))
 
 
 @jax.jit
-def _apart(n: Vec3, decoded: Vec3) -> Any:
+def _angles_apart(n: Vec3, decoded: Vec3) -> Any:
     return angle_between(n, readable(n, decoded)[0])
 
 

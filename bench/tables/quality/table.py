@@ -20,6 +20,7 @@ from ...ground.options.option import (
     Seed,
     StorageNames,
 )
+from ...shaders.languages.source_options import SourceOptions
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
@@ -27,13 +28,13 @@ KEY, HOW, RAW = Role.KEY, Role.HOW, Role.RAW
 
 
 @dataclass(frozen=True, kw_only=True)
-class QualityOptions(Reading):
+class QualityOptions(Reading, SourceOptions):
     """What `quality` measures. Names are comma-separated."""
 
     encoding: Encodings = "all"
     storage: StorageNames = "rgba8"
     rounding: Roundings = "nearest"
-    arithmetic: Arithmetics = "float"
+    arithmetic: Arithmetics = "declared"
     normals: Annotated[
         str,
         Option(
@@ -71,11 +72,11 @@ class QualityOutputs:
     ] = None
 
 
-def _supremum(name: str, says: str, role: Role = Role.FIGURE, unit: str = "", drops: int = 0) -> Column:
+def _supremum_column(name: str, says: str, role: Role = Role.FIGURE, unit: str = "", drops: int = 0) -> Column:
     return Column(name, says, role, unit, "less" if name == "angle_sup_deg" else "", drops, option="worst_case")
 
 
-def _angle(name: str, says: str, drops: int = 0) -> Column:
+def _angle_column(name: str, says: str, drops: int = 0) -> Column:
     return Column(name, says, unit="degrees", better="less", drops=drops)
 
 
@@ -109,29 +110,31 @@ COLUMNS = (
         unit="dB",
         better="more",
     ),
-    _angle("angle_mean_deg", "Mean angle between normal and decode."),
-    _angle("angle_rms_deg", "Root of the mean squared angle.", drops=12),
-    _angle("angle_p99_deg", "99 % of the angles are below it.", drops=14),
-    _angle("angle_max_deg", "The largest angle that was met; the supremum is angle_sup_deg."),
+    _angle_column("angle_mean_deg", "Mean angle between normal and decode."),
+    _angle_column("angle_rms_deg", "Root of the mean squared angle.", drops=12),
+    _angle_column("angle_p99_deg", "99 % of the angles are below it.", drops=14),
+    _angle_column("angle_max_deg", "The largest angle that was met; the supremum is angle_sup_deg."),
     Column("worst_normal", "The normal that came back farthest off: x, y and z.", RAW, drops=1),
     Column("worst_decode", "What it came back as.", RAW, drops=1),
-    _supremum(
+    _supremum_column(
         "angle_sup_deg",
         "The supremum: the largest angle of exact arithmetic, searched for in float64. Of a finite set it is the set's "
         "maximum; it is empty where the set is larger than `domain`. float32's own error is in angle_max_deg only.",
         unit="degrees",
     ),
-    _supremum("sup_x", "The normal at the supremum, x.", RAW, drops=11),
-    _supremum("sup_y", "The normal at the supremum, y.", RAW, drops=10),
-    _supremum("sup_z", "The normal at the supremum, z.", RAW, drops=9),
-    _supremum(
+    _supremum_column("sup_x", "The normal at the supremum, x.", RAW, drops=11),
+    _supremum_column("sup_y", "The normal at the supremum, y.", RAW, drops=10),
+    _supremum_column("sup_z", "The normal at the supremum, z.", RAW, drops=9),
+    _supremum_column(
         "sup_found_by",
         "How the supremum was found: `all corners` of all cells, `corners` of cells climbed over where there are more "
         "than 2^24, `nearest codes` between points that are looked up, or `climbing` from the worst of many "
         "directions.",
         HOW,
     ),
-    _supremum("sup_moved_deg", "How much the last round of that search still raised the supremum.", HOW, "degrees"),
+    _supremum_column(
+        "sup_moved_deg", "How much the last round of that search still raised the supremum.", HOW, "degrees"
+    ),
     Column(
         "half_loss_percent",
         "How much larger the RMS angle is than that of the same code computed in float32; of half arithmetic.",
@@ -164,6 +167,14 @@ COLUMNS = (
         HOW,
         drops=7,
     ),
+    Column(
+        "best_codec",
+        "The catalogue's code of as many bits, or of the most below, whose mean angle is the smallest; of a code that "
+        "packs itself.",
+        HOW,
+        drops=2,
+    ),
+    Column("best_mean_deg", "The mean angle of best_codec on 16384 random normals.", HOW, "degrees", drops=2),
     Column("limit_mean_deg", "The least mean angle that this many codes can have.", HOW, "degrees"),
     Column("limit_rms_deg", "The least RMS angle that this many codes can have.", HOW, "degrees"),
     Column("limit_max_deg", "The least maximum that this many codes can have.", HOW, "degrees"),
@@ -232,6 +243,8 @@ SETS_OF_NAMED = f"{SETS},domain"
 
 TABLE = Table(
     name="quality",
+    parity=("psnr_db", "angle_mean_deg", "angle_max_deg"),
+    is_usual=True,
     package=__package__ or "",
     help="What each codec loses of the normals of a set: MSE, PSNR, angles, effective bits.\n\n"
     "A set may be a file: a captured frame (EXR, PNG, TIFF, DDS, HDR, WebP, NPY) or a mesh seen by "

@@ -12,7 +12,7 @@ from ....reports.tables import text_of
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_count
-from ...ground.output.errors import NO_TWIN, UsageError, leave_out, names_by_reason
+from ...ground.output.errors import UsageError, lacks_twin, leave_out, names_by_reason
 from ...ground.output.writing import check_folder, without
 from ...measures.metrics import published
 from ...subjects.codecs.names import check_twin, codecs_named, fitting
@@ -24,6 +24,7 @@ from .charts import charts
 from .extras import extras
 from .half import survivors, with_half_loss
 from .order import ONCE, in_order, with_limits
+from .packed import best_columns
 from .sphere_maps import write_maps
 from .table import TABLE, QualityOptions, QualityOutputs
 
@@ -112,8 +113,9 @@ def _key(case: measure.Case, options: QualityOptions) -> Row:
 
 
 def _measure(chosen: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
-    for row in measure.rows((step.case for step in chosen), lambda case: tick(case.name)):
-        yield [row]
+    cases_chosen = [step.case for step in chosen]
+    for case, row in zip(cases_chosen, measure.rows(cases_chosen, lambda case: tick(case.name)), strict=True):
+        yield [row | best_columns(case.codec)]
 
 
 def _finished(rows: Sequence[Row]) -> list[Row]:
@@ -138,7 +140,7 @@ def _failures(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def _named(row: Row, reason: str = "") -> str:
-    where = "" if NO_TWIN in reason else f" by {row['backend']}"
+    where = "" if lacks_twin(reason) else f" by {row['backend']}"
     return f"{row['encoding']}/{row['storage']} on {row['normals']}{where}"
 
 
@@ -154,7 +156,7 @@ def _not_shown(rows: Sequence[Row]) -> Iterator[str]:
     skipped = ((_named(row, row["skipped"]), row["skipped"]) for row in rows if row["skipped"])
     for reason, names in names_by_reason(skipped).items():
         said = ", ".join(names) if len(names) <= MOST_NAMED else f"{len(names)} rows"
-        what = "by OpenGL alone" if NO_TWIN in reason else "not shown, without figures"
+        what = "by OpenGL alone" if lacks_twin(reason) else "not shown, without figures"
         yield f"{what}: {said} ({reason})"
 
 
@@ -247,7 +249,7 @@ WORK = Work(
     steps=steps,
     check=_check,
     measure=_measure,
-    merge=lambda step, rows: [measure.merged(step.case, rows)],
+    merge=lambda step, rows: [measure.merged(step.case, rows) | best_columns(step.case.codec)],
     finish=_finished,
     shown=_shown,
     summary=_summary,

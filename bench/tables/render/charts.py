@@ -37,7 +37,7 @@ def image_chart(at: int, scene: str, rows: Sequence[Row]) -> Chart:
     what = Names("what", (IMAGE, NORMALS))
     return Chart(
         name=f"image-{at}",
-        title=_finding(lines),
+        title=_finding_sentence(lines),
         subtitle=f"The image of {scene} and the normals it was lit by",
         description="PSNR in dB of the final image of each codec, next to that of the normals in its G-buffer. The "
         "figures are in the table below.",
@@ -56,7 +56,7 @@ def image_chart(at: int, scene: str, rows: Sequence[Row]) -> Chart:
 FIELDS = ((IMAGE, "image"), (NORMALS, "normals"))
 
 
-def _finding(lines: Sequence[Row]) -> str:
+def _finding_sentence(lines: Sequence[Row]) -> str:
     """Which codec has the best image, and whether it is the one with the best normals."""
     best, normals = lines[0], max(lines, key=lambda line: line["normals"])
     said = f"{best['line']} has the best image, {best['image']:.1f} dB"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -35,7 +35,10 @@ BLACK = 0.5 / 255
 # A scene that covers less of its picture, in percent, leaves few pixels to judge by.
 LEAST_COVERED = 100 / 3
 # Codecs are ranked among rows that agree in these.
-SAME = ("scene", "power", "effects", "pipeline", "light_buffer", "light_targets", "shadow")
+SAME = (
+    *("scene", "power", "effects", "environment", "specular_antialiasing", "least_roughness", "pipeline"),
+    *("light_buffer", "light_targets", "shadow"),
+)
 Row = dict[str, Any]
 
 
@@ -52,6 +55,8 @@ class Case:
         exposure: in stops; None to measure it of the reference.
         tone_mapping: one of TONE_MAPPINGS.
         effects: which effects the pipeline has.
+        environment: what metal/rough materials reflect, as a row says it; None for other materials.
+        environment_key: tells environments of one name apart.
     """
 
     pipeline: Pipeline
@@ -64,6 +69,13 @@ class Case:
     exposure: float | None = 0.0
     tone_mapping: str = "none"
     effects: str | None = None
+    environment: str | None = None
+    environment_key: str = ""
+
+    @property
+    def is_metal_rough(self) -> bool:
+        """Whether its materials are."""
+        return self.environment is not None
 
     @property
     def name(self) -> str:
@@ -120,7 +132,7 @@ class Drawn:
         return self.display.image(self.linear)
 
 
-def _drawn(made: Rendering, pipeline: Pipeline) -> Drawn:
+def _drawn_images(made: Rendering, pipeline: Pipeline) -> Drawn:
     made.draw()
     if not pipeline.has_gbuffer or made.frame.plan.surface_samples > 1:
         return Drawn(made.image(), None, None)
@@ -154,7 +166,7 @@ class Bench:
     def __init__(self, device: Device, repeats: int, with_flip: bool):
         self._device, self._repeats, self._with_flip = device, repeats, with_flip
         self._references: dict[Case, list[Drawn]] = {}
-        self._seen: dict[Case, Row] = {}
+        self._reference_columns: dict[Case, Row] = {}
 
     def reference(self, case: Case) -> list[Drawn]:
         """The frames of a case's reference."""
@@ -166,13 +178,13 @@ class Bench:
     def _keep_reference(self, case: Case, frames: list[Drawn]) -> None:
         exposure = case.exposure
         if exposure is None:
-            covered = self._covered(case, frames)
+            covered = self._covered_masks(case, frames)
             pixels = [frame.linear[where] for frame, where in zip(frames, covered, strict=True)]
             exposure = measured_exposure(np.concatenate(pixels))
         display = Display(exposure, case.tone_mapping)
         self._references[case] = [replace(frame, display=display) for frame in frames]
 
-    def _covered(self, case: Case, reference: list[Drawn]) -> list[np.ndarray]:
+    def _covered_masks(self, case: Case, reference: list[Drawn]) -> list[np.ndarray]:
         """Where there is opaque surface in each frame, bool of shape (height, width).
 
         Raises:
@@ -190,40 +202,43 @@ class Bench:
         frames: list[Drawn] = []
         for number, scene in enumerate(case.scenes(), 1):
             with rendering(self._device, case.pipeline, scene, case.plan) as made:
-                frames.append(_drawn(made, case.pipeline))
+                frames.append(_drawn_images(made, case.pipeline))
                 if number == case.frames:
                     then(made)
         return frames
 
     def measure(self, case: Case) -> tuple[Row, Drawn | None]:
-        """One row of the table, and the first frame; a row that the device cannot give has its reason in `skipped`.
+        """One row of the table, and the first frame; a row that the device cannot give has its reason in `skipped`, and
+        no frame.
 
         Raises:
             UsageError: the scene draws nothing.
         """
         stages = dict.fromkeys((*STAGES, *(stage.name for stage in case.pipeline.stages)))
-        row = TABLE.empty(stages) | _described(case) | {"device": self._device.renderer}
+        row = TABLE.empty(stages) | _case_columns(case) | {"device": self._device.renderer}
         times: Row = {}
         try:
             frames = self._frames(
-                case, lambda made: times.update(_times(made, self._repeats)) if self._repeats else None
+                case, lambda made: times.update(_time_columns(made, self._repeats)) if self._repeats else None
             )
             if case == case.reference and case not in self._references:
                 self._keep_reference(case, frames)
             reference = self.reference(case)
-            covered = self._covered(case, reference)
+            covered = self._covered_masks(case, reference)
         except UNMEASURABLE as error:
             return row | {"skipped": str(error)}, None
         frames = [replace(frame, display=reference[0].display) for frame in frames]
-        if case.reference not in self._seen:
-            self._seen[case.reference] = _seen(reference, covered)
-        row |= times | self._seen[case.reference] | self._compared(case, frames, reference, covered)
-        maps = self._flip(frames, reference)
+        if case.reference not in self._reference_columns:
+            self._reference_columns[case.reference] = _reference_columns(reference, covered)
+        row |= (
+            times | self._reference_columns[case.reference] | self._comparison_columns(case, frames, reference, covered)
+        )
+        maps = self._flip_maps(frames, reference)
         if maps:
             row["flip"] = float(np.mean([np.mean(one) for one in maps]))
         return row, replace(frames[0], flip=maps[0] if maps else None)
 
-    def _flip(self, frames: list[Drawn], reference: list[Drawn]) -> list[np.ndarray]:
+    def _flip_maps(self, frames: list[Drawn], reference: list[Drawn]) -> list[np.ndarray]:
         """FLIP of each frame, pixel by pixel; nothing where it is not wanted."""
         pairs = zip(frames, reference, strict=True)
         return [flip(one.shown, other.shown) for one, other in pairs] if self._with_flip else []
@@ -235,7 +250,9 @@ class Bench:
         except UNMEASURABLE:
             return None
 
-    def _compared(self, case: Case, frames: list[Drawn], reference: list[Drawn], covered: list[np.ndarray]) -> Row:
+    def _comparison_columns(
+        self, case: Case, frames: list[Drawn], reference: list[Drawn], covered: list[np.ndarray]
+    ) -> Row:
         pairs = list(zip(frames, reference, strict=True))
         errors = [squared_error(one.shown, other.shown) for one, other in pairs]
         mse = float(np.mean([error for error, _ in errors]))
@@ -250,7 +267,7 @@ class Bench:
         return row
 
 
-def _seen(reference: list[Drawn], covered: list[np.ndarray]) -> Row:
+def _reference_columns(reference: list[Drawn], covered: list[np.ndarray]) -> Row:
     """What a row says of what the reference shows."""
     surface = np.concatenate([frame.linear[where] for frame, where in zip(reference, covered, strict=True)])
     display = reference[0].display
@@ -309,7 +326,7 @@ def described(pipeline: Pipeline, plan: Plan, setting: Setting, asked: int) -> R
     }
 
 
-def _described(case: Case) -> Row:
+def _case_columns(case: Case) -> Row:
     plan, pipeline = case.plan, case.pipeline
     row = described(pipeline, plan, case.setting, case.asked)
     row |= {
@@ -318,6 +335,11 @@ def _described(case: Case) -> Row:
         "frames": case.frames,
         "effects": case.effects,
         "tone_mapping": None if case.tone_mapping == "none" else case.tone_mapping,
+        "environment": case.environment,
+        "specular_antialiasing": plan.antialiased if case.is_metal_rough else None,
+        "least_roughness": plan.least_roughness if case.is_metal_rough else None,
+        "space": plan.layout.space if pipeline.has_gbuffer else None,
+        "not_measured": ", ".join(_unread(case)) or None,
         "bytes_per_pixel": None if _is_exact_but_for_normals(case) else bytes_per_pixel(pipeline, plan),
     }
     if pipeline.has_gbuffer:
@@ -326,13 +348,25 @@ def _described(case: Case) -> Row:
     return row
 
 
+def _unread(case: Case) -> list[str]:
+    """What a layout keeps and no pass reads, by the names of its quantities."""
+    if not case.pipeline.has_gbuffer:
+        return []
+    kept = [word.component.partition(".")[0] for word in case.plan.layout.words]
+    read = {"normal", "depth", "albedo", "occlusion", "emission", "roughness" if "roughness" in kept else "power"}
+    read |= {"metalness", "reflectance"} if case.is_metal_rough and "metalness" in kept else {"specular"}
+    # Kinds tell special materials apart, instances what a filter may mix.
+    read |= (set() if case.is_metal_rough else {"kind"}) | ({"instance"} if case.pipeline.scaled else set())
+    return list(dict.fromkeys(name for name in kept if name not in read))
+
+
 def _is_exact_but_for_normals(case: Case) -> bool:
     """Whether a code lies in the exact layout, whose bytes nobody asked about."""
     layout, exact = case.plan.layout, LAYOUTS["fp32"]
     return case.pipeline.has_gbuffer and layout.name == exact.name and layout != exact
 
 
-def _times(made: Rendering, repeats: int) -> Row:
+def _time_columns(made: Rendering, repeats: int) -> Row:
     if not repeats:
         return {}
     timings, clock = made.timings(repeats)
@@ -347,21 +381,22 @@ def shown_scene(row: Row) -> str:
 
 def in_order(rows: list[Row]) -> list[Row]:
     """Rows by what was rendered, as it comes, then by the bits of the normal's code, then the best image first."""
-    groups = list(dict.fromkeys(_group(row) for row in rows))
-    return sorted(rows, key=lambda row: (groups.index(_group(row)), row["normal_bits"] or 0, *_worse(row)))
+    groups = list(dict.fromkeys(_group_key(row) for row in rows))
+    return sorted(rows, key=lambda row: (groups.index(_group_key(row)), row["normal_bits"] or 0, *_error_key(row)))
 
 
-def _group(row: Row) -> tuple[Any, ...]:
+def _group_key(row: Row) -> tuple[Any, ...]:
     return (*(row.get(c) for c in SAME), row["layout"])
 
 
-def _worse(row: Row) -> tuple[bool, float]:
+def _error_key(row: Row) -> tuple[bool, float]:
     """Images that are exact first, rows without figures last."""
     return row["mse"] is None, row["mse"] or 0.0
 
 
-def ranked(rows: list[Row]) -> list[Row]:
+def ranked(given: Sequence[Row]) -> list[Row]:
     """The rows with each codec's place by its image and by its normals, among the rows that differ in nothing else."""
+    rows = [dict(row) for row in given]
     groups: dict[tuple[Any, ...], list[Row]] = {}
     for row in rows:
         if row["normal_psnr_db"] is not None:

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
+from ....gbuffer.frame.plan import LEAST_ROUGHNESS
+from ....gbuffer.scenes.files.read import AROUND
 from ....reports.charts import pictures
 from ....reports.page.codec_key import CodecKey
 from ....reports.page.pixels import ImagePixels, Pictured, Subject, read_png
@@ -18,7 +20,7 @@ from ..table import Row
 from .measure import Drawn, shown_scene
 
 # What a row's file names say of its scene, and of what is in its G-buffer.
-SCENE = ("scene", "power", "pipeline", "shadow")
+SCENE = ("scene", "power", "pipeline", "environment", "specular_antialiasing", "least_roughness", "shadow")
 CONTENT = ("layout", "encoding", "storage", "rounding", "light_buffer", "light_targets")
 REFERENCE = "reference"
 
@@ -28,7 +30,17 @@ def scene_stem(row: Row, content: Sequence[str] = ()) -> str:
     power = [] if row["power"] is None else [f"power{row['power']:g}"]
     effects = [name_of_file(row["effects"])] if row.get("effects") else []
     shadow = [] if row["shadow"] else ["unshadowed"]
-    return "-".join([row["scene"], *power, *effects, row["pipeline"], *content, *shadow])
+    return "-".join([row["scene"], *power, *effects, *_surfaces(row), row["pipeline"], *content, *shadow])
+
+
+def _surfaces(row: Row) -> Iterator[str]:
+    """What metal/rough surfaces reflect and how they are smoothed, where it is not as usual."""
+    if (around := row.get("environment")) and not around.startswith(f"{AROUND} "):
+        yield name_of_file(around)
+    if row.get("specular_antialiasing") is False:
+        yield "aliased"
+    if row.get("least_roughness") not in (None, LEAST_ROUGHNESS):
+        yield f"least{row['least_roughness']:g}"
 
 
 def stem(row: Row) -> str:
@@ -42,7 +54,7 @@ def stem(row: Row) -> str:
 
 def write(folder: Path, row: Row, drawn: Drawn, reference: Drawn) -> None:
     """The first frame, how far it is off, and its reference, which rows of one scene share."""
-    made = {f"{stem(row)}-{kind}": pixels for kind, pixels in _made(drawn, reference).items()}
+    made = {f"{stem(row)}-{kind}": pixels for kind, pixels in _named_pictures(drawn, reference).items()}
     # Written anew each time: the folder may hold one of other settings.
     made[f"{scene_stem(row)}-{REFERENCE}"] = pictures.picture(reference.shown)
     for name, pixels in made.items():
@@ -50,7 +62,7 @@ def write(folder: Path, row: Row, drawn: Drawn, reference: Drawn) -> None:
             pictures.write_png(partial, pixels)
 
 
-def _made(drawn: Drawn, reference: Drawn) -> dict[str, np.ndarray]:
+def _named_pictures(drawn: Drawn, reference: Drawn) -> dict[str, np.ndarray]:
     final, apart = pictures.picture(drawn.shown), pictures.difference(drawn.shown, reference.shown)
     flip = {} if drawn.flip is None else {"flip": pictures.grey(drawn.flip)}
     return {"final": final, "difference": apart, **flip}
@@ -65,7 +77,7 @@ def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
             groups.setdefault(scene_stem(row), []).append(row)
     for name, part in groups.items():
         original = there.get(f"{name}-{REFERENCE}.png")
-        found = [one for row, rank in in_order(part) if (one := _pictured(there, row, part, rank))]
+        found = [one for row, rank in in_order(part) if (one := _pictured_or_none(there, row, part, rank))]
         if original and found:
             yield Subject(_title(part[0], rows), "image", partial(read_png, original), found)
 
@@ -75,12 +87,12 @@ def _title(row: Row, rows: Sequence[Row]) -> str:
     return f"the image of {shown_scene(row)}{pipeline}" + ("" if row["shadow"] else " without shadows")
 
 
-def _pictured(there: Mapping[str, Path], row: Row, part: Sequence[Row], rank: int) -> Pictured | None:
+def _pictured_or_none(there: Mapping[str, Path], row: Row, part: Sequence[Row], rank: int) -> Pictured | None:
     final = there.get(f"{stem(row)}-final.png")
     flip = there.get(f"{stem(row)}-flip.png")
     key = CodecKey.of(row)
     codec = "" if row["layout"] is None else key.label
-    return Pictured(key, _label(row, part), codec, partial(_read, final, flip), rank) if final else None
+    return Pictured(key, _label(row, part), codec, partial(_pixels, final, flip), rank) if final else None
 
 
 def _label(row: Row, part: Sequence[Row]) -> str:
@@ -102,7 +114,7 @@ def in_order(rows: Sequence[Row]) -> list[tuple[Row, int]]:
     return [(row, bits[:at].count(bits[at])) for at, row in enumerate(ordered)]
 
 
-def _read(final: Path, flip: Path | None) -> ImagePixels | None:
+def _pixels(final: Path, flip: Path | None) -> ImagePixels | None:
     """The files of a row; None where they are damaged."""
     image, apart = read_png(final), read_png(flip) if flip else None
     return None if image is None else ImagePixels(image, None if apart is None else apart[..., 0])

@@ -24,6 +24,7 @@ from ...ground.options.option import (
     Shadow,
     Size,
 )
+from ...shaders.languages.source_options import SourceOptions
 from .. import shared_columns as shared
 from ..quality.table import COMMON
 from ..table import Column, Role, Section, Table
@@ -32,7 +33,7 @@ KEY, HOW, TIME = Role.KEY, Role.HOW, Role.TIME
 
 
 @dataclass(frozen=True, kw_only=True)
-class RenderOptions:
+class RenderOptions(SourceOptions):
     """What `render` measures. Names are comma-separated."""
 
     pipeline: Pipelines = "hybrid"
@@ -56,9 +57,32 @@ class RenderOptions:
     shadow: Shadow = "on"
     exposure: Annotated[
         str | None,
-        Option("--exposure", "Stops, or auto: clip 1 % at most. Default: 0, and auto for files.", in_run=True),
+        Option(
+            "--exposure", "Stops, or auto: clip 1 % at most. Default: the scene's own, and auto for files.", in_run=True
+        ),
     ] = None
-    tone_mapping: Annotated[str, Option("--tone-mapping", "none, reinhard or aces.", in_run=True)] = "none"
+    tone_mapping: Annotated[
+        str | None,
+        Option("--tone-mapping", "none, reinhard or aces. Default: aces for metal/rough scenes.", in_run=True),
+    ] = None
+    environment: Annotated[
+        str | None,
+        Option(
+            "--environment",
+            "What metal/rough scenes reflect: studio, sky, strips, lamp, or an .hdr or .exr file. Default: studio.",
+            files=True,
+        ),
+    ] = None
+    specular_antialiasing: Annotated[
+        str,
+        Option(
+            "--specular-antialiasing",
+            "on, off: whether metal/rough surfaces become rougher where a pixel sees many normals.",
+        ),
+    ] = "on"
+    least_roughness: Annotated[
+        float, Option("--least-roughness", "The least roughness that lights see; what lies around is mirrored to 0.")
+    ] = 0.045
     size: Size = "640x480"
     samples: Samples = 1
     scale: Scale = 1.0
@@ -92,6 +116,24 @@ COLUMNS = (
     Column("power", "Specular power of every material; empty: each material's own.", KEY, drops=7),
     Column("effects", "Effects in the image, with the settings that are not as usual.", KEY, drops=16),
     Column("tone_mapping", "How light beyond 1 is shown; empty: it is clipped.", KEY, drops=15),
+    Column(
+        "environment",
+        "What metal/rough surfaces reflect, its texels, and what was done to it. Empty for other materials.",
+        KEY,
+        drops=17,
+    ),
+    Column(
+        "specular_antialiasing",
+        "Whether metal/rough surfaces are made rougher by the normals that a pixel sees. Empty for other materials.",
+        KEY,
+        drops=18,
+    ),
+    Column(
+        "least_roughness",
+        "The least roughness that lights see of metal/rough surfaces. Empty for other materials.",
+        KEY,
+        drops=19,
+    ),
     shared.SHADOW,
     shared.SCALE,
     Column("exposure", "Light is multiplied by 2 to this power before it is shown.", HOW, "stops", drops=14),
@@ -101,6 +143,8 @@ COLUMNS = (
     Column("lights", "Point lights.", HOW),
     Column("objects", "Objects that the scene `objects` is made with; other scenes have their own.", HOW),
     Column("frames", "Moments that figures are averaged over.", HOW),
+    Column("space", "The space of the normal's axes in the G-buffer: view or world.", HOW, drops=13),
+    Column("not_measured", "What the layout keeps and this image does not read.", HOW, drops=12),
     Column(
         "bytes_per_pixel",
         "G-buffer, light buffer (both copies of one that is read), depth and stencil (5 bytes), and 4 for linear depth "

@@ -7,23 +7,27 @@ from dataclasses import replace
 from typing import Any
 
 from ....gbuffer.display import MAX_EXPOSURE, TONE_MAPPINGS
+from ....gbuffer.environment.prefilter import key_of
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device
 from ....gbuffer.layouts.layout import Layout
+from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.pipelines import PIPELINES
 from ....gbuffer.scenes.catalogue import SceneMaker
+from ....gbuffer.scenes.scene import Scene
 from ...ground.choose import choose, choose_one
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.counts import MAX_REPEATS, in_range
 from ...ground.options.effect_names import effects_named, lacking, name_of, pipeline_with
 from ...ground.options.light_names import light_buffers_named
-from ...ground.options.scene_names import powers_named, scenes_named
+from ...ground.options.scene_names import powers_named, scene_makers_named
 from ...ground.options.targets import SHADOWS, TARGETS, check_scale, checked_setting, checked_target, what_is_left
 from ...ground.output.errors import UsageError
 from ...ground.output.writing import check_folder, without
 from ...measures.metrics.images import require_flip
 from ...subjects.codecs.layout_names import layouts_named
 from ...subjects.codecs.names import codecs_named
+from ...subjects.environments.scenes_under import scenes_under
 from ..plans import suited, with_codecs
 from ..shots import Shot, by_shots
 from ..table import Measured, Row, Sheet, Step, Work
@@ -68,30 +72,57 @@ def cases(options: RenderOptions, device: Device) -> list[Case]:
     setting = checked_setting(options.objects, options.lights, options.seed)
     in_range("--repeats", options.repeats, 0, MAX_REPEATS)
     check_scale(options.scale)
+    in_range("--least-roughness", options.least_roughness, 0.0, 1.0)
     plans = [
-        Plan(size, samples, layout, light, targets, shadows, options.scale)
+        Plan(size, samples, layout, light, targets, shadows, options.scale, False, antialiased, options.least_roughness)
         for layout in layouts(options)
         for light in light_buffers_named(options.light_buffer)
         for targets in choose("number of light targets", options.light_targets, TARGETS)
         for shadows in choose("shadow", options.shadow, SHADOWS)
+        for antialiased in choose("specular antialiasing", options.specular_antialiasing, SHADOWS)
     ]
-    tone_mapping = choose_one("tone mapping", options.tone_mapping, TONE_MAPPINGS)
+    tone_mapping = options.tone_mapping and choose_one("tone mapping", options.tone_mapping, TONE_MAPPINGS)
     made: list[Case] = []
     complaints: list[str] = []
     powers = [None] if options.power is None else powers_named(options.power)
     effects = effects_named(options.effects) if options.effects else []
     pipelines = [pipeline_with(one, effects, complaints) for one in choose("pipeline", options.pipeline, PIPELINES)]
-    for maker in scenes_named(options.scene):
-        exposure = _exposure(options.exposure, maker)
-        if why := lacking(effects, maker.name, maker.make(setting)):
+    for maker in scenes_under(options.environment, scene_makers_named(options.scene)):
+        scene = maker.make(setting)
+        told: Row = {"exposure": _exposure(options.exposure, maker), "tone_mapping": tone_mapping or maker.tone_mapping}
+        told |= {"effects": name_of(effects), "environment": _around(scene), "environment_key": _key_around(scene)}
+        if why := lacking(effects, maker.name, scene):
             complaints.append(why)
             continue
         for pipeline in filter(None, pipelines):
-            for plan in suited(device, pipeline, plans, complaints):
-                case = Case(pipeline, plan, maker, setting, options.frames or maker.frames, options.samples)
-                case = replace(case, exposure=exposure, tone_mapping=tone_mapping, effects=name_of(effects))
+            asked = [_as_engines_keep(plan) for plan in plans] if scene.is_metal_rough else plans
+            for plan in suited(device, pipeline, asked, complaints, scene.is_metal_rough):
+                case = Case(pipeline, plan, maker, setting, options.frames or maker.frames, options.samples, **told)
                 made += [replace(case, power=power) for power in powers]
     return what_is_left(made, complaints)
+
+
+def _as_engines_keep(plan: Plan) -> Plan:
+    """A plan whose code alone is measured, with its normal in world space where the code is made for that."""
+    layout, exact = plan.layout, LAYOUTS["fp32"]
+    if layout.name != exact.name or layout == exact or layout.encoding.domain != "sphere":
+        return plan
+    return replace(plan, layout=replace(layout, space="world"))
+
+
+def _around(scene: Scene) -> str | None:
+    """What a row says of what metal/rough materials reflect; None where the scene has others."""
+    if not scene.is_metal_rough:
+        return None
+    if (around := scene.environment) is None:
+        return "even"
+    height, width, _ = around.radiance.shape
+    return ", ".join((f"{around.name} {width}x{height}", *around.changes))
+
+
+def _key_around(scene: Scene) -> str:
+    """What tells one environment from another of the same name."""
+    return key_of(scene.environment.radiance) if scene.environment else ""
 
 
 def _exposure(asked: str | None, maker: SceneMaker) -> float | None:
@@ -125,6 +156,8 @@ def _key(case: Case, options: RenderOptions) -> Row:
     key = described(case.pipeline, case.plan, case.setting, case.asked)
     key |= {"scene": case.maker.name, "power": case.power, "codec": case.plan.layout.codec.name, "frames": case.frames}
     key |= {"effects": case.effects, "exposure": case.exposure, "tone_mapping": case.tone_mapping}
+    key |= {"environment": case.environment_key, "specular_antialiasing": case.plan.antialiased}
+    key |= {"least_roughness": case.plan.least_roughness, "space": case.plan.layout.space}
     return key | {"repeats": options.repeats, "flip": options.flip}
 
 
@@ -184,7 +217,7 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
 
 
 def _finish(rows: Sequence[Row]) -> list[Row]:
-    return in_order(ranked(list(rows)))
+    return in_order(ranked(rows))
 
 
 def _worst(step: Step) -> Any:

@@ -16,53 +16,53 @@ def answers(rows: Sequence[Row]) -> tuple[str, ...]:
     Args:
         rows: those of the table, ranked.
     """
-    said = list(_by_gpu(rows))
+    said = list(_answers_by_gpu(rows))
     return tuple(["The fastest codes on each GPU:", *said] if len(said) > 1 else said)
 
 
-def _by_gpu(rows: Sequence[Row]) -> Iterator[str]:
+def _answers_by_gpu(rows: Sequence[Row]) -> Iterator[str]:
     known = [row for row in rows if row["rank"] is not None]
     places = list(dict.fromkeys((row["size"], row["reads"]) for row in known))
     said: dict[str, list[str]] = {}
     for gpu in dict.fromkeys(row["gpu"] for row in known):
-        said.setdefault(_answer([row for row in known if row["gpu"] == gpu], places), []).append(gpu)
-    yield from (f"{_listed(gpus)}: {answer}." for answer, gpus in said.items())
+        said.setdefault(_answer_text([row for row in known if row["gpu"] == gpu], places), []).append(gpu)
+    yield from (f"{_listed_text(gpus)}: {answer}." for answer, gpus in said.items())
 
 
-def _answer(rows: Sequence[Row], places: Sequence[Place]) -> str:
+def _answer_text(rows: Sequence[Row], places: Sequence[Place]) -> str:
     """The fastest codes at each place; places with the same ones together."""
     found: dict[str, list[Place]] = {}
     for size, reads in places:
         best = [row for row in rows if (row["size"], row["reads"], row["rank"]) == (size, reads, 1)]
-        found.setdefault(_codes(best), []).append((size, reads))
+        found.setdefault(_codes_text(best), []).append((size, reads))
     if len(found) == 1:
         return f"{next(iter(found))}{' in every case' if len(places) > 1 else ''}"
-    return "; ".join(f"{codes} {_where(at, places)}" for codes, at in found.items())
+    return "; ".join(f"{codes} {_places_text(at, places)}" for codes, at in found.items())
 
 
-def _codes(rows: Sequence[Row]) -> str:
+def _codes_text(rows: Sequence[Row]) -> str:
     """Codes that are equally fast: "xyz in rgb10a2", "spheremap and octahedral in rg8"."""
     by_storage: dict[str, list[str]] = {}
     for row in rows:
         by_storage.setdefault(row["storage"], []).append(row["encoding"])
     many = "are equally fast" if len(rows) > 1 else "is the fastest"
-    return f"{_listed([f'{_listed(names)} in {storage}' for storage, names in by_storage.items()])} {many}"
+    return f"{_listed_text([f'{_listed_text(names)} in {storage}' for storage, names in by_storage.items()])} {many}"
 
 
-def _where(some: Sequence[Place], every: Sequence[Place]) -> str:
+def _places_text(some: Sequence[Place], every: Sequence[Place]) -> str:
     """Some of the places: by the size alone, or the reads alone, where these tell them from the others."""
     sizes, reads = (list(dict.fromkeys(one)) for one in zip(*some, strict=True))
     if sum(size in sizes for size, _ in every) == len(some):
-        return f"at {_listed(sizes)}"
+        return f"at {_listed_text(sizes)}"
     if sum(count in reads for _, count in every) == len(some):
-        return f"with {_reads(reads)}"
-    return f"at {_listed([f'{size} with {_reads([count])}' for size, count in some])}"
+        return f"with {_reads_text(reads)}"
+    return f"at {_listed_text([f'{size} with {_reads_text([count])}' for size, count in some])}"
 
 
-def _reads(counts: Sequence[int]) -> str:
-    return f"{_listed([str(count) for count in counts])} {'read' if list(counts) == [1] else 'reads'}"
+def _reads_text(counts: Sequence[int]) -> str:
+    return f"{_listed_text([str(count) for count in counts])} {'read' if list(counts) == [1] else 'reads'}"
 
 
-def _listed(names: Sequence[str]) -> str:
+def _listed_text(names: Sequence[str]) -> str:
     """Names as a sentence has them."""
     return " and ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)

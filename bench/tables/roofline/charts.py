@@ -40,17 +40,17 @@ def points(rows: Sequence[Row]) -> list[Row]:
 def ridge_lines(found: Sequence[Row], gpu: str) -> dict[bool, list[tuple[float, float]]]:
     """Instructions, and the bytes that take as long, from the fewest bytes that are drawn on: a line for codes in
     memory, and one, under True, for those that the cache holds."""
-    most, (least, _) = _most(found), _bytes(found)
+    most, (least, _) = _axis_end(found), _bytes_axis(found)
     ridges = {point["in_cache"]: point["ridge"] for point in found if point["gpu"] == gpu}
     across = [most * (step / STEPS) ** 2 for step in range(1, STEPS + 1)]
     return {cached: [(x, x / ridge) for x in across if x / ridge >= least] for cached, ridge in ridges.items()}
 
 
-def _most(found: Sequence[Row]) -> float:
+def _axis_end(found: Sequence[Row]) -> float:
     return max(point["x"] for point in found) * 1.3 + 1
 
 
-def _bytes(found: Sequence[Row]) -> tuple[float, float]:
+def _bytes_axis(found: Sequence[Row]) -> tuple[float, float]:
     """The axis of bytes, which has room for the points alone."""
     return min(point["y"] for point in found) / 1.5, max(point["y"] for point in found) * 1.5
 
@@ -72,13 +72,13 @@ def roofline_chart(rows: Sequence[Row]) -> Chart:
     tips = (("codec", "codec"), ("x", "instructions"), ("y", "bytes"), ("reads", "reads"))
     return Chart(
         name="roofline",
-        title=_finding(found),
+        title=_finding_sentence(found),
         subtitle=f"Bytes against instructions, {found[0]['size']}, {reads} {'read' if reads == 1 else 'reads'}",
         description="Each code by the instructions and the bytes of a pixel and frame, of the fewest reads and the "
         "first size. Above the GPU's line a code's bytes take longer than its instructions, below it the instructions "
         "do. The dashed line is for codes that the cache holds. The figures are in the table.",
-        x=Axis(title="instructions of a pixel and frame", scale=Scale.COUNT, domain=(-1.0, _most(found))),
-        y=Axis(title="bytes written and read", scale=Scale.LOG, domain=_bytes(found)),
+        x=Axis(title="instructions of a pixel and frame", scale=Scale.COUNT, domain=(-1.0, _axis_end(found))),
+        y=Axis(title="bytes written and read", scale=Scale.LOG, domain=_bytes_axis(found)),
         rows=tuple(found),
         colour=Names("encoding", distinct(found, "encoding")),
         shape=Names("storage", distinct(found, "storage")),
@@ -96,7 +96,7 @@ def roofline_chart(rows: Sequence[Row]) -> Chart:
     )
 
 
-def _finding(found: Sequence[Row]) -> str:
+def _finding_sentence(found: Sequence[Row]) -> str:
     """For how many codes bytes take longer than instructions."""
     bound = [point for point in found if point["y"] * point["ridge"] > point["x"]]
     gpus, codecs = (len(distinct(found, name)) for name in ("gpu", "codec"))

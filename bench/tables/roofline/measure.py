@@ -114,16 +114,16 @@ class Case:
         found: dict[Codec, Work | str] = {}
         for codec in self.codecs:
             try:
-                encode, decode = (self._counted(costs, codec, operation) for operation in cost.OPERATIONS)
-                found[codec] = Work(self._bytes(codec), encode, decode)
+                encode, decode = (self._operation_cost(costs, codec, operation) for operation in cost.OPERATIONS)
+                found[codec] = Work(self._bytes_per_pixel(codec), encode, decode)
             except LeftOutError as reason:
                 found[codec] = lost or str(reason)
         return found
 
-    def _bytes(self, codec: Codec) -> float:
+    def _bytes_per_pixel(self, codec: Codec) -> float:
         return codec.bits / 8 if self.is_shared else codec.storage.texel_bytes
 
-    def _counted(self, costs: Costs, codec: Codec, operation: str) -> float:
+    def _operation_cost(self, costs: Costs, codec: Codec, operation: str) -> float:
         column = COLUMNS[all(row[COLUMNS[0]] is None for row in self._counts)]
         return costs.of(codec, Where("isa", self.rates.family, self._stage), operation, column).cost
 
@@ -160,10 +160,10 @@ def ranked(rows: Sequence[Row]) -> list[Row]:
     groups: dict[tuple[Any, ...], list[Row]] = {}
     for row in rows:
         groups.setdefault((row["gpu"], row["size"], row["reads"]), []).append(row)
-    return [row for group in groups.values() for row in _ranked(group)]
+    return [row for group in groups.values() for row in _ranked_rows(group)]
 
 
-def _ranked(group: Sequence[Row]) -> Iterator[Row]:
+def _ranked_rows(group: Sequence[Row]) -> Iterator[Row]:
     known = sorted((row for row in group if row["frame_us"] is not None), key=lambda row: row["frame_us"])
     for row in known:
         faster = sum(other["frame_us"] < row["frame_us"] * (1 - TIE) for other in known)

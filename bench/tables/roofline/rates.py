@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from types import MappingProxyType
 
+from ...ground.choose import unknown_name
 from ...ground.options.gpu_families import FAMILIES
 from ...ground.output.errors import UsageError
-from ...ground.spelling import meant
 
 
 @dataclass(frozen=True)
@@ -84,10 +84,11 @@ def gpus_named(words: str) -> dict[str, Rates]:
     named = [word for word in map(str.strip, words.split(",")) if word]
     if not named:
         raise UsageError(f"no GPU named; known: all, {', '.join(GPUS)}")
-    return {word: rates for name in named for word, rates in (GPUS.items() if name == "all" else [_gpu(name)])}
+    return {word: rates for name in named for word, rates in (GPUS.items() if name == "all" else [_named_rates(name)])}
 
 
-def _gpu(word: str) -> tuple[str, Rates]:
+def _named_rates(word: str) -> tuple[str, Rates]:
+    """A GPU's word and its rates: of a known GPU, or of a family with settings."""
     name, *settings = word.split(":")
     found = [_setting(word, setting) for setting in settings]
     changed = dict(found)
@@ -101,8 +102,8 @@ def _gpu(word: str) -> tuple[str, Rates]:
             raise UsageError(f"--gpu {word}: a GPU of a family needs {', '.join(missing)}, such as {such}")
         made = Rates(FAMILIES[name].title, name, **changed)
     else:
-        guess = f" {said}" if (said := meant(name, GPUS)) else ""
-        raise UsageError(f"--gpu {word}: unknown GPU;{guess} known: all, {', '.join(GPUS)}, or a family with its rates")
+        listed = f"all, {', '.join(GPUS)}, or a family with its rates"
+        raise UsageError(f"--gpu {word}: {unknown_name('GPU', [name], GPUS, listed)}")
     if bool(made.cache) != bool(made.cached):
         raise UsageError(f"--gpu {word}: cache, in MB, and cached, in GB/s, go together")
     return word, made
@@ -112,7 +113,7 @@ def _setting(word: str, setting: str) -> tuple[str, float]:
     name, equals, value = setting.partition("=")
     known = [field.name for field in fields(Rates) if field.name in RANGES]
     if name not in known or not equals:
-        raise UsageError(f"--gpu {word}: unknown setting {setting!r}; known: {', '.join(known)}")
+        raise UsageError(f"--gpu {word}: {unknown_name('setting', [setting], known)}")
     try:
         number = float(value)
     except ValueError:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from ...ground.options.option import Encodings, Option, Plot, StorageNames
+from ...shaders.languages.source_options import SourceOptions
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 from .rates import GPUS, USUAL
@@ -14,7 +15,7 @@ KEY, HOW = Role.KEY, Role.HOW
 
 
 @dataclass(frozen=True, kw_only=True)
-class RooflineOptions:
+class RooflineOptions(SourceOptions):
     """What `roofline` computes. Names are comma-separated."""
 
     encoding: Encodings = "xyz,spheremap,octahedral,octahedral_precise"

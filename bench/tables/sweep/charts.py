@@ -38,8 +38,8 @@ def passes_chart(at: int, objects: object, rows: Sequence[Row]) -> Chart:
         at: its place among the charts of the table.
         rows: of a sweep at one number of objects.
     """
-    lines = [_line(row, rows, (*MORE, "shadow")) for row in rows]
-    parts = [part for row, line in zip(rows, lines, strict=True) for part in _parts(row, line)]
+    lines = [_line_name(row, rows, (*MORE, "shadow")) for row in rows]
+    parts = [part for row, line in zip(rows, lines, strict=True) for part in _pass_rows(row, line)]
     totals = [
         {"pipeline": line, "x": frame_total(row), "said": frame_label(row)}
         for row, line in zip(rows, lines, strict=True)
@@ -68,7 +68,7 @@ def passes_chart(at: int, objects: object, rows: Sequence[Row]) -> Chart:
     )
 
 
-def _parts(row: Row, line: str) -> list[Row]:
+def _pass_rows(row: Row, line: str) -> list[Row]:
     """The passes of a frame, each from where the one before it ends."""
     passes = passes_of(row)
     ends = [0.0, *accumulate(passes.values())]
@@ -103,7 +103,7 @@ def frames_chart(rows: Sequence[Row]) -> Chart:
         rows: of a sweep: pipeline, objects, shadow, ms_frame and its spread, size, lights, clock, device.
     """
     points = [
-        {"line": _line(row, rows, MORE), "x": row["objects"], "y": row[FRAME], "shadow": _shadow(row)}
+        {"line": _line_name(row, rows, MORE), "x": row["objects"], "y": row[FRAME], "shadow": _shadow_text(row)}
         | {"low": row[FRAME] - row[f"{FRAME}{SPREAD}"] / 2, "high": row[FRAME] + row[f"{FRAME}{SPREAD}"] / 2}
         for row in sorted(rows, key=lambda row: row["objects"])
     ]
@@ -131,13 +131,13 @@ def frames_chart(rows: Sequence[Row]) -> Chart:
     )
 
 
-def _shadow(row: Row) -> str:
+def _shadow_text(row: Row) -> str:
     return "with shadow map" if row["shadow"] else "without shadow map"
 
 
-def _line(row: Row, rows: Sequence[Row], more: Sequence[str]) -> str:
+def _line_name(row: Row, rows: Sequence[Row], more: Sequence[str]) -> str:
     """A pipeline's name, and what tells its rows apart."""
     same = [other for other in rows if other["pipeline"] == row["pipeline"]]
     varied = [name for name in more if len({str(other.get(name)) for other in same}) > 1]
-    said = (_shadow(row) if name == "shadow" else str(row.get(name)) for name in varied)
+    said = (_shadow_text(row) if name == "shadow" else str(row.get(name)) for name in varied)
     return " ".join([str(row["pipeline"]), *said])

@@ -27,7 +27,7 @@ def ball_moment(theta: float, power: int) -> float:
     return float(WEIGHTS @ (angle**power * 2 * np.sin(angle / 2) ** 2)) / math.pi * theta / 2
 
 
-def _root(function: Callable[[float], float], least: float) -> float:
+def _root_angle(function: Callable[[float], float], least: float) -> float:
     """Where a function that rises is 0, between an angle where it is not above 0 and pi; to float64's own digits."""
     return float(root_scalar(function, bracket=(least, math.pi), method="brentq", xtol=1e-30).root)
 
@@ -37,7 +37,7 @@ def frame_limit(codes: int) -> CodeLimit:
     share = HANDS / codes
     # theta - sin theta is below theta^3 / 6.
     least = min((6 * math.pi * share) ** (1 / 3), math.pi)
-    theta = _root(lambda t: ball_moment(t, 0) / share - 1, least * (1 - 1e-9)) if share < 1 else math.pi
+    theta = _root_angle(lambda t: ball_moment(t, 0) / share - 1, least * (1 - 1e-9)) if share < 1 else math.pi
     mean, square = (ball_moment(theta, power) / share for power in (1, 2))
     return CodeLimit(math.degrees(mean), math.degrees(math.sqrt(square)), math.degrees(theta))
 
@@ -54,7 +54,7 @@ def frame_effective_bits(rms_deg: float) -> float:
     if excess(math.pi) < 0:
         return math.log2(HANDS)
     # The mean square of a ball is 3/5 theta^2 where it is small, and less where not.
-    theta = _root(excess, math.sqrt(square))
+    theta = _root_angle(excess, math.sqrt(square))
     return math.log2(HANDS / ball_moment(theta, 0))
 
 

@@ -50,7 +50,7 @@ class Case:
 
 
 @cache
-def _compiled(codec: FrameCodec) -> Callable[[Any, Any], Any]:
+def _compiled_trip(codec: FrameCodec) -> Callable[[Any, Any], Any]:
     def trip(normals, tangents):
         given = frame_of(Vec3(*normals[:3]), Vec3(*tangents[:3]), normals[3])
         return codec.round_trip(given)
@@ -59,10 +59,10 @@ def _compiled(codec: FrameCodec) -> Callable[[Any, Any], Any]:
 
 
 @contextmanager
-def _by_jax(codec: FrameCodec) -> Iterator[tuple[Trip, dict[str, str]]]:
+def _trip_by_jax(codec: FrameCodec) -> Iterator[tuple[Trip, dict[str, str]]]:
     def trip(given: Frames) -> Frames:
         planes = (jnp.asarray(np.ascontiguousarray(a.T)) for a in (given.normals, given.tangents))
-        n, t, hand = _compiled(codec)(*planes)
+        n, t, hand = _compiled_trip(codec)(*planes)
         found = (np.stack([np.asarray(c) for c in v], axis=1) for v in ((*n, hand), (*t, 0 * hand)))
         return Frames(*found)
 
@@ -70,7 +70,7 @@ def _by_jax(codec: FrameCodec) -> Iterator[tuple[Trip, dict[str, str]]]:
 
 
 @contextmanager
-def _by_glsl(codec: FrameCodec) -> Iterator[tuple[Trip, dict[str, str]]]:
+def _trip_by_glsl(codec: FrameCodec) -> Iterator[tuple[Trip, dict[str, str]]]:
     gl = device()
     with FramePasses(gl, codec) as passes:
 
@@ -82,7 +82,7 @@ def _by_glsl(codec: FrameCodec) -> Iterator[tuple[Trip, dict[str, str]]]:
 
 
 BACKENDS: Mapping[str, Callable[[FrameCodec], AbstractContextManager[tuple[Trip, dict[str, str]]]]] = MappingProxyType(
-    {"jax": _by_jax, "glsl": _by_glsl}
+    {"jax": _trip_by_jax, "glsl": _trip_by_glsl}
 )
 
 
@@ -117,14 +117,14 @@ def frame_angles(given: Frames, found: Frames) -> np.ndarray:
 
     A rotation by theta moves the three axes by 8 sin^2(theta / 2) in all, the sum of their squared distances.
     """
-    (n, t), (other_n, other_t) = (_axes(frames) for frames in (given, found))
+    (n, t), (other_n, other_t) = (_unit_axes(frames) for frames in (given, found))
     apart = [n - other_n, t - other_t, np.cross(n, t) - np.cross(other_n, other_t)]
     squares = [np.sum(a * a, axis=1) for a in apart]
     sines = np.sqrt(np.stack([squares[0] / 4, squares[1] / 4, sum(squares) / 8]))
     return np.degrees(2 * np.arcsin(np.minimum(sines, 1.0)))
 
 
-def _axes(frames: Frames) -> tuple[np.ndarray, np.ndarray]:
+def _unit_axes(frames: Frames) -> tuple[np.ndarray, np.ndarray]:
     n, t = (a[:, :3].astype(np.float64) for a in (frames.normals, frames.tangents))
     n, t = (a / np.linalg.norm(a, axis=1, keepdims=True) for a in (n, t))
     t = t - n * np.sum(n * t, axis=1, keepdims=True)
@@ -147,15 +147,15 @@ def measure(case: Case) -> Row:
         with BACKENDS[case.backend](case.codec) as (trip, how), np.errstate(invalid="ignore", divide="ignore"):
             for given in case.frame_set.chunks():
                 count = len(given.normals)
-                found = trip(_whole(given))
+                found = trip(_whole_chunk(given))
                 total.add(given, Frames(found.normals[:count], found.tangents[:count]))
     except UNMEASURABLE as error:
         return row | {"skipped": str(error)}
-    found = _figures(total) | (_supremum(case) if case.worst_case else {})
-    return row | found | _held(case, total, found) | how
+    found = _figures(total) | (_supremum_columns(case) if case.worst_case else {})
+    return row | found | _limit_columns(case, total, found) | how
 
 
-def _supremum(case: Case) -> Row:
+def _supremum_columns(case: Case) -> Row:
     """Of all tangent frames by search; of a mesh, whose frames are all measured, there is no other."""
     if not case.frame_set.is_uniform:
         return {}
@@ -163,7 +163,7 @@ def _supremum(case: Case) -> Row:
     return {"rotation_sup_deg": worst.angle_deg, "sup_moved_deg": worst.moved_deg}
 
 
-def _whole(frames: Frames) -> Frames:
+def _whole_chunk(frames: Frames) -> Frames:
     """A chunk with its last frame repeated until it is one of CHUNK: compiled once, and a rectangle of pixels."""
     missing = CHUNK - len(frames.normals)
     return Frames(*(np.pad(a, ((0, missing), (0, 0)), mode="edge") for a in (frames.normals, frames.tangents)))
@@ -178,7 +178,7 @@ def _figures(total: Total) -> Row:
     return row
 
 
-def _held(case: Case, total: Total, figures: Row) -> Row:
+def _limit_columns(case: Case, total: Total, figures: Row) -> Row:
     """The limit, and the row's share of it; nothing on sets that are not uniform, and no share of a limit that float32
     frames cannot tell from none."""
     if not case.frame_set.is_uniform:

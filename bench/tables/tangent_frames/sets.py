@@ -113,10 +113,15 @@ def frame_sets_named(names: str, count: int, seed: int) -> list[FrameSet]:
     return made
 
 
+def _as_in_files(mesh: Mesh) -> np.ndarray:
+    """Tangents and hands as `frames_from` takes them: the bitangents of a file's own tangents go against v."""
+    return tangents(mesh) * (1.0, 1.0, 1.0, 1.0 if mesh.authored is None else -1.0)
+
+
 def mesh_frames(name: str, meshes: list[Mesh]) -> FrameSet:
     """The frames of all vertices: authored tangents, or the direction in which u grows."""
     normals, with_hands = (
-        np.concatenate(parts) for parts in zip(*((m.normals, tangents(m)) for m in meshes), strict=True)
+        np.concatenate(parts) for parts in zip(*((m.normals, _as_in_files(m)) for m in meshes), strict=True)
     )
     whole = frames_from(normals, with_hands)
 

@@ -31,7 +31,7 @@ class FramesOptions:
     ] = False
 
 
-def _angle(what: str, says: str, *drops: int) -> tuple[Column, ...]:
+def _angle_columns(what: str, says: str, *drops: int) -> tuple[Column, ...]:
     figures = zip(("mean", "rms", "max"), ("Mean", "Root mean square", "Largest"), drops, strict=True)
     return tuple(
         Column(f"{what}_{name}_deg", f"{title} {says}", unit="degrees", better="less", drops=at)
@@ -48,9 +48,9 @@ COLUMNS = (
     Column("count", "How many tangent frames were measured.", HOW, drops=13),
     Column("invalid", "Decodes that were NaN or infinite; each counts as 180 degrees.", better="less", drops=17),
     Column("hands_lost", "Tangent frames that came back with the other handedness.", better="less"),
-    *_angle("normal", "angle between a tangent frame's normal and its decode.", 11, 9, 16),
-    *_angle("tangent", "angle between a tangent and its decode.", 10, 8, 15),
-    *_angle("rotation", "angle of the rotation from the true tangent frame to the decoded one.", 12, 0, 0),
+    *_angle_columns("normal", "angle between a tangent frame's normal and its decode.", 11, 9, 16),
+    *_angle_columns("tangent", "angle between a tangent and its decode.", 10, 8, 15),
+    *_angle_columns("rotation", "angle of the rotation from the true tangent frame to the decoded one.", 12, 0, 0),
     Column(
         "rotation_sup_deg",
         "The largest rotation over all tangent frames of exact arithmetic, by search; no sample can be above it.",

@@ -85,7 +85,7 @@ def _codec_of(row: Row) -> tuple:
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
-    measured = [row for row in in_order(rows) if row["rotation_rms_deg"] is not None]
+    measured = [row for row in rows if row["rotation_rms_deg"] is not None]
     chosen = [row for row in measured if row["backend"] == measured[0]["backend"]]
     names = ("encoding", "storage", "bits", "rotation_mean_deg", "rotation_rms_deg", "rotation_max_deg")
     names += ("effective_bits", "limit_rms_deg", "hands_lost")

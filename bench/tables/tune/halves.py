@@ -42,7 +42,7 @@ def halves_of(chosen: NormalSet, seed: int, by_tiles: bool) -> Halves:
     loaded = [load() for load in chosen.loads()]
     n, view, covered = jax.tree.map(lambda *parts: np.concatenate(parts)[: chosen.count], *loaded)
     n, view = (np.stack([np.asarray(c) for c in planes], axis=1) for planes in (n, view))
-    group = _tiles(chosen) if by_tiles else np.arange(chosen.count)
+    group = _tile_numbers(chosen) if by_tiles else np.arange(chosen.count)
     random = np.random.default_rng(seed)
     is_fitting = (random.permutation(group.max() + 1) % 2 == 0)[group]
     fitting, others = (np.flatnonzero(covered & side) for side in (is_fitting, ~is_fitting))
@@ -54,7 +54,7 @@ def halves_of(chosen: NormalSet, seed: int, by_tiles: bool) -> Halves:
     return Halves(Normals(n[fitting], view[fitting]), replace(held, code_space=chosen.code_space))
 
 
-def _tiles(chosen: NormalSet) -> np.ndarray:
+def _tile_numbers(chosen: NormalSet) -> np.ndarray:
     """For each pixel the number of its square; each normal is one of its own where there are no pixels."""
     index = np.arange(chosen.count)
     if not chosen.shape or min(chosen.shape) < 4 * TILE:

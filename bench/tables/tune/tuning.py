@@ -52,15 +52,15 @@ class Scale:
     def __init__(self, encoding: Encoding):
         self.names = [p.name for p in encoding.parameters]
         self._is_log = np.array([p.least > 0 for p in encoding.parameters], bool)
-        self._ends = self._bent(np.array([(p.least, p.most) for p in encoding.parameters]).reshape(-1, 2).T)
+        self._ends = self._log_values(np.array([(p.least, p.most) for p in encoding.parameters]).reshape(-1, 2).T)
 
-    def _bent(self, values: np.ndarray) -> np.ndarray:
+    def _log_values(self, values: np.ndarray) -> np.ndarray:
         return np.where(self._is_log, np.log(np.where(self._is_log, values, 1.0)), values)
 
     def shares(self, values: Mapping[str, float]) -> np.ndarray:
         """Numbers from 0 to 1 for values."""
         low, high = self._ends
-        return (self._bent(np.array([values[name] for name in self.names])) - low) / (high - low)
+        return (self._log_values(np.array([values[name] for name in self.names])) - low) / (high - low)
 
     def values(self, shares: np.ndarray) -> Values:
         """And back, of so many digits as a name says."""
@@ -105,9 +105,9 @@ class Measure:
     def __init__(self, codec: Codec, normals: Normals, goal: str):
         self._codec, self._goal = codec, goal
         self._planes = normals.some(MEASURED).planes()
-        self._call = jax.jit(self._traced)
+        self._call = jax.jit(self._traced_error)
 
-    def _traced(self, values: Mapping[str, Any], n: Vec3, view: Vec3):
+    def _traced_error(self, values: Mapping[str, Any], n: Vec3, view: Vec3):
         encoding = self._codec.encoding
         encode, decode = (partial(function, **values) for function in (encoding.encode, encoding.decode))
         codec = replace(self._codec, encoding=replace(encoding, encode=encode, decode=decode))
@@ -182,15 +182,17 @@ def fitted(codec: Codec, normals: Normals, goal: str, names: list[str], with_bit
     chosen = tuple(p for p in codec.encoding.parameters if p.name in names)
     codec = replace(codec, encoding=replace(codec.encoding, parameters=chosen))
     published = codec.encoding.published
-    found = _with_storage(codec, normals, goal, [published])
+    found = _tuned_with_storage(codec, normals, goal, [published])
     if not with_bits or not free_components(codec):
         return found
     storages = spreads(codec, wanted_bits(codec, found.values, normals))
-    others = (_with_storage(replace(codec, storage=s), normals, goal, [found.values, published]) for s in storages)
+    others = (
+        _tuned_with_storage(replace(codec, storage=s), normals, goal, [found.values, published]) for s in storages
+    )
     return min([found, *others], key=lambda tuned: tuned.error)
 
 
-def _with_storage(codec: Codec, normals: Normals, goal: str, starts: list[Values]) -> Tuned:
+def _tuned_with_storage(codec: Codec, normals: Normals, goal: str, starts: list[Values]) -> Tuned:
     if codec.encoding.parameters:
         starts = [*starts, descend(codec, normals, goal)]
     return search(codec, normals, goal, starts)

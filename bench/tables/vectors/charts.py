@@ -28,20 +28,20 @@ def vectors_chart(rows: Sequence[Row]) -> Chart:
         rows: of the vectors table, one back end: encoding, storage, bits, range, speed, error_mean_px.
     """
     points = [
-        {"line": name, "encoding": row["encoding"], "storage": row["storage"], "bits": _bits(row["bits"])}
+        {"line": name, "encoding": row["encoding"], "storage": row["storage"], "bits": _bits_text(row["bits"])}
         | {"x": row["speed"], "y": row["error_mean_px"]}
         for name, line in vector_lines(rows).items()
         for row in line
     ]
-    all_bits = tuple(map(_bits, sorted({row["bits"] for row in rows})))
+    all_bits = tuple(map(_bits_text, sorted({row["bits"] for row in rows})))
     speeds = sorted({(row["bits"], row["speed"]) for row in rows})
-    lost = tuple({"line": LOST, "bits": _bits(bits), "x": speed, "y": speed} for bits, speed in speeds)
+    lost = tuple({"line": LOST, "bits": _bits_text(bits), "x": speed, "y": speed} for bits, speed in speeds)
     looks: dict[str, Any] = {"by": ("line", "bits"), "colour": "encoding"}
     tips = (("line", "code"), ("x", "pixels a frame"), ("y", "mean error, pixels"))
     dotted: dict[str, Any] = {"rows": lost, "by": ("line", "bits"), "colour": MUTED}
     return Chart(
         name="vectors",
-        title=_finding(rows),
+        title=_finding_sentence(rows),
         subtitle="Error of motion vectors over speed",
         description="The mean error of a motion vector in pixels over the speed in pixels a frame, both on logarithmic "
         "scales, a line for each code in its storage. The dotted line is an error as large as the motion: what lies on "
@@ -62,7 +62,7 @@ def vectors_chart(rows: Sequence[Row]) -> Chart:
     )
 
 
-def _bits(bits: int) -> str:
+def _bits_text(bits: int) -> str:
     return f"{bits} bits"
 
 
@@ -77,7 +77,7 @@ def vector_lines(rows: Sequence[Row]) -> dict[str, list[Row]]:
     return lines
 
 
-def _finding(rows: Sequence[Row]) -> str:
+def _finding_sentence(rows: Sequence[Row]) -> str:
     """Which code of each number of bits loses the least at the least speed."""
     least = min(row["speed"] for row in rows)
     said = []

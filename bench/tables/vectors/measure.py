@@ -62,7 +62,7 @@ class Case:
 
 
 @cache
-def _compiled(encoding: MotionEncoding, storage: Storage) -> Callable[..., Any]:
+def _compiled_trip(encoding: MotionEncoding, storage: Storage) -> Callable[..., Any]:
     def trip(motions, largest, scales):
         return jnp.stack(MotionCodec(encoding, fixed(storage, scales)).round_trip(Vec2(*motions), largest))
 
@@ -70,9 +70,9 @@ def _compiled(encoding: MotionEncoding, storage: Storage) -> Callable[..., Any]:
 
 
 @contextmanager
-def _by_jax(codec: MotionCodec, largest: float) -> Iterator[tuple[Trip, How]]:
+def _trip_by_jax(codec: MotionCodec, largest: float) -> Iterator[tuple[Trip, How]]:
     like, scales = shared(codec.storage, NUMBERS)
-    compiled = _compiled(codec.encoding, like)
+    compiled = _compiled_trip(codec.encoding, like)
 
     def trip(motions: np.ndarray) -> np.ndarray:
         return np.asarray(compiled(np.ascontiguousarray(motions.T), np.float32(largest), scales)).T
@@ -81,7 +81,7 @@ def _by_jax(codec: MotionCodec, largest: float) -> Iterator[tuple[Trip, How]]:
 
 
 @contextmanager
-def _by_glsl(codec: MotionCodec, largest: float) -> Iterator[tuple[Trip, How]]:
+def _trip_by_glsl(codec: MotionCodec, largest: float) -> Iterator[tuple[Trip, How]]:
     gl = device()
     with MotionPasses(gl, codec) as passes:
 
@@ -92,24 +92,24 @@ def _by_glsl(codec: MotionCodec, largest: float) -> Iterator[tuple[Trip, How]]:
 
 
 Backend = Callable[[MotionCodec, float], AbstractContextManager[tuple[Trip, How]]]
-BACKENDS: Mapping[str, Backend] = MappingProxyType({"jax": _by_jax, "glsl": _by_glsl})
+BACKENDS: Mapping[str, Backend] = MappingProxyType({"jax": _trip_by_jax, "glsl": _trip_by_glsl})
 
 
 def measure(case: Case) -> list[Row]:
     """A row for each speed; rows that the device cannot give have the reason in `skipped` and no figures."""
-    rows = [_named(case, speed) for speed in case.speeds]
+    rows = [_case_columns(case, speed) for speed in case.speeds]
     try:
         with BACKENDS[case.backend](case.codec, case.largest) as (trip, how):
             trip = _of_any_count(trip)
             rest = trip(np.zeros((1, NUMBERS), np.float32))
-            both = {"still_px": _length(rest, case.paths.size), "least_px": _least(trip, rest, case)}
+            both = {"still_px": _length_px(rest, case.paths.size), "least_px": _least_speed_px(trip, rest, case)}
             found = [_figures(case, speed, trip, rest) for speed in case.speeds]
     except UNMEASURABLE as error:
         return [row | {"skipped": str(error)} for row in rows]
     return [row | both | figures | how for row, figures in zip(rows, found, strict=True)]
 
 
-def _named(case: Case, speed: float) -> Row:
+def _case_columns(case: Case, speed: float) -> Row:
     return TABLE.empty() | {
         "encoding": case.codec.encoding.name,
         "storage": case.codec.storage.name,
@@ -133,7 +133,7 @@ def _of_any_count(trip: Trip) -> Trip:
     return whole
 
 
-def _length(motion: np.ndarray, size: tuple[int, int]) -> float:
+def _length_px(motion: np.ndarray, size: tuple[int, int]) -> float:
     return math.hypot(*(motion[0].astype(np.float64) * size))
 
 
@@ -162,7 +162,7 @@ def _figures(case: Case, speed: float, trip: Trip, rest: np.ndarray) -> Row:
     }
 
 
-def _least(trip: Trip, rest: np.ndarray, case: Case) -> float:
+def _least_speed_px(trip: Trip, rest: np.ndarray, case: Case) -> float:
     """The speed in pixels from which on motions along an axis do not come back as rest does, in the worst of the four
     directions; 0 where every motion is told from it."""
     low, high = np.full(len(DIRECTIONS), LEAST), np.full(len(DIRECTIONS), max(case.largest, 1.0))

@@ -38,9 +38,9 @@ class Paths:
     def chunks(self, speed: float) -> Iterator[np.ndarray]:
         """Motions at a speed in pixels a frame: in screens, float32 of shape (FRAMES, POINTS or what is left, 2)."""
         for start in range(0, self.count, POINTS):
-            yield (self._pixels(start, speed) / self.size).astype(np.float32)
+            yield (self._motions_px(start, speed) / self.size).astype(np.float32)
 
-    def _pixels(self, start: int, speed: float) -> np.ndarray:
+    def _motions_px(self, start: int, speed: float) -> np.ndarray:
         some = min(self.count - start, POINTS)
         u, a, d, p = np.random.default_rng([self.seed, start]).random((4, some))
         frame = np.arange(FRAMES)[:, None]

@@ -90,15 +90,15 @@ _THIRD_OF_THREE = """
 """
 
 
-def _partitions(text: str) -> np.ndarray:
+def _partition_table(text: str) -> np.ndarray:
     return np.array([[int(digit) for digit in word] for word in text.split()])
 
 
-def _anchors(*texts: str) -> np.ndarray:
+def _anchor_table(*texts: str) -> np.ndarray:
     found = [[int(word) for word in text.split()] for text in texts]
     return np.stack([np.zeros(64, int), *map(np.array, found)], axis=1)
 
 
 # By the number of subsets: each partition's subset of each texel, (64, 16), and its subsets' anchors, (64, subsets).
-PARTITIONS = {1: np.zeros((64, 16), int), 2: _partitions(_TWO), 3: _partitions(_THREE)}
-ANCHORS = {1: _anchors(), 2: _anchors(_SECOND_OF_TWO), 3: _anchors(_SECOND_OF_THREE, _THIRD_OF_THREE)}
+PARTITIONS = {1: np.zeros((64, 16), int), 2: _partition_table(_TWO), 3: _partition_table(_THREE)}
+ANCHORS = {1: _anchor_table(), 2: _anchor_table(_SECOND_OF_TWO), 3: _anchor_table(_SECOND_OF_THREE, _THIRD_OF_THREE)}

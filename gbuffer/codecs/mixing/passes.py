@@ -102,7 +102,9 @@ class MixPasses:
             self._views = uploaded(device, stack, {"views": meetings.views})
             self._passes: dict[str, VertexArray] = {}
             self._stack = stack
-            self._texels = self._encoded(meetings.normals, np.repeat(np.repeat(meetings.views, SIDE, 0), SIDE, 1))
+            self._texels = self._encoded_textures(
+                meetings.normals, np.repeat(np.repeat(meetings.views, SIDE, 0), SIDE, 1)
+            )
             self._stack = stack.pop_all()
 
     def __enter__(self):
@@ -111,7 +113,7 @@ class MixPasses:
     def __exit__(self, *_: object) -> None:
         self._stack.close()
 
-    def _passed(self, shader: str) -> VertexArray:
+    def _pass_array(self, shader: str) -> VertexArray:
         """The pass of a fragment shader, which is compiled once."""
         if shader not in self._passes:
             made = self._device.fragment_pass(shader, self._defines, self._names)
@@ -124,22 +126,22 @@ class MixPasses:
         made = {depths if name else texels: device.target(size, form, samples) for name, form in self._formats.items()}
         return {name: device.owned(self._stack, texture) for name, texture in made.items()}
 
-    def _encoded(self, normals: np.ndarray, views: np.ndarray) -> Textures:
+    def _encoded_textures(self, normals: np.ndarray, views: np.ndarray) -> Textures:
         height, width, _ = normals.shape
         made = self._targets((width, height), "signed_depths", "texels")
-        with self._given(normals=normals, views=views) as given:
-            self._device.render(self._passed("encode.frag"), list(made.values()), **given, **self._tables)
+        with self._given_textures(normals=normals, views=views) as given:
+            self._device.render(self._pass_array("encode.frag"), list(made.values()), **given, **self._tables)
         return made
 
     @contextmanager
-    def _given(self, **arrays: np.ndarray) -> Iterator[Textures]:
+    def _given_textures(self, **arrays: np.ndarray) -> Iterator[Textures]:
         """Arrays as textures for a while."""
         with ExitStack() as stack:
             yield uploaded(self._device, stack, arrays)
 
-    def _read(self, shader: str, size: tuple[int, int], given: Textures, **uniforms: int) -> Decoded:
+    def _decoded_pass(self, shader: str, size: tuple[int, int], given: Textures, **uniforms: int) -> Decoded:
         """What a pass decodes, and the numbers that it decodes it from."""
-        device, passed = self._device, self._passed(shader)
+        device, passed = self._device, self._pass_array(shader)
         set_uniforms(passed.program, {"level": 0, **uniforms})
         with ExitStack() as stack:
             made = [device.owned(stack, device.target(size, STORAGES["rgba32f"])) for _ in range(2)]
@@ -151,27 +153,30 @@ class MixPasses:
         """Every texel of the patches, as it is; arrays of shape (SIDE height, SIDE width, ...)."""
         width, height = self._size
         views = np.repeat(np.repeat(self.meetings.views, SIDE, 0), SIDE, 1)
-        with self._given(views=views) as given:
-            return self._read("mix_texel.frag", (SIDE * width, SIDE * height), {**self._texels, **given}, stride=1)
+        with self._given_textures(views=views) as given:
+            return self._decoded_pass(
+                "mix_texel.frag", (SIDE * width, SIDE * height), {**self._texels, **given}, stride=1
+            )
 
     def filtered(self) -> Decoded:
         """The sampler's bilinear filter between the first four texels of each patch."""
         for texture in self._texels.values():
             self._device.smooth(texture)
-        with self._given(places=self.meetings.places.astype(np.float32)) as given:
-            return self._read("mix_filter.frag", self._size, {**self._texels, **given})
+        with self._given_textures(places=self.meetings.places.astype(np.float32)) as given:
+            return self._decoded_pass("mix_filter.frag", self._size, {**self._texels, **given})
 
     def mip(self, level: int) -> Decoded:
         """The first texel of each patch in a level that the device generated: of 2 x 2 texels, or 4 x 4."""
         for texture in self._texels.values():
             self._device.build_mips(texture)
-        return self._read("mix_texel.frag", self._size, self._texels, stride=SIDE >> level, level=level)
+        return self._decoded_pass("mix_texel.frag", self._size, self._texels, stride=SIDE >> level, level=level)
 
     def _sampled(self) -> Textures:
+        """The samples of each pixel, as textures by what shaders call them."""
         made = self._targets(self._size, "signed_samples", "samples", self.samples)
         counts = self.meetings.counts[..., None].astype(np.float32)
-        with self._given(normals=self.meetings.firsts, others=self.meetings.seconds, counts=counts) as given:
-            targets, passed = list(made.values()), self._passed("mix_samples.frag")
+        with self._given_textures(normals=self.meetings.firsts, others=self.meetings.seconds, counts=counts) as given:
+            targets, passed = list(made.values()), self._pass_array("mix_samples.frag")
             self._device.render(passed, targets, **given, **self._views, **self._tables)
         return made
 
@@ -180,18 +185,18 @@ class MixPasses:
         sampled, pixels = self._sampled(), self._targets(self._size, "signed_depths", "texels")
         for source, target in zip(sampled.values(), pixels.values(), strict=True):
             self._device.resolve(source, target)
-        return self._read("mix_texel.frag", self._size, pixels, stride=1)
+        return self._decoded_pass("mix_texel.frag", self._size, pixels, stride=1)
 
     def resolved_decoded(self) -> Decoded:
         """The same samples, each decoded before the mean; no numbers."""
-        return self._read("mix_resolve.frag", self._size, self._sampled())
+        return self._decoded_pass("mix_resolve.frag", self._size, self._sampled())
 
     def blended(self, decals: np.ndarray) -> Decoded:
         """Normals (height, width, 4) drawn over each patch's first one by the device's blending."""
-        targets = self._encoded(self.meetings.firsts, self.meetings.views)
-        passed, device = self._passed("encode.frag"), self._device
+        targets = self._encoded_textures(self.meetings.firsts, self.meetings.views)
+        passed, device = self._pass_array("encode.frag"), self._device
         framebuffer = device.owned(self._stack, device.framebuffer(list(targets.values())))
-        with self._given(normals=decals) as given:
+        with self._given_textures(normals=decals) as given:
             device.blend(BY_ALPHA)
             framebuffer.use()
             bind(passed.program, {**given, **self._views, **self._tables})
@@ -200,24 +205,24 @@ class MixPasses:
                 framebuffer.viewport = (0, start, self._size[0], rows)
                 passed.render(vertices=3)
         device.idle.use()
-        return self._read("mix_texel.frag", self._size, targets, stride=1)
+        return self._decoded_pass("mix_texel.frag", self._size, targets, stride=1)
 
     def blended_decoded(self) -> Decoded:
         """The second normal of each patch over the first by a shader that decodes both and stores their blend."""
         pair = (self.meetings.firsts, self.meetings.seconds)
-        base, over = (self._encoded(normals, self.meetings.views) for normals in pair)
+        base, over = (self._encoded_textures(normals, self.meetings.views) for normals in pair)
         over = {name.replace("texels", "decals").replace("depths", "decals"): t for name, t in over.items()}
         made = self._targets(self._size, "signed_depths", "texels")
         alphas = np.repeat(self.meetings.alphas[:, None, None], self._size[0], 1).astype(np.float32)
-        with self._given(alphas=alphas) as given:
+        with self._given_textures(alphas=alphas) as given:
             textures = {**base, **over, **given, **self._views, **self._tables}
-            self._device.render(self._passed("mix_blend.frag"), list(made.values()), **textures)
-        return self._read("mix_texel.frag", self._size, made, stride=1)
+            self._device.render(self._pass_array("mix_blend.frag"), list(made.values()), **textures)
+        return self._decoded_pass("mix_texel.frag", self._size, made, stride=1)
 
     def upsampled(self) -> Decoded:
         """The first four texels of each patch by the discontinuity-sensitive filter; no numbers."""
-        with self._given(shares=self.meetings.quarters.astype(np.float32)) as given:
-            return self._read("mix_upsample.frag", self._size, {**self._texels, **given}, stride=SIDE)
+        with self._given_textures(shares=self.meetings.quarters.astype(np.float32)) as given:
+            return self._decoded_pass("mix_upsample.frag", self._size, {**self._texels, **given}, stride=SIDE)
 
 
 def bands(alphas: np.ndarray) -> Iterator[tuple[float, int, int]]:

@@ -48,7 +48,7 @@ def _passes(
     )
 
 
-def _lacks(scene: Scene) -> str | None:
+def _lack_text(scene: Scene) -> str | None:
     sends = any(light.kind in ("sun", "spot") for light in scene.lights)
     return None if sends else "no sun or spot light here sends light into the volume"
 
@@ -60,5 +60,5 @@ EFFECT = Effect(
     INDIRECT,
     _passes,
     SETTINGS,
-    _lacks,
+    _lack_text,
 )

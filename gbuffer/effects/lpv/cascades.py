@@ -100,10 +100,10 @@ def finest_cell(box: np.ndarray, extent: float, cells: int, cascades: int) -> fl
 
 def cascades_of(view: View, box: np.ndarray, cell: float, cells: int, cascades: int) -> tuple[Cascade, ...]:
     """The cascades around a view, the finest first, each of twice the cells' side of the one before."""
-    return tuple(_placed(view, box, cell * 2**index, cells) for index in range(cascades))
+    return tuple(_placed_cascade(view, box, cell * 2**index, cells) for index in range(cascades))
 
 
-def _placed(view: View, box: np.ndarray, cell: float, cells: int) -> Cascade:
+def _placed_cascade(view: View, box: np.ndarray, cell: float, cells: int) -> Cascade:
     """Ahead of the eye, but not past the scene where there is more of it on the other side; at whole cells."""
     forward = np.subtract(view.target, view.eye)
     wanted = view.eye + AHEAD * cell * cells * forward / np.linalg.norm(forward)

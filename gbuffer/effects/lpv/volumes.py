@@ -49,32 +49,32 @@ class Volumes:
     @property
     def injected(self) -> tuple[Resource, ...]:
         """The light of the first step, slices side by side, so that one draw adds to all of them."""
-        return tuple(self._flat(f"lpv_injected_{channel}", self.cells) for channel in CHANNELS)
+        return tuple(self._flat_resource(f"lpv_injected_{channel}", self.cells) for channel in CHANNELS)
 
     @property
     def blockers(self) -> Resource:
         """What blocks light at the cells' corners, slices side by side."""
-        return self._flat("lpv_blockers", self.corners)
+        return self._flat_resource("lpv_blockers", self.corners)
 
     @property
     def wave(self) -> tuple[Resource, ...]:
         """The light that travels, a volume for each channel."""
-        return tuple(self._volume(f"lpv_wave_{channel}") for channel in CHANNELS)
+        return tuple(self._volume_resource(f"lpv_wave_{channel}") for channel in CHANNELS)
 
     @property
     def light(self) -> tuple[Resource, ...]:
         """The sum over all steps, a volume for each channel."""
-        return tuple(self._volume(f"lpv_light_{channel}") for channel in CHANNELS)
+        return tuple(self._volume_resource(f"lpv_light_{channel}") for channel in CHANNELS)
 
     @property
     def reflective(self) -> tuple[Resource, ...]:
         """A reflective shadow map: flux, normal and position; one is drawn after the other."""
-        return tuple(self._map(f"lpv_{what}", "rgba32f") for what in ("flux", "normal", "position"))
+        return tuple(self._map_resource(f"lpv_{what}", "rgba32f") for what in ("flux", "normal", "position"))
 
     @property
     def reflective_depth(self) -> Resource:
         """What a reflective shadow map is drawn against."""
-        return self._map("lpv_depth", DEPTH_STENCIL)
+        return self._map_resource("lpv_depth", DEPTH_STENCIL)
 
     def defines(self, cell: float) -> dict[str, object]:
         """Macros; `cell` is the finest cascade's, in metres."""
@@ -83,12 +83,12 @@ class Volumes:
         packs = {"PACKS": int(self.format == "shared"), "CELL": float(cell)}
         return {**CONSTANTS, **PACKED_CONSTANTS, **marks, **own, **packs}
 
-    def _map(self, name: str, form: str) -> Resource:
+    def _map_resource(self, name: str, form: str) -> Resource:
         return Resource(name, form, (self.texels, self.texels))
 
-    def _flat(self, name: str, side: int) -> Resource:
+    def _flat_resource(self, name: str, side: int) -> Resource:
         return Resource(name, self.sums, (side * side, side * self.cascades))
 
-    def _volume(self, name: str) -> Resource:
+    def _volume_resource(self, name: str) -> Resource:
         size = (self.cells, self.cells)
         return Resource(name, FORMATS[self.format], size, copies=2, depth=self.cells * self.cascades)

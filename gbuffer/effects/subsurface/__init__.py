@@ -54,7 +54,7 @@ def _passes(
     return *entry, skin_light(width, translucency, bool(transmittance)), *blurs[method]()
 
 
-def _lacks(scene: Scene) -> str | None:
+def _lack_text(scene: Scene) -> str | None:
     kinds = {scene.materials[i].kind for part in scene.parts for i in part.materials if scene.materials[i].alpha == 1}
     return None if "skin" in kinds else "nothing here is skin"
 
@@ -66,6 +66,6 @@ EFFECT = Effect(
     SCATTERED,
     _passes,
     SETTINGS,
-    _lacks,
+    _lack_text,
     scene="head",
 )

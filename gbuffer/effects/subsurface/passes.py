@@ -182,7 +182,7 @@ def burley(scatter: Scatter, seed: int) -> tuple[Pass, ...]:
     }
     # The profile itself falls off with the distance in space: following is on or off.
     told = scatter.defines(SKIN_LIGHT, **numbers) | {"FOLLOW": float(scatter.follow > 0)}
-    return (_blur("skin_disc", "skin_disc.frag", (SKIN_LIGHT,), SCATTERED, told),)
+    return (_blur_pass("skin_disc", "skin_disc.frag", (SKIN_LIGHT,), SCATTERED, told),)
 
 
 def _pair(
@@ -199,12 +199,12 @@ def _pair(
     rows = scatter.defines(light, ALONG_X=1, **told)
     columns = scatter.defines(SKIN_ACROSS, ALONG_X=0, **(told | dict(shares)))
     return (
-        _blur(f"skin_rows{name}", "skin_blur.frag", (light,), SKIN_ACROSS, rows),
-        _blur(f"skin_columns{name}", "skin_blur.frag", (SKIN_ACROSS, *sums), into, columns),
+        _blur_pass(f"skin_rows{name}", "skin_blur.frag", (light,), SKIN_ACROSS, rows),
+        _blur_pass(f"skin_columns{name}", "skin_blur.frag", (SKIN_ACROSS, *sums), into, columns),
     )
 
 
-def _blur(name: str, shader: str, reads: tuple[Resource, ...], into: Resource, numbers: Mapping[str, Any]) -> Pass:
+def _blur_pass(name: str, shader: str, reads: tuple[Resource, ...], into: Resource, numbers: Mapping[str, Any]) -> Pass:
     tells = {"HAS_SCATTERED": 1} if into == SCATTERED else {}
     build = partial(Blur, shader, into, numbers)
     return Pass(name, (*reads, SKIN_MASK), (into,), build, after=("lights",), tells=tells)

@@ -64,7 +64,7 @@ def _passes(
     return passes(Look(maps, seed, waves, Grid(rings, spokes), maps.defines(chop) | chosen))
 
 
-def _lacks(scene: Scene) -> str | None:
+def _lack_text(scene: Scene) -> str | None:
     if scene.water is None:
         return "there is no water here"
     return None if scene.view.eye[1] > scene.water.level else "the eye is under water"
@@ -77,6 +77,6 @@ EFFECT = Effect(
     WATER,
     _passes,
     SETTINGS,
-    _lacks,
+    _lack_text,
     scene="lake",
 )

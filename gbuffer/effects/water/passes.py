@@ -125,7 +125,7 @@ def _caustics(look: Look, canvas: Canvas) -> Run:
     return run
 
 
-def _sight(canvas: Canvas) -> MirrorSight:
+def _mirror_sight(canvas: Canvas) -> MirrorSight:
     level = Look.water(canvas).level
     return MirrorSight(mirrored_view(canvas.frame.scene.view, level), level)
 
@@ -136,7 +136,7 @@ def _mirror(canvas: Canvas) -> Run:
     surfaces = ForwardSurfaces(canvas, bool(canvas.frame.scene_buffers.first_lamp))
 
     def run() -> None:
-        target.use(view=_sight(canvas))
+        target.use(view=_mirror_sight(canvas))
         canvas.device.state(NEAREST)
         surfaces.prepare(base=1.0)
         surfaces.draw("opaque", *surfaces.lamps)
@@ -152,9 +152,9 @@ class Surface:
         self._target = canvas.target(WATER, depth=DEPTH)
         by_sun = {"LIT_BY_SUN": int(bool(frame.scene_buffers.first_lamp)), "SPOKES": look.grid.spokes}
         self._program = canvas.program("water_surface.vert", "water_surface.frag", **look.defines, **by_sun)
-        self._grid = self._upload(look.grid)
+        self._grid = self._uploaded_grid(look.grid)
 
-    def _upload(self, grid: Grid) -> VertexArray:
+    def _uploaded_grid(self, grid: Grid) -> VertexArray:
         frame = self._canvas.frame
         own = (
             frame.device.owned(frame.stack, frame.context.buffer(d.tobytes())) for d in (grid.vertices, grid.triangles)
@@ -174,7 +174,7 @@ class Surface:
         canvas, program = self._canvas, self._program
         scene, water, waves = canvas.frame.scene, self._look.water(canvas), self._look.waves(canvas)
         aspect = canvas.plan.size[0] / canvas.plan.size[1]
-        outer, to_view = reach(scene.view, aspect), np.linalg.inv(_sight(canvas).projection(aspect))
+        outer, to_view = reach(scene.view, aspect), np.linalg.inv(_mirror_sight(canvas).projection(aspect))
         tell(program, centre=centre_under(scene.view), curve=self._look.grid.curve(outer))
         tell(program, deep=water.deep, crests=water.crests, extinction=water.extinction)
         tell(

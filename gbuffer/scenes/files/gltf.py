@@ -1,4 +1,4 @@
-"""glTF 2.0 and GLB files: meshes with their own normals and tangents under their nodes' transforms, plain materials,
+"""glTF 2.0 and GLB files: meshes with their own normals and tangents under their nodes' transforms, materials, lights,
 the first camera.
 
 A node's transform goes to its vertices as it stands: mirrored and of three scales if need be, normals by the inverse
@@ -15,18 +15,23 @@ from pathlib import Path
 
 import numpy as np
 
-from ..mesh import Mesh
-from ..scene import Material, View
-from .gltf_data import Gltf, Object
+from ..mesh import Mesh, laid_by
+from ..metal_rough import MetalRough
+from ..sampled import placed_uv
+from ..scene import View
+from .gltf_data import Gltf, Object, meant_numbers
+from .gltf_lights import lights_of
+from .gltf_materials import DEFAULT, Materials
+from .gltf_packed import DRACO, draco_primitive
 from .mesh_file import MeshFile, Piece, checked_pieces, mesh_of
 from .source import MAX_TRIANGLES, checked_indices, checked_size
 
 TRIANGLES, STRIP, FAN = 4, 5, 6
-ATTRIBUTES = {"NORMAL": 3, "TANGENT": 4, "TEXCOORD_0": 2}
+ATTRIBUTES = {"NORMAL": 3, "TANGENT": 4, "TEXCOORD_0": 2, "TEXCOORD_1": 2}
 # Cameras without a far plane see this many times as far as their near plane.
 FAR = 1e5
-# Specular reflectance of anything but metal, seen straight on.
-DIELECTRIC = 0.04
+# A file's bitangents go up in a picture, against v; those of `Mesh.authored` go along v.
+ALONG_V = (1.0, 1.0, 1.0, -1.0)
 
 
 def read_gltf(path: Path) -> MeshFile:
@@ -40,6 +45,9 @@ def read_gltf(path: Path) -> MeshFile:
     nodes = list(_placed_nodes(gltf))
     notes = list(gltf.notes)
     _check_sizes(gltf, nodes)
+    read = Materials(gltf)
+    # A primitive without a material has the last.
+    materials, two_sided = zip(*read.all(), (DEFAULT, False), strict=True)
     meshes: dict[int, list[tuple[Mesh, int]]] = {}
     pieces = []
     for node, model in nodes:
@@ -47,19 +55,13 @@ def read_gltf(path: Path) -> MeshFile:
             index = node["mesh"]
             mesh = gltf.entry("meshes", index, "a node")
             if index not in meshes:
-                meshes[index] = list(_primitives(gltf, mesh, f"meshes[{index}]", notes))
+                meshes[index] = list(_primitives(gltf, mesh, f"meshes[{index}]", materials, notes))
             pieces += [Piece(made, model, material) for made, material in meshes[index]]
-    materials = [_material(gltf, index) for index in range(len(gltf.list_of(gltf.json, "materials", "the file")))]
     view = next((v for node, model in nodes if (v := _camera(gltf, node, model, notes))), None)
-    return MeshFile(
-        path,
-        checked_pieces(path, pieces, notes),
-        # A primitive without a material has the last.
-        (*(material for material, _ in materials), Material()),
-        (*(two_sided for _, two_sided in materials), False),
-        view,
-        tuple(dict.fromkeys(notes)),
-    )
+    kept = checked_pieces(path, pieces, notes)
+    lights = lights_of(gltf, nodes, kept, notes)
+    said = tuple(dict.fromkeys([*notes, *read.notes]))
+    return MeshFile(path, kept, materials, two_sided, view, said, lights)
 
 
 def _children(gltf: Gltf, index: int) -> list[int]:
@@ -109,7 +111,7 @@ def _placed_nodes(gltf: Gltf) -> Iterator[tuple[Object, np.ndarray]]:
         index, above = waiting.pop()
         node = gltf.entry("nodes", index, "the scene")
         with np.errstate(over="ignore", invalid="ignore"):
-            model = above @ _local(gltf, node, f"nodes[{index}]")
+            model = above @ _local_matrix(gltf, node, f"nodes[{index}]")
         if not np.all(np.abs(model) < 1e15):
             raise gltf.error(
                 f"nodes[{index}]", "is moved or scaled beyond 1e15", "apply the transforms in the exporter"
@@ -118,7 +120,7 @@ def _placed_nodes(gltf: Gltf) -> Iterator[tuple[Object, np.ndarray]]:
         waiting += [(child, model) for child in reversed(_children(gltf, index))]
 
 
-def _local(gltf: Gltf, node: Object, place: str) -> np.ndarray:
+def _local_matrix(gltf: Gltf, node: Object, place: str) -> np.ndarray:
     """A node's own matrix, (4, 4), for column vectors; the file lists it column by column."""
     if "matrix" in node:
         matrix = np.array(gltf.numbers(node, "matrix", place, tuple(np.eye(4).ravel()))).reshape(4, 4).T
@@ -158,7 +160,7 @@ def _check_sizes(gltf: Gltf, nodes: list[tuple[Object, np.ndarray]]) -> None:
 def _size(gltf: Gltf, mesh: Object, place: str) -> tuple[int, int]:
     """Vertices and, at most, triangles of a mesh."""
     vertices = triangles = 0
-    for number, primitive in enumerate(_of_mesh(gltf, mesh, place)):
+    for number, primitive in enumerate(_mesh_primitives(gltf, mesh, place)):
         where = f"{place}.primitives[{number}]"
         attributes = gltf.child(primitive, "attributes", where)
         count = gltf.count(attributes.get("POSITION"), f"{where}.POSITION")
@@ -168,16 +170,18 @@ def _size(gltf: Gltf, mesh: Object, place: str) -> tuple[int, int]:
     return vertices, triangles
 
 
-def _of_mesh(gltf: Gltf, mesh: Object, place: str) -> list[Object]:
+def _mesh_primitives(gltf: Gltf, mesh: Object, place: str) -> list[Object]:
     primitives = gltf.list_of(mesh, "primitives", place)
     if not all(isinstance(primitive, dict) for primitive in primitives):
         raise gltf.error(f"{place}.primitives", "holds what is not an object")
     return primitives
 
 
-def _primitives(gltf: Gltf, mesh: Object, place: str, notes: list[str]) -> Iterator[tuple[Mesh, int]]:
+def _primitives(
+    gltf: Gltf, mesh: Object, place: str, materials: tuple[MetalRough, ...], notes: list[str]
+) -> Iterator[tuple[Mesh, int]]:
     """The triangle meshes of a mesh, each with its material's index."""
-    for number, primitive in enumerate(_of_mesh(gltf, mesh, place)):
+    for number, primitive in enumerate(_mesh_primitives(gltf, mesh, place)):
         where = f"{place}.primitives[{number}]"
         mode = gltf.whole(primitive, "mode", where, TRIANGLES)
         if mode not in (TRIANGLES, STRIP, FAN):
@@ -187,31 +191,60 @@ def _primitives(gltf: Gltf, mesh: Object, place: str, notes: list[str]) -> Itera
         if "material" in primitive:
             gltf.entry("materials", primitive["material"], where)
             material = primitive["material"]
-        made, said = _primitive(gltf, primitive, mode, where)
-        notes += said
-        yield made, material
+        yield _primitive(gltf, primitive, mode, materials[material], where, notes), material
 
 
-def _primitive(gltf: Gltf, primitive: Object, mode: int, where: str) -> tuple[Mesh, list[str]]:
-    attributes = gltf.child(primitive, "attributes", where)
-    positions = gltf.accessor(attributes.get("POSITION"), 3, f"{where}.POSITION")
-    found = {}
-    for name, width in ATTRIBUTES.items():
-        if name in attributes:
-            found[name] = gltf.accessor(attributes[name], width, f"{where}.{name}")
-            if len(found[name]) != len(positions):
-                raise gltf.error(f"{where}.{name}", f"are {len(found[name])} for {len(positions)} positions")
-    corners = (
-        gltf.indices(primitive["indices"], f"{where}.indices") if "indices" in primitive else np.arange(len(positions))
-    )
-    checked_indices(gltf.path, corners, len(positions), f"{where}.indices")
-    triangles = _triangles(corners, mode)
+def _primitive(gltf: Gltf, primitive: Object, mode: int, material: MetalRough, where: str, notes: list[str]) -> Mesh:
+    triangles, found = _stored(gltf, primitive, mode, where)
     if len(triangles) > MAX_TRIANGLES:
         raise gltf.error(where, f"has {len(triangles)} triangles; the most is {MAX_TRIANGLES}", "export fewer objects")
-    normals, uv = found.get("NORMAL"), found.get("TEXCOORD_0")
+    normals, uv, second = (found.get(name) for name in ("NORMAL", "TEXCOORD_0", "TEXCOORD_1"))
     # Tangents without normals say nothing (glTF 2.0, 3.7.2.1).
-    tangents = found.get("TANGENT") if normals is not None else None
-    return mesh_of(gltf.path, where, positions, triangles, normals, uv, tangents)
+    tangents = found["TANGENT"] * ALONG_V if normals is not None and "TANGENT" in found else None
+    made, said = mesh_of(gltf.path, where, found["POSITION"], triangles, normals, uv, tangents, second)
+    notes += said
+    notes += _lacking_uv(material, uv, second)
+    normal_map = material.normal_map
+    return made if normal_map is None or made.authored is not None else laid_by(made, placed_uv(made, normal_map))
+
+
+def _lacking_uv(material: MetalRough, *sets: np.ndarray | None) -> list[str]:
+    """What is said of the sets of uv that a material's maps lie by and a mesh has not."""
+    lacking = {m.uv_set for m in material.maps if m is not None and sets[m.uv_set] is None}
+    said = ("their textures are looked up at one point", "TEXCOORD_0 stands in")
+    return [f"there are meshes without TEXCOORD_{one}: {said[one]}" for one in sorted(lacking)]
+
+
+def _stored(gltf: Gltf, primitive: Object, mode: int, where: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """A primitive's triangles, and its attributes by name; POSITION is one of them."""
+    attributes = gltf.child(primitive, "attributes", where)
+    position = gltf.entry("accessors", attributes.get("POSITION"), f"{where}.POSITION")
+    extension = gltf.extension(primitive, DRACO, where)
+    packed_triangles, packed = None, {}
+    if extension and (gltf.requires(DRACO) or "bufferView" not in position):
+        packed_triangles, packed = draco_primitive(gltf, primitive, where)
+    found = {}
+    for name, width in {"POSITION": 3, **ATTRIBUTES}.items():
+        if name in packed and name in attributes:
+            found[name] = _unpacked(gltf, attributes[name], packed[name], width, f"{where}.{name}")
+        elif name in attributes:
+            found[name] = gltf.accessor(attributes[name], width, f"{where}.{name}")
+        if len(found.get(name, found["POSITION"])) != len(found["POSITION"]):
+            raise gltf.error(f"{where}.{name}", f"are {len(found[name])} for {len(found['POSITION'])} positions")
+    count = len(found["POSITION"])
+    if packed_triangles is not None:
+        return checked_indices(gltf.path, packed_triangles, count, f"{where}.{DRACO}"), found
+    corners = gltf.indices(primitive["indices"], f"{where}.indices") if "indices" in primitive else np.arange(count)
+    return _triangles(checked_indices(gltf.path, corners, count, f"{where}.indices"), mode), found
+
+
+def _unpacked(gltf: Gltf, index: object, stored: np.ndarray, width: int, place: str) -> np.ndarray:
+    """A packed attribute as its accessor means it, (count, width)."""
+    accessor = gltf.entry("accessors", index, place)
+    count = gltf.whole(accessor, "count", place)
+    if stored.shape != (count, width):
+        raise gltf.error(place, f"is packed as {' x '.join(map(str, stored.shape))} numbers, not {count} x {width}")
+    return meant_numbers(stored, accessor.get("normalized") is True)
 
 
 def _triangles(corners: np.ndarray, mode: int) -> np.ndarray:
@@ -224,34 +257,6 @@ def _triangles(corners: np.ndarray, mode: int) -> np.ndarray:
         return np.stack([corners[step + 1], corners[step + 2], np.broadcast_to(corners[:1], count)], axis=1)
     odd = step % 2
     return np.stack([corners[step], corners[step + 1 + odd], corners[step + 2 - odd]], axis=1)
-
-
-def _material(gltf: Gltf, index: int) -> tuple[Material, bool]:
-    """A metallic-roughness material as Blinn-Phong, and whether its back is drawn.
-
-    The power is 2 / a^2 - 2, a the square of the roughness (Walter et al. 2007). Where a texture says what is metal,
-    nothing is: textures are not read.
-    """
-    place = f"materials[{index}]"
-    data = gltf.entry("materials", index, place)
-    pbr = gltf.child(data, "pbrMetallicRoughness", place)
-    *base, alpha = np.clip(gltf.numbers(pbr, "baseColorFactor", place, (1.0, 1.0, 1.0, 1.0)), 0.0, 1.0)
-    metal, roughness = (
-        np.clip(gltf.number(pbr, key, place, 1.0), 0, 1) for key in ("metallicFactor", "roughnessFactor")
-    )
-    if "metallicRoughnessTexture" in pbr:
-        metal = 0.0
-    base, a = np.array(base), max(float(roughness) ** 2, 1e-3)
-    emissive = np.clip(gltf.numbers(data, "emissiveFactor", place, (0.0, 0.0, 0.0)), 0.0, 1.0)
-    made = Material(
-        albedo=_colour(base * (1 - metal)),
-        specular=_colour(DIELECTRIC + (base - DIELECTRIC) * metal),
-        power=float(np.clip(2 / a**2 - 2, 1.0, 2048.0)),
-        # Emission that a texture would mask is none.
-        emissive=(0.0, 0.0, 0.0) if "emissiveTexture" in data else _colour(emissive),
-        alpha=float(alpha) if data.get("alphaMode") == "BLEND" else 1.0,
-    )
-    return made, data.get("doubleSided") is True
 
 
 def _colour(values: np.ndarray) -> tuple[float, float, float]:

@@ -16,7 +16,8 @@ from typing import Any
 import numpy as np
 
 from ....encodings.codecs.files import not_json
-from .source import MAX_VERTICES, SceneFileError, checked_address, file_bytes, resource
+from .gltf_packed import DRACO, MESHOPT, unpacked_view
+from .source import MAX_BYTES, MAX_VERTICES, SceneFileError, checked_address, file_bytes, resource
 
 GLB_MAGIC, GLB_JSON, GLB_BINARY = 0x46546C67, 0x4E4F534A, 0x004E4942
 COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
@@ -24,8 +25,19 @@ WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 INDEX_TYPES = ("<u1", "<u2", "<u4")
 # Indices of a triangle list: each vertex may be in several triangles.
 MAX_COUNT = 6 * MAX_VERTICES
-# Extensions that change nothing of what is read here; required ones beside them are refused.
-HARMLESS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_mesh_quantization", "KHR_animation_")
+# Extensions that are read, or whose lack is said in a note; files that require others are refused.
+KNOWN = (
+    "KHR_materials_",
+    "KHR_texture_",
+    "EXT_texture_",
+    "KHR_lights_",
+    "KHR_mesh_quantization",
+    "KHR_animation_",
+    DRACO,
+    MESHOPT,
+)
+# Those of materials that are drawn.
+DRAWN = ("KHR_materials_emissive_strength", "KHR_materials_ior")
 
 Object = dict[str, Any]
 
@@ -42,7 +54,7 @@ class Gltf:
         self.path = path
         data = file_bytes(path)
         self._binary: bytes | None = None
-        text = self._chunks(data) if data[:4] == struct.pack("<I", GLB_MAGIC) else data
+        text = self._json_chunk(data) if data[:4] == struct.pack("<I", GLB_MAGIC) else data
         try:
             self.json = json.loads(text.decode("utf-8-sig"), parse_constant=_no_constant)
         except (ValueError, RecursionError) as error:
@@ -50,10 +62,11 @@ class Gltf:
         if not isinstance(self.json, dict):
             raise self.error("its JSON", "is not an object")
         self._buffers: dict[int, bytes] = {}
+        self._unpacked: dict[int, bytes] = {}
         self._check_version()
         for index in range(len(self.list_of(self.json, "images", "the file"))):
             image = self.entry("images", index, f"images[{index}]")
-            # Textures are not read, but a file that would fetch them is refused all the same.
+            # Pictures that no material has are not read, but a file that would fetch them is refused all the same.
             if "uri" in image:
                 checked_address(path, image["uri"], f"images[{index}]")
 
@@ -61,7 +74,7 @@ class Gltf:
         """An error in one line."""
         return SceneFileError(f"{self.path}: {place} {what}; {remedy}")
 
-    def _chunks(self, data: bytes) -> bytes:
+    def _json_chunk(self, data: bytes) -> bytes:
         """The JSON of a GLB file; its binary chunk is kept."""
         if len(data) < 20:
             raise self.error("its header", "is cut off")
@@ -87,7 +100,7 @@ class Gltf:
         if not isinstance(version, str) or not version.startswith("2."):
             raise self.error("asset.version", f"is {version!r}", "glTF 2.0 is read")
         for name in self.list_of(self.json, "extensionsRequired", "the file"):
-            if not isinstance(name, str) or not name.startswith(HARMLESS):
+            if not isinstance(name, str) or not name.startswith(KNOWN):
                 raise self.error("extensionsRequired", f"names {name!r}, which is not read", "export without it")
 
     # The document, checked as it is asked for.
@@ -103,7 +116,7 @@ class Gltf:
         """An object of one of the document's lists. Raises SceneFileError where there is none of that index."""
         known = self.list_of(self.json, kind, "the file")
         if type(index) is not int or not 0 <= index < len(known):
-            raise self.error(place, f"names {kind}[{_shown(index)}], of which there are {len(known)}")
+            raise self.error(place, f"names {kind}[{_shown_text(index)}], of which there are {len(known)}")
         if not isinstance(known[index], dict):
             raise self.error(f"{kind}[{index}]", "is not an object")
         return known[index]
@@ -115,11 +128,19 @@ class Gltf:
             raise self.error(f"{place}.{key}", "is not an object")
         return found
 
+    def extension(self, holder: Object, name: str, place: str) -> Object:
+        """An extension of an object, empty where it has none of that name."""
+        return self.child(self.child(holder, "extensions", place), name, f"{place}.extensions")
+
+    def requires(self, name: str) -> bool:
+        """Whether the file cannot be read without an extension."""
+        return name in self.list_of(self.json, "extensionsRequired", "the file")
+
     def whole(self, holder: Object, key: str, place: str, default: int | None = None) -> int:
         """A whole number from 0 up."""
         value = holder.get(key, default)
         if type(value) is not int or not 0 <= value < 2**40:
-            raise self.error(f"{place}.{key}", f"is {_shown(value)}, no whole number")
+            raise self.error(f"{place}.{key}", f"is {_shown_text(value)}, no whole number")
         return value
 
     def number(self, holder: Object, key: str, place: str, default: float) -> float:
@@ -129,7 +150,7 @@ class Gltf:
         """As many finite numbers as the default has."""
         values = holder.get(key, list(default))
         if not isinstance(values, list) or len(values) != len(default) or not all(map(_is_number, values)):
-            raise self.error(f"{place}.{key}", f"is {_shown(values)}, not {len(default)} numbers below 1e15")
+            raise self.error(f"{place}.{key}", f"is {_shown_text(values)}, not {len(default)} numbers below 1e15")
         return tuple(map(float, values))
 
     # Numbers in buffers.
@@ -145,7 +166,7 @@ class Gltf:
     def indices(self, index: object, place: str) -> np.ndarray:
         """An index accessor's numbers, int64 of shape (count,)."""
         accessor = self.entry("accessors", index, place)
-        if COMPONENTS.get(_hashable(accessor.get("componentType"))) not in INDEX_TYPES:
+        if COMPONENTS.get(_hashable_or_none(accessor.get("componentType"))) not in INDEX_TYPES:
             raise self.error(place, "are no unsigned whole numbers")
         return self._accessor(index, 1, place)[:, 0].astype(np.int64)
 
@@ -155,57 +176,83 @@ class Gltf:
 
     def _accessor(self, index: object, width: int, place: str) -> np.ndarray:
         accessor = self.entry("accessors", index, place)
-        kind = COMPONENTS.get(_hashable(accessor.get("componentType")))
+        kind = COMPONENTS.get(_hashable_or_none(accessor.get("componentType")))
         count = self.whole(accessor, "count", place)
-        if kind is None or WIDTHS.get(_hashable(accessor.get("type"))) != width:
-            raise self.error(place, f"are of type {_shown(accessor.get('type'))}, which is not read there")
+        if kind is None or WIDTHS.get(_hashable_or_none(accessor.get("type"))) != width:
+            raise self.error(place, f"are of type {_shown_text(accessor.get('type'))}, which is not read there")
         if count > MAX_COUNT:
             raise self.error(place, f"are {count}; the most is {MAX_COUNT}", "export fewer objects")
         if "bufferView" in accessor:
             start = self.whole(accessor, "byteOffset", place, 0)
-            found = self._view(accessor["bufferView"], start, kind, count, width, place)
+            found = self._view_elements(accessor["bufferView"], start, kind, count, width, place)
         else:
             found = np.zeros((count, width), kind)
         if "sparse" in accessor:
-            found = self._sparse(self.child(accessor, "sparse", place), found, place)
-        return _meant(found, kind, accessor.get("normalized") is True)
+            found = self._sparse_elements(self.child(accessor, "sparse", place), found, place)
+        return meant_numbers(found, accessor.get("normalized") is True)
 
-    def _sparse(self, sparse: Object, found: np.ndarray, place: str) -> np.ndarray:
+    def _sparse_elements(self, sparse: Object, found: np.ndarray, place: str) -> np.ndarray:
         """Some of an accessor's elements replaced."""
         count = self.whole(sparse, "count", f"{place} (sparse)")
         where, what = (self.child(sparse, key, place) for key in ("indices", "values"))
-        kind = COMPONENTS.get(_hashable(where.get("componentType")))
+        kind = COMPONENTS.get(_hashable_or_none(where.get("componentType")))
         if kind not in INDEX_TYPES or count > len(found):
             raise self.error(f"{place} (sparse)", "is damaged")
         starts = [self.whole(part, "byteOffset", f"{place} (sparse)", 0) for part in (where, what)]
-        index = self._view(where.get("bufferView"), starts[0], kind, count, 1, place)[:, 0].astype(np.int64)
-        values = self._view(what.get("bufferView"), starts[1], found.dtype.str, count, found.shape[1], place)
+        index = self._view_elements(where.get("bufferView"), starts[0], kind, count, 1, place)[:, 0].astype(np.int64)
+        values = self._view_elements(what.get("bufferView"), starts[1], found.dtype.str, count, found.shape[1], place)
         if np.any(index >= len(found)):
             raise self.error(f"{place} (sparse)", f"names element {index.max()} of {len(found)}")
         found = found.copy()
         found[index] = values
         return found
 
-    def _view(self, index: object, start: int, kind: str, count: int, width: int, place: str) -> np.ndarray:
+    def _view_elements(self, index: object, start: int, kind: str, count: int, width: int, place: str) -> np.ndarray:
         """Elements of a buffer view, (count, width), as they lie there."""
         view = self.entry("bufferViews", index, place)
         where = f"{place}, bufferViews[{index}]"
-        offset, length = (
-            self.whole(view, key, where, default) for key, default in (("byteOffset", 0), ("byteLength", None))
-        )
+        data = self.view_bytes(index, place)
         size = np.dtype(kind).itemsize
         stride = self.whole(view, "byteStride", where, 0) or size * width
         end = start + (stride * (count - 1) + size * width if count else 0)
-        data = self._buffer(view.get("buffer"), where)
-        if stride < size * width or end > length or offset + length > len(data):
-            raise self.error(
-                where,
-                f"holds {min(length, max(len(data) - offset, 0))} bytes, but {end} are needed",
-                "it is cut off: export it again",
-            )
+        if stride < size * width or end > len(data):
+            raise self.error(where, f"holds {len(data)} bytes, but {end} are needed", "it is cut off: export it again")
         if not count:
             return np.zeros((0, width), kind)
-        return np.ndarray((count, width), kind, data, offset + start, (stride, size))
+        return np.ndarray((count, width), kind, data, start, (stride, size))
+
+    def view_bytes(self, index: object, place: str) -> bytes | memoryview:
+        """What a buffer view holds, unpacked where EXT_meshopt_compression packs it.
+
+        Raises:
+            SceneFileError: it leaves its buffer or cannot be unpacked.
+        """
+        view = self.entry("bufferViews", index, place)
+        assert isinstance(index, int)
+        where = f"{place}, bufferViews[{index}]"
+        packed = self.extension(view, MESHOPT, where)
+        if not packed or not self._is_packed(view, where):
+            return self._slice(view, where)
+        if index not in self._unpacked:
+            most = MAX_BYTES - sum(map(len, self._unpacked.values()))
+            self._unpacked[index] = unpacked_view(self, packed, self._slice(packed, where), most, where)
+        return self._unpacked[index]
+
+    def _is_packed(self, view: Object, where: str) -> bool:
+        """Whether a view has to be unpacked: there is no plain copy of it."""
+        buffer = self.entry("buffers", view.get("buffer"), where)
+        return self.requires(MESHOPT) or ("uri" not in buffer and view.get("buffer") != 0)
+
+    def _slice(self, view: Object, where: str) -> memoryview:
+        """The part of its buffer that a view names."""
+        offset, length = (
+            self.whole(view, key, where, default) for key, default in (("byteOffset", 0), ("byteLength", None))
+        )
+        data = self._buffer(view.get("buffer"), where)
+        if offset + length > len(data):
+            left = max(len(data) - offset, 0)
+            raise self.error(where, f"holds {left} bytes, but {length} are needed", "it is cut off: export it again")
+        return memoryview(data)[offset : offset + length]
 
     def _buffer(self, index: object, place: str) -> bytes:
         buffer = self.entry("buffers", index, place)
@@ -230,23 +277,34 @@ class Gltf:
             found.append("skins are not applied: meshes stand as they were bound")
         if any("targets" in p for p in primitives):
             found.append("morph targets are not applied")
-        if self.json.get("images"):
-            found.append("textures are not read: colours and vertex normals alone")
+        if any("COLOR_0" in _dict(p.get("attributes")) for p in primitives):
+            found.append("vertex colours are not read")
+        named = {*self._names("extensionsUsed"), *self._names("extensionsRequired")}
+        found += [
+            f"{name} is not drawn" for name in sorted(named) if name.startswith("KHR_materials_") and name not in DRAWN
+        ]
         return found
+
+    def _names(self, key: str) -> list[str]:
+        return [name for name in self.list_of(self.json, key, "the file") if isinstance(name, str)]
+
+
+def _dict(value: object) -> Object:
+    return value if isinstance(value, dict) else {}
 
 
 def _dicts(value: object) -> list[Object]:
     return [item for item in value if isinstance(item, dict)] if isinstance(value, list) else []
 
 
-def _meant(stored: np.ndarray, kind: str, normalised: bool) -> np.ndarray:
-    """Whole numbers that stand for [0, 1] or [-1, 1] as such; others as they are."""
+def meant_numbers(stored: np.ndarray, is_normalised: bool) -> np.ndarray:
+    """Whole numbers that stand for [0, 1] or [-1, 1] as such; others as they are; float64."""
     # A NaN of the signalling kind is one all the same, and is found where numbers are checked.
     with np.errstate(invalid="ignore"):
         found = stored.astype(np.float64)
-    if not normalised or kind == "<f4":
+    if not is_normalised or stored.dtype.kind == "f":
         return found
-    return np.maximum(found / np.iinfo(kind).max, -1.0)
+    return np.maximum(found / np.iinfo(stored.dtype).max, -1.0)
 
 
 def _is_number(value: object) -> bool:
@@ -254,13 +312,14 @@ def _is_number(value: object) -> bool:
 
 
 def _no_constant(name: str) -> float:
+    """Raises: JSON has no NaN and no infinity."""
     raise ValueError(f"{name} is no JSON")
 
 
-def _hashable(value: object) -> Any:
+def _hashable_or_none(value: object) -> Any:
     return value if isinstance(value, int | str) else None
 
 
-def _shown(value: object) -> str:
+def _shown_text(value: object) -> str:
     text = repr(value) if not isinstance(value, list | dict) else f"a list or object of {len(value)}"
     return text if len(text) <= 40 else f"{text[:37]}..."

@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from ..mesh import Mesh, joined, smooth_normals
-from ..scene import Material, View
+from ..metal_rough import MetalRough
+from ..scene import Light, Material, View
 from .source import SceneFileError, checked_indices, checked_numbers
 
 # Of a normal or tangent that says no direction.
@@ -54,14 +55,21 @@ class MeshFile:
         materials, two_sided: what pieces are made of, and whether the back of each material is drawn.
         view: the file's own camera, None where it has none.
         notes: what was not taken from the file or made up for it, each in a few words.
+        lights: the file's own, a sun first; none where it has none.
     """
 
     path: Path
     pieces: tuple[Piece, ...]
-    materials: tuple[Material, ...]
+    materials: tuple[Material, ...] | tuple[MetalRough, ...]
     two_sided: tuple[bool, ...]
     view: View | None
     notes: tuple[str, ...]
+    lights: tuple[Light, ...] = ()
+
+    @property
+    def is_metal_rough(self) -> bool:
+        """Whether its materials are metal/rough, and not Blinn-Phong."""
+        return isinstance(self.materials[0], MetalRough)
 
     @cached_property
     def baked(self) -> Mesh:
@@ -91,7 +99,7 @@ def of_one_mesh(path: Path, mesh: Mesh, notes: Iterable[str]) -> MeshFile:
 
 
 def mesh_of(
-    path: Path, place: str, positions, triangles, normals=None, uv=None, tangents=None
+    path: Path, place: str, positions, triangles, normals=None, uv=None, tangents=None, second_uv=None
 ) -> tuple[Mesh, list[str]]:
     """A mesh of what a file holds, and what had to be made up.
 
@@ -109,19 +117,19 @@ def mesh_of(
         raise SceneFileError(f"{path}: {place}: no triangle with an area; export it as triangles")
     notes = [] if normals is not None else ["there are meshes without normals: smooth ones were made"]
     given = np.zeros_like(positions) if normals is None else np.asarray(normals, np.float64)
-    given, made = _completed(checked_numbers(path, given, f"{place}: the normal"), positions, triangles)
-    if made and normals is not None:
+    has_normals = normals is not None
+    normals, made = _completed_normals(checked_numbers(path, given, f"{place}: the normal"), positions, triangles)
+    if made and has_normals:
         notes.append("there are normals of no length: smooth ones stand in")
-    uv = (
-        np.zeros((len(positions), 2))
-        if uv is None
-        else checked_numbers(path, np.asarray(uv, np.float64), f"{place}: the uv")
+    uv, second_uv = (
+        None if given is None else checked_numbers(path, np.asarray(given, np.float64), f"{place}: the uv")
+        for given in (uv, second_uv)
     )
-    mesh = Mesh(positions, given, triangles, uv)
+    mesh = Mesh(positions, normals, triangles, np.zeros((len(positions), 2)) if uv is None else uv, second_uv=second_uv)
     return (mesh if tangents is None else replace(mesh, authored=_tangents(path, place, tangents))), notes
 
 
-def _completed(normals: np.ndarray, positions: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, int]:
+def _completed_normals(normals: np.ndarray, positions: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, int]:
     """Unit normals, and how many used ones had to be made."""
     length = np.linalg.norm(normals, axis=1)
     lost = length < NOTHING

@@ -128,7 +128,7 @@ def _new_corner(obj: _Obj, text: str) -> int:
     words = text.split("/")
     if len(words) > len(KINDS) or not words[0]:
         raise ValueError("a corner is position/uv/normal")
-    found = [_index(word, len(obj.data[kind])) for word, kind in zip(words, KINDS, strict=False)]
+    found = [_checked_index(word, len(obj.data[kind])) for word, kind in zip(words, KINDS, strict=False)]
     position, uv, normal = found + [-1] * (len(KINDS) - len(found))
     obj.vertices.append((position, uv, normal))
     # What a negative index means changes from line to line.
@@ -137,7 +137,7 @@ def _new_corner(obj: _Obj, text: str) -> int:
     return len(obj.vertices) - 1
 
 
-def _index(word: str, count: int) -> int:
+def _checked_index(word: str, count: int) -> int:
     if not word:
         return -1
     index = int(word)
@@ -186,11 +186,15 @@ def _read_mtl(path: Path, name: str, data: bytes, notes: list[str]) -> dict[str,
                     current = " ".join(rest)
                     found[current] = Material()
                 case [word, *numbers] if word in COLOURS and current:
-                    colour = tuple(min(_number(n), 1.0) for n in (numbers * 3 if len(numbers) == 1 else numbers)[:3])
+                    colour = tuple(
+                        min(_checked_number(n), 1.0) for n in (numbers * 3 if len(numbers) == 1 else numbers)[:3]
+                    )
                     found[current] = replace(found[current], **{COLOURS[word]: colour})
                 case [word, value] if word in NUMBERS and current:
                     low, high = LIMITS[NUMBERS[word]]
-                    found[current] = replace(found[current], **{NUMBERS[word]: min(max(_number(value), low), high)})
+                    found[current] = replace(
+                        found[current], **{NUMBERS[word]: min(max(_checked_number(value), low), high)}
+                    )
                 case [word, *_] if word.lower().startswith(("map_", "bump", "norm", "disp", "decal", "refl")):
                     notes.append("textures are not read: colours alone")
         except ValueError as error:
@@ -198,7 +202,7 @@ def _read_mtl(path: Path, name: str, data: bytes, notes: list[str]) -> dict[str,
     return found
 
 
-def _number(text: str) -> float:
+def _checked_number(text: str) -> float:
     number = float(text)
     if not number >= 0 or math.isinf(number):
         raise ValueError(f"{text} is not a number from 0 up")

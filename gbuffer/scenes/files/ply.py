@@ -20,6 +20,7 @@ SIZES |= {"i4": "int int32", "u4": "uint uint32", "f4": "float float32", "f8": "
 TYPES = {name: kind for kind, names in SIZES.items() for name in names.split()}
 ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 UV = (("u", "v"), ("s", "t"), ("texture_u", "texture_v"))
+NORMAL = ("nx", "ny", "nz")
 FACES = ("vertex_indices", "vertex_index")
 MAX_HEADER = 1 << 16
 MAX_CORNERS = 255
@@ -55,6 +56,27 @@ def read_ply(path: Path) -> MeshFile:
     Raises:
         SceneFileError: it is no PLY file, damaged, too large, or has no faces.
     """
+    mesh, notes = _mesh(path, _tables(path))
+    return of_one_mesh(path, mesh, notes)
+
+
+def is_cloud(path: Path) -> bool:
+    """Whether a PLY file has points with normals, and no faces. Raises SceneFileError."""
+    _, elements, _ = _header(path, file_bytes(path))
+    of = {element.name: element for element in elements}
+    has_faces = "face" in of and of["face"].count > 0
+    return not has_faces and "vertex" in of and {*NORMAL} <= {p.name for p in of["vertex"].properties}
+
+
+def read_cloud(path: Path) -> np.ndarray:
+    """The normals of a point cloud, float64 of shape (count, 3). Raises SceneFileError."""
+    found = _columns(_tables(path)["vertex"], NORMAL)
+    if found is None or not len(found):
+        raise SceneFileError(f"{path}: points with the numbers nx, ny, nz are read; export it again")
+    return found
+
+
+def _tables(path: Path) -> dict[str, Table]:
     data = file_bytes(path)
     order, elements, start = _header(path, data)
     tables: dict[str, Table] = {}
@@ -67,8 +89,7 @@ def read_ply(path: Path) -> MeshFile:
             tables[element.name], at = _binary(path, data, at, element, order)
         else:
             tables[element.name], at = _ascii(path, tokens, at, element)
-    mesh, notes = _mesh(path, tables)
-    return of_one_mesh(path, mesh, notes)
+    return tables
 
 
 def _header(path: Path, data: bytes) -> tuple[str, list[Element], int]:
@@ -115,7 +136,7 @@ def _check_count(path: Path, element: Element, left: int, least: int) -> None:
     checked_size(path, vertices, triangles, f"element {element.name}")
 
 
-def _damaged(path: Path, element: Element, row: int) -> SceneFileError:
+def _damage_error(path: Path, element: Element, row: int) -> SceneFileError:
     return SceneFileError(f"{path}: element {element.name}, row {row}: cut off or damaged; export it again")
 
 
@@ -134,7 +155,7 @@ def _binary(path: Path, data: bytes, at: int, element: Element, order: str) -> t
             try:
                 values, at = _values(data, at, p, order)
             except ValueError as error:
-                raise _damaged(path, element, row) from error
+                raise _damage_error(path, element, row) from error
             rows[p.name].append(values if p.counted_by else values[0])
     return {p.name: rows[p.name] if p.counted_by else np.array(rows[p.name]) for p in element.properties}, at
 
@@ -212,7 +233,7 @@ def _ascii(path: Path, tokens: list[bytes], at: int, element: Element) -> tuple[
                 at += count
                 table[p.name].append(np.array(values) if p.counted_by else values[0])
         except (ValueError, IndexError) as error:
-            raise _damaged(path, element, row) from error
+            raise _damage_error(path, element, row) from error
     return {p.name: table[p.name] if p.counted_by else np.array(table[p.name]) for p in element.properties}, at
 
 
@@ -237,7 +258,7 @@ def _mesh(path: Path, tables: dict[str, Table]):
     uv = next((found for names in UV if (found := _columns(vertex, names)) is not None), None)
     triangles = _fans(path, faces)
     checked_size(path, len(positions), len(triangles), "faces")
-    return mesh_of(path, "the mesh", positions, triangles, _columns(vertex, ("nx", "ny", "nz")), uv)
+    return mesh_of(path, "the mesh", positions, triangles, _columns(vertex, NORMAL), uv)
 
 
 def _fans(path: Path, faces: np.ndarray | list[np.ndarray]) -> np.ndarray:

@@ -9,8 +9,10 @@ from types import MappingProxyType
 
 import numpy as np
 
+from ...environment.catalogue import ENVIRONMENTS
 from ..mesh import facing, joined
 from ..rasterise import Camera, Rendered, rasterise
+from ..sampled import cut_out, mapped_normals
 from ..scene import Light, Part, Scene, View
 from ..setting import Setting, coloured
 from .gltf import read_gltf
@@ -37,6 +39,8 @@ FOV = 40.0
 MARGIN = 1.05
 SUN = (-0.5, -0.7, -0.5)
 AMBIENT = (0.05, 0.05, 0.06)
+# What metal/rough meshes reflect where nothing is said.
+AROUND = "studio"
 
 
 def read_mesh_file(path: Path) -> MeshFile:
@@ -49,37 +53,37 @@ def file_view(file: MeshFile) -> View:
     if file.view:
         return file.view
     low, high = file.bounds
-    middle = _place((low + high) / 2)
+    middle = _float_triple((low + high) / 2)
     away = np.array(ASIDE) / np.linalg.norm(ASIDE)
     placed = file.drawn - middle
-    across = View(_place(away), (0.0, 0.0, 0.0), FOV, 0.0, 0.0).matrix()[:2, :3]
+    across = View(_float_triple(away), (0.0, 0.0, 0.0), FOV, 0.0, 0.0).matrix()[:2, :3]
     nearer = placed @ away
     # How far away the eye must be for each vertex to lie within the angle of view.
     needed = nearer[:, None] + abs(placed @ across.T) / np.tan(np.radians(FOV / 2))
     distance = MARGIN * float(needed.max())
     near, far = distance - float(nearer.max()), distance - float(nearer.min())
-    return View(_place(middle + away * distance), middle, FOV, 0.9 * near, 1.1 * far)
+    return View(_float_triple(middle + away * distance), middle, FOV, 0.9 * near, 1.1 * far)
 
 
-def _place(values: np.ndarray) -> tuple[float, float, float]:
+def _float_triple(values: np.ndarray) -> tuple[float, float, float]:
     x, y, z = map(float, values)
     return x, y, z
 
 
 def file_scene(file: MeshFile, setting: Setting) -> Scene:
-    """The file's meshes under a sun and `setting.lights` point lights that circle around them."""
+    """The file's meshes under its own lights, else under a sun and `setting.lights` point lights that circle around."""
     view = file_view(file)
     aside = 0.01 * file.radius
-    moved = (_place(np.add(point, (aside, 0.0, 0.0))) for point in (view.eye, view.target))
-    sun = np.array(SUN) / np.linalg.norm(SUN)
+    moved = (_float_triple(np.add(point, (aside, 0.0, 0.0))) for point in (view.eye, view.target))
     eye, target = moved
     return Scene(
         parts=_parts(file),
         materials=file.materials,
-        lights=(Light("sun", (0.8, 0.77, 0.7), direction=_place(sun)), *_lights(file, setting)),
+        lights=file.lights or _made_up_lights(file, setting),
         ambient=AMBIENT,
         view=view,
         previous=replace(view, eye=eye, target=target),
+        environment=ENVIRONMENTS[AROUND].make() if file.is_metal_rough else None,
     )
 
 
@@ -92,19 +96,19 @@ def _parts(file: MeshFile) -> tuple[Part, ...]:
         if piece.is_rigid:
             rigid.setdefault((id(piece.mesh), two_sided), []).append(piece)
         else:
-            parts.append(Part(piece.baked(), np.eye(4)[None], _materials(file, [piece]), two_sided=two_sided))
+            parts.append(Part(piece.baked(), np.eye(4)[None], _material_indices(file, [piece]), two_sided=two_sided))
     for (_, two_sided), pieces in rigid.items():
         models = np.stack([piece.model for piece in pieces])
-        parts.append(Part(pieces[0].mesh, models, _materials(file, pieces), two_sided=two_sided))
+        parts.append(Part(pieces[0].mesh, models, _material_indices(file, pieces), two_sided=two_sided))
     return tuple(parts)
 
 
-def _materials(file: MeshFile, pieces: list[Piece]) -> np.ndarray:
+def _material_indices(file: MeshFile, pieces: list[Piece]) -> np.ndarray:
     return np.array([piece.material % len(file.materials) for piece in pieces])
 
 
-def _lights(file: MeshFile, setting: Setting) -> list[Light]:
-    """Point lights in a box half again as large as the scene's, on their way around its middle."""
+def _made_up_lights(file: MeshFile, setting: Setting) -> tuple[Light, ...]:
+    """A sun, and point lights in a box half again as large as the scene's, on their way around its middle."""
     rng = np.random.default_rng(setting.seed)
     low, high = file.bounds
     middle, half = (low + high) / 2, np.maximum(0.75 * (high - low), 0.3 * file.radius)
@@ -112,19 +116,25 @@ def _lights(file: MeshFile, setting: Setting) -> list[Light]:
     out, height = np.sqrt(rng.uniform(0.3, 1, setting.lights)), rng.uniform(-0.3, 1, setting.lights)
     around = np.stack([out * np.cos(turn), height, out * np.sin(turn)], axis=1)
     colours = coloured(rng, setting.lights, 5.0 / np.sqrt(max(setting.lights, 1)))
-    return [
-        Light("point", tuple(colour), _place(place), 0.9 * file.radius)
+    lamps = [
+        Light("point", tuple(colour), _float_triple(place), 0.9 * file.radius)
         for colour, place in zip(colours, middle + around * half, strict=True)
     ]
+    sun = np.array(SUN) / np.linalg.norm(SUN)
+    return Light("sun", (0.8, 0.77, 0.7), direction=_float_triple(sun)), *lamps
 
 
 def seen(file: MeshFile, size: tuple[int, int]) -> Rendered:
     """View-space normals, positions and coverage as the camera sees them, drawn without a GL driver.
 
+    The normal of a pixel is that of its material's normal map, where it has one. What a material cuts out is a hole.
     The back of a surface is drawn where the file's material says so, as renderers do.
     """
     view = file_view(file)
     matrix = view.matrix()
     pieces = [piece.baked().placed(matrix[:3, :3].T, matrix[:3, 3]) for piece in file.pieces]
     drawn = [mesh if file.two_sided[p.material] else facing(mesh) for p, mesh in zip(file.pieces, pieces, strict=True)]
-    return rasterise(joined(drawn), Camera(*size, view.fov, view.near, view.far))
+    camera = Camera(*size, view.fov, view.near, view.far)
+    made_of = [(mesh, file.materials[p.material]) for mesh, p in zip(drawn, file.pieces, strict=True)]
+    found = rasterise(joined(drawn), camera, cut_out(made_of))
+    return replace(found, normals=mapped_normals(found, camera, made_of))

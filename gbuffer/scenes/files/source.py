@@ -24,6 +24,10 @@ class SceneFileError(ValueError):
     """A file that cannot be read as a scene: one line with the file, the place in it and the remedy."""
 
 
+class MissingPackageError(SceneFileError):
+    """A file that a package would read which is not installed."""
+
+
 def file_bytes(path: Path, most: int = MAX_BYTES) -> bytes:
     """What a file of at most so many bytes holds.
 
@@ -32,7 +36,7 @@ def file_bytes(path: Path, most: int = MAX_BYTES) -> bytes:
     """
     try:
         if not path.is_file():
-            raise SceneFileError(f"{path}: {files.not_a_file(path)}")
+            raise SceneFileError(f"{path}: {files.why_no_file(path)}")
         size = path.stat().st_size
         if size > most:
             raise SceneFileError(f"{path}: {size} bytes; the most is {most}: export fewer objects, or in binary")

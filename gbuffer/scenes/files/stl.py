@@ -32,19 +32,19 @@ def read_stl(path: Path) -> MeshFile:
     data = file_bytes(path)
     count = int.from_bytes(data[COUNT_AT:HEAD], "little")
     is_binary = len(data) == HEAD + FACET.itemsize * count
-    normals, corners = _binary(path, data, count) if is_binary else _text(path)
+    normals, corners = _binary_facets(path, data, count) if is_binary else _text_facets(path)
     faces = np.arange(len(corners)).reshape(-1, 3)
     mesh, notes = mesh_of(path, "the mesh", corners, faces, np.repeat(normals, 3, axis=0))
     return of_one_mesh(path, mesh, notes)
 
 
-def _binary(path: Path, data: bytes, count: int) -> Facets:
+def _binary_facets(path: Path, data: bytes, count: int) -> Facets:
     checked_size(path, 3 * count, count, "the file")
     facets = np.frombuffer(data, FACET, offset=HEAD)
     return facets["normal"], facets["corners"].reshape(-1, 3)
 
 
-def _text(path: Path) -> Facets:
+def _text_facets(path: Path) -> Facets:
     """The facets of all solids; what these are called may be anything."""
     text = file_bytes(path, MAX_TEXT_BYTES).decode("utf-8", "replace").lower().strip()
     if not text.startswith("solid") or not re.search(r"\bendsolid\b", text.rpartition("\n")[2]):
@@ -57,7 +57,7 @@ def _text(path: Path) -> Facets:
     for at in range(count):
         numbers[at], end = _facet(path, facets, at, end)
     if facets[end:].strip():
-        raise _damaged(path, count)
+        raise _damage_error(path, count)
     return numbers[:, :3], numbers[:, 3:].reshape(-1, 3)
 
 
@@ -65,12 +65,12 @@ def _facet(path: Path, facets: str, at: int, start: int) -> tuple[list[float], i
     """The 12 numbers of a text's facet number `at`, and where it ends."""
     found = TEXT_FACET.match(facets, start)
     if not found:
-        raise _damaged(path, at)
+        raise _damage_error(path, at)
     try:
         return [float(word) for word in " ".join(found.groups()).split()], found.end()
     except ValueError as error:
-        raise _damaged(path, at) from error
+        raise _damage_error(path, at) from error
 
 
-def _damaged(path: Path, at: int) -> SceneFileError:
+def _damage_error(path: Path, at: int) -> SceneFileError:
     return SceneFileError(f"{path}: facet {at} is cut off or damaged; export it again")

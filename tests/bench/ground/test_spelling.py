@@ -5,6 +5,7 @@ import pytest
 from normalbench.bench.ground.choose import choose
 from normalbench.bench.ground.options.gpu_families import CHOICES
 from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.ground.spelling import spelled
 from normalbench.bench.shaders.code.emit import LANGUAGES
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.storages.storage import STORAGES
@@ -61,3 +62,20 @@ def test_no_two_names_are_spelled_alike(what):
     """Each is found by its own name, in capitals and with hyphens."""
     for name in KNOWN[what]:
         assert choose(what, name.upper().replace("_", "-"), KNOWN[what]) == [name]
+
+
+FORMATS_OF_APIS = {
+    "rgb10a2": "R10G10B10A2_UNORM VK_FORMAT_A2B10G10R10_UNORM_PACK32 GL_RGB10_A2 PF_A2B10G10R10 rgb10a2unorm",
+    "rg16f": "DXGI_FORMAT_R16G16_FLOAT VK_FORMAT_R16G16_SFLOAT GL_RG16F PF_G16R16F rg16float",
+    "rg8_snorm": "DXGI_FORMAT_R8G8_SNORM VK_FORMAT_R8G8_SNORM GL_RG8_SNORM MTLPixelFormatRG8Snorm rg8snorm",
+    "rgba8": "B8G8R8A8_UNORM VK_FORMAT_R8G8B8A8_UNORM GL_RGBA8",
+    "r11g11b10f": "DXGI_FORMAT_R11G11B10_FLOAT VK_FORMAT_B10G11R11_UFLOAT_PACK32 GL_R11F_G11F_B10F",
+}
+
+
+def test_formats_are_known_by_the_names_of_apis():
+    """As RenderDoc, DXGI, Vulkan, OpenGL, Metal, WebGPU and Unreal write them; a format that is no storage is none."""
+    for storage, names in FORMATS_OF_APIS.items():
+        assert {spelled("storage", name, STORAGES) for name in names.split()} == {storage}
+    for name in ("DXGI_FORMAT_R24G8_TYPELESS", "VK_FORMAT_R8G8_UINT", "R64G64_SFLOAT", "a2", "gpu", ""):
+        assert spelled("storage", name, STORAGES) is None, name

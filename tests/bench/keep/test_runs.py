@@ -3,12 +3,10 @@
 import json
 import math
 import os
-import random
 import re
 import shutil
 import subprocess
 import sys
-import time
 from contextlib import contextmanager
 from dataclasses import replace
 from importlib import import_module
@@ -266,45 +264,6 @@ def test_files_within_a_name_are_known_and_travel(tmp_path, monkeypatch, word, n
 
 def test_sources_are_known_by_their_content():
     assert sources() == sources() and len(sources()) == 16
-
-
-def begun(folder: Path, *arguments: str) -> subprocess.Popen:
-    command = [sys.executable, "-m", "normalbench", "run", "--tables", "depth", "-o", str(folder), *arguments]
-    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-
-
-def lines_of(folder: Path) -> list[str]:
-    path = folder / ROWS
-    return path.read_text().split("\n")[:-1] if path.exists() else []
-
-
-@pytest.mark.nightly("bench/keep/test_runs.py::test_a_line_that_was_cut_off_is_measured_again_and_no_other")
-@pytest.mark.usefixtures("gl")
-def test_a_run_killed_again_and_again_ends_as_one_that_was_not(tmp_path):
-    """SIGKILL at random moments, four of them: what was finished stays byte for byte, and the table is the same."""
-    undisturbed, killed = tmp_path / "undisturbed", tmp_path / "killed"
-    out, err = begun(undisturbed).communicate(timeout=120)
-    total, chance = len(lines_of(undisturbed)), random.Random(0)
-    assert total > 20, err
-    before: list[str] = []
-    for target in sorted(chance.sample(range(total), 4)):
-        process = begun(killed)
-        while process.poll() is None and len(lines_of(killed)) < target:
-            time.sleep(0.002)
-        time.sleep(chance.uniform(0, 0.05))
-        process.kill()
-        process.communicate()
-        now = lines_of(killed)
-        assert now[: len(before)] == before, "a finished row changed"
-        before = now
-    done = begun(killed)
-    resumed_out, resumed_err = done.communicate(timeout=120)
-    assert done.returncode == 0 and f"{len(before)} of {total} steps are there" in resumed_err, resumed_err
-    assert lines_of(killed)[: len(before)] == before
-    assert read_run(killed).tables == read_run(undisturbed).tables
-    assert resumed_out.replace(str(killed), "") == out.replace(str(undisturbed), "")
-    for name in ("depth.csv", "depth.json"):
-        assert (killed / name).read_bytes() == (undisturbed / name).read_bytes()
 
 
 def test_parquet_is_there_beside_csv_where_pyarrow_is_and_keeps_types(tmp_path, monkeypatch):

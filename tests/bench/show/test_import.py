@@ -3,10 +3,7 @@
 import json
 import os
 import shutil
-import signal
-import subprocess
 import sys
-import time
 from collections import Counter
 from pathlib import Path
 
@@ -15,9 +12,7 @@ import pytest
 
 from normalbench.bench.door.cli import app as cli
 from normalbench.bench.keep import runs
-from normalbench.bench.keep.journal import Journal
 from normalbench.bench.keep.runs import read_run
-from normalbench.bench.show import import_command
 from normalbench.bench.tables.devices.agreement import sentences
 from normalbench.bench.tables.registry import TABLES
 
@@ -144,28 +139,6 @@ def test_a_full_disk_leaves_the_run_as_it_was(run, tmp_path, folder, monkeypatch
     assert not list(folder.glob(".*partial"))
 
 
-@pytest.mark.parametrize("when", ["before the rows", "after the rows"])
-def test_a_run_whose_import_is_killed_is_whole(run, tmp_path, folder, monkeypatch, when):
-    """Between any two of the files that are written; another import adds what is missing."""
-    replace = Journal.replace
-
-    def dying(self, lines):
-        if when == "after the rows":
-            replace(self, lines)
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(Journal, "replace", dying)
-    path = made.write(tmp_path / "a.json")
-    assert run("import", str(path), "-o", str(folder))[0] == 130
-    monkeypatch.setattr(Journal, "replace", replace)
-    done = read_run(folder)
-    assert done.finished and not done.damage and len(done.tables["quality"]) == 1
-    assert ("devices" in done.tables) == (when == "after the rows")
-    assert run("import", str(path), "-o", str(folder))[0] == 0
-    done = read_run(folder)
-    assert not done.damage and len(done.tables["devices"]) == 39
-
-
 @pytest.mark.slow
 def test_a_run_goes_on_after_an_import(run, tmp_path, folder):
     """With another set: the devices stay, and the page of the run has them."""
@@ -255,39 +228,6 @@ def test_the_sentences_name_who_agrees_and_where_the_others_differ():
         "D, Chromium 156 differs in 1 of 1 codec, most in spheremap rgba8: 0.00153 % of its codes, by one step each."
     ]
     assert "2 versions of the program" in sentences([*rows, rows[0] | {"sources": "y"}])[-1]
-
-
-def test_tables_of_an_import_that_was_killed_are_written_by_the_next(run, tmp_path, folder, monkeypatch):
-    """It ends between the rows and the tables that are derived from them; nothing is new the second time."""
-    words = ("import", str(made.write(tmp_path / "a.json")), "-o", str(folder))
-
-    def killed(*_):
-        raise KeyboardInterrupt
-
-    with monkeypatch.context() as patch:
-        patch.setattr(import_command, "write_tables", killed)
-        assert run(*words)[0] == 130
-    assert len(read_run(folder).tables["devices"]) == 39 and not (folder / "devices.csv").exists()
-    status, out, _ = run(*words)
-    assert status == 0 and "nothing added" in out
-    assert len(json.loads((folder / "devices.json").read_text())) == 39 and (folder / "devices.csv").exists()
-
-
-@pytest.mark.slow
-def test_a_killed_import_keeps_all_or_nothing(tmp_path, folder):
-    """Ended by SIGKILL at five moments."""
-    before, path = content_of(folder), made.write(tmp_path / "a.json")
-    words = [sys.executable, "-m", "normalbench", "import", str(path), "-o", str(folder)]
-    for at in range(0, 20, 4):
-        for name, data in before.items():
-            (folder / name).write_bytes(data)
-        process = subprocess.Popen(words, stdout=subprocess.DEVNULL)
-        time.sleep(0.4 + 0.02 * at)
-        process.send_signal(signal.SIGKILL)
-        process.wait()
-        done = read_run(folder)
-        assert done.finished and not done.damage and len(done.tables["quality"]) == 1, at
-        assert len(done.tables.get("devices", ())) in (0, 39), at
 
 
 def test_an_older_file_in_a_folder_does_not_stop_a_gate(run, tmp_path):

@@ -25,8 +25,8 @@ from normalbench.gbuffer.frame.plan import Plan
 from normalbench.gbuffer.layouts.presets import LAYOUTS
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
+from normalbench.gbuffer.scenes.built_in.gloss import POWERS
 from normalbench.gbuffer.scenes.catalogue import SCENES
-from normalbench.gbuffer.scenes.gloss import POWERS
 from normalbench.gbuffer.scenes.scene import TURNS, View
 from normalbench.gbuffer.scenes.setting import Setting
 from normalbench.reports.page.pixels import MAX_FILM, film_uri

@@ -9,7 +9,7 @@ import pytest
 
 from normalbench.bench.keep.runs import facts_of, opened, read_run
 from normalbench.bench.measures.metrics.totals import Total, Worst, total_of
-from normalbench.bench.run.measuring import Nothing, asked, measured_steps
+from normalbench.bench.run.measuring import Nothing, asked, measured
 from normalbench.bench.run.workers import tasks
 from normalbench.bench.run.workers.orders import parcels_of
 from normalbench.bench.subjects.normals import normal_sets
@@ -36,7 +36,7 @@ def ask(backend="jax", encoding="octahedral,best_fit", normals="sphere"):
 
 
 def rows_of(one, kept=None):
-    return [row for rows in measured_steps(one, kept or Nothing()) for row in rows]
+    return [row for rows in measured(one, kept or Nothing()).kept for row in rows]
 
 
 @pytest.mark.usefixtures("gl")

@@ -67,6 +67,13 @@ def test_rows_say_what_was_rendered_and_how_far_it_is_off(run):
     assert octahedral["clock"] == WALL or "query" in octahedral["clock"]
 
 
+def test_ranks_are_those_of_new_rows():
+    """Rows that are kept stay as they were measured."""
+    about = dict.fromkeys(rendering.SAME)
+    rows = [about | {"psnr_db": db, "normal_psnr_db": db} for db in (40.0, 50.0)]
+    assert [row["rank"] for row in rendering.ranked(rows)] == [2, 1] and not any("rank" in row for row in rows)
+
+
 def test_rows_stand_by_bits_and_then_the_best_first(run):
     _, out, _ = run("render", *SMALL, "--scene", "room", "--encoding", "xy,xyz,octahedral", "--format", "json")
     assert [row["encoding"] for row in json.loads(out)] == ["octahedral", "xy", "xyz"]
@@ -100,6 +107,8 @@ def test_a_scene_that_draws_nothing_is_refused_and_not_exact(run, tmp_path, monk
         assert (status, out) == (2, "") and "away.glb: its camera sees nothing; move it" in err, words
         assert len(err.splitlines()) == 1, err
     status, out, err = run("lights", "--experiment", "image", *code[4:])
+    assert (status, out) == (2, "") and "away.glb: prepass cannot carry metal/rough materials" in err, err
+    status, out, err = run("lights", "--experiment", "image", "--pipeline", "hybrid", *code[4:])
     assert (status, out) == (2, "") and "away.glb: no light reaches what its camera sees" in err, err
 
 

@@ -121,7 +121,7 @@ def test_a_users_own_rates():
 @pytest.mark.parametrize(
     "words, said",
     [
-        ("rx9999", "unknown GPU; known: all, rx480"),
+        ("rx9999", "unknown GPU 'rx9999'; known: all, rx480"),
         ("navi21:clock=2", "needs lanes, memory, such as navi21:clock=2:lanes=2304:memory=448"),
         ("rx480:clock=1:clock=2", "a setting is given twice"),
         ("rx480:speed=3", "unknown setting 'speed=3'; known: lanes, clock, memory"),

@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import queue
 import signal
 import subprocess
 import sys
@@ -192,6 +193,28 @@ def test_what_was_put_off_does_not_end_the_program_twice(monkeypatch):
             cli._end(signal.SIGINT, None)
         assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)
         signal.raise_signal(signal.SIGALRM)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+class Interrupted:
+    """Is interrupted as it is freed, where Python swallows what is raised."""
+
+    def __del__(self):
+        cli._end(signal.SIGTERM, None)
+
+
+def test_what_a_callback_swallowed_ends_a_program_that_only_waits(monkeypatch):
+    """A worker that waits for its next job takes no step at which the interruption would be raised again."""
+    monkeypatch.setattr(sys, "unraisablehook", sys.unraisablehook)
+    monkeypatch.setattr(cli, "ending", [])
+    before = signal.getsignal(signal.SIGALRM)
+    try:
+        Interrupted()
+        with pytest.raises(SystemExit) as ended:
+            queue.SimpleQueue().get(timeout=20)
+        assert ended.value.code == cli.TERMINATED
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, before)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import subprocess
+import shutil
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,17 +13,17 @@ from .....gbuffer.gl.shader import ShaderError, read_shader
 from ....ground.machine import children
 from ....ground.output.errors import MissingError
 from .interface import MADE, Interface, Ran, Run, Runner, ran_of, rows_of
-from .sources import SECONDS, compile_with, first_line, folder, on_path
+from .sources import compile_with, first_line, folder, required, run_apart
 
 WRAPPER, MAIN = Path(__file__).with_suffix(".c"), Path(__file__).with_name("main.c")
 EXACT = ("-O2", "-ffp-contract=off")
 LIMITS = {"RUN_SECONDS": children.SECONDS, "RUN_MEMORY": f"{children.MEMORY}ull", "RUN_FILE": f"{children.FILE}ull"}
-INSTALL = "Debian: apt-get install gcc"
+INSTALL = "no C: cc is not on the path; install it (Debian: apt-get install gcc)"
 
 
 def compiler() -> str:
     """The C compiler. Raises MissingError."""
-    return on_path("cc", INSTALL)
+    return required(shutil.which("cc"), INSTALL)
 
 
 @contextmanager
@@ -75,16 +75,12 @@ def called(program: Path, path: Path, interface: Interface) -> Run:
         place, count = program.parent, len(n)
         rows_of(n, view, texels).tofile(place / "given.bin")
         try:
-            done = children.finished([str(program), str(place), str(count)], SECONDS)
-        except subprocess.TimeoutExpired as error:
-            raise ShaderError(f"{path}: it did not end within {SECONDS} s") from error
+            run_apart(path, [str(program), str(place), str(count)])
         except PermissionError as error:
             where = place.parent
             raise MissingError(
                 f"C cannot be run: {where} runs no programs; set TMPDIR to a folder that does"
             ) from error
-        if done.returncode:
-            raise ShaderError(f"{path}: it {children.how_it_ended(done)}")
         made, words = (np.fromfile(place / name, kind) for name, kind in (("made.bin", "<f4"), ("words.bin", "<u4")))
         return ran_of(made.reshape(MADE * count, 4), words.reshape(count, 4), interface)
 

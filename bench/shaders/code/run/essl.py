@@ -30,7 +30,7 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
     with folder() as place:
         (place / "code.comp").write_text(source.text, encoding="utf-8")
         for name, table in interface.tables.items():
-            np.save(place / f"{name}.table.npy", _rgba(table))
+            np.save(place / f"{name}.table.npy", _rgba_table(table))
 
         def run(n: np.ndarray, view: np.ndarray, texels: np.ndarray) -> Ran:
             if not len(n):
@@ -42,7 +42,7 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
         yield run
 
 
-def _rgba(table: np.ndarray) -> np.ndarray:
+def _rgba_table(table: np.ndarray) -> np.ndarray:
     height, width, channels = table.shape
     return np.concatenate([table, np.zeros((height, width, 4 - channels))], axis=2, dtype=np.float32)
 

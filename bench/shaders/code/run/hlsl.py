@@ -7,18 +7,17 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ...isa import spirv
+from ...languages import tools
 from . import opengl
 from .interface import Interface, Run, Runner
-from .sources import EmittedSource, compile_with, folder, on_path, required
+from .sources import EmittedSource, compile_with, folder, required
 
 WRAPPER = Path(__file__).with_suffix(".hlsl")
-CROSS = "spirv-cross"
-INSTALL_CROSS = "Debian: apt-get install spirv-cross"
 # Bindings of what the file declares itself: behind the three buffers.
 OPTIONS = ("-S", "comp", "-e", "main", "-V", "--target-env", "vulkan1.1", "--auto-map-bindings")
 
 
-def _glslang() -> str:
+def _glslang_path() -> str:
     spirv.compiler()
     return required(spirv.COMPILER, spirv.NO_COMPILER)
 
@@ -30,7 +29,7 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
     with folder() as place:
         given = place / "code.hlsl"
         given.write_text(source.text, encoding="utf-8")
-        compile_with([_glslang(), "-D", *OPTIONS, "-o", str(place / "code.spv"), str(given)], source, given)
+        compile_with([_glslang_path(), "-D", *OPTIONS, "-o", str(place / "code.spv"), str(given)], source, given)
         text = glsl_of(place / "code.spv")
     with opengl.prepared(opengl.compiled(text, str), interface) as run:
         yield run
@@ -38,13 +37,13 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
 
 def glsl_of(binary: Path) -> str:
     """GLSL of desktop OpenGL of a module of SPIR-V. Raises MissingError, ShaderError."""
-    cross = on_path(CROSS, INSTALL_CROSS)
+    cross = str(tools.path_of(tools.SPIRV_CROSS))
     return compile_with([cross, "--version", "430", "--no-es", "--no-420pack-extension", str(binary)])
 
 
 def translators() -> str:
     """The two translators. Raises MissingError."""
-    glslang, cross = spirv.title(spirv.compiler()), Path(on_path(CROSS, INSTALL_CROSS)).name
+    glslang, cross = spirv.title(spirv.compiler()), tools.path_of(tools.SPIRV_CROSS).stem
     return f"{glslang.replace('glslang', spirv.COMPILER)}, {cross}"
 
 

@@ -10,6 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...translator.writer import PUBLIC
+
 # How many normals are run at once: it bounds the memory of a run.
 BLOCK = 2**16
 # What a shader is given of each normal (normal, view, texel), and what it makes (code, unpacked, decoded, target, from
@@ -42,12 +44,9 @@ class Interface:
     @property
     def defines(self) -> dict[str, object]:
         """The macros by which the shaders here call the six functions."""
-        named = {name.upper(): f"{self.prefix}_{name}" for name in FUNCTIONS}
+        named = {name.upper(): f"{self.prefix}_{name}" for name in PUBLIC}
         facts = {"SIZE": self.size, "SIGN": self.sign_bits, "WORDS": self.words, "VIEW": int(self.takes_view)}
         return {f"RUN_{name}": value for name, value in {**named, **facts}.items()}
-
-
-FUNCTIONS = ("encode", "pack", "unpack", "decode", "to_target", "from_target")
 
 
 class Ran(NamedTuple):

@@ -41,25 +41,28 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
     with folder() as place:
         (place / "code.metal").write_text(text, encoding="utf-8")
         (place / "metal_stdlib").write_text(f'#include "{LIBRARY}"\n', encoding="utf-8")
-        defines = macros(interface.defines | _tables(text, interface))
+        defines = macros(interface.defines | _table_macros(text, interface))
         defines += macros({**LIMITS, "RUN_TABLE_COUNT": len(interface.tables), "_GNU_SOURCE": 1})
         command = [clang, *OPTIONS, "-I", str(place), *defines, str(WRAPPER), str(MAIN)]
         _write(interface.tables, place)
         yield called(compiled(command, place / "code", {str(place / "code.metal"): str(path)}), path, interface)
 
 
-def _tables(text: str, interface: Interface) -> dict[str, object]:
+def _table_macros(text: str, interface: Interface) -> dict[str, object]:
     """Macros that name the tables, and those that the encoder and the decoder take behind their other arguments."""
     names = sorted(interface.tables) or [NONE]
     pointers = ", ".join(f"&{name}" for name in names)
-    taken = {f"RUN_{side.upper()}_TABLES": _taken(text, f"{interface.prefix}_{side}", names) for side in SIDES}
+    taken = {
+        f"RUN_{side.upper()}_TABLES": _table_arguments(text, f"{interface.prefix}_{side}", names) for side in SIDES
+    }
     return {"RUN_TABLES": ", ".join(names), "RUN_POINTERS": pointers, **taken}
 
 
 SIDES = ("encode", "decode")
 
 
-def _taken(text: str, function: str, tables: list[str]) -> str:
+def _table_arguments(text: str, function: str, tables: list[str]) -> str:
+    """The tables that a function takes, as further arguments of its call."""
     declared = re.search(rf"\b\w+\s+{function}\s*\(([^)]*)\)\s*\{{", text)
     words = re.findall(r"\w+", declared[1]) if declared else []
     return "".join(f", {name}" for name in tables if name in words)

@@ -32,7 +32,7 @@ def prepared(compute: Any, interface: Interface) -> Iterator[Run]:
     gl = device()
     with ExitStack() as stack:
         gl.owned(stack, compute)
-        bind(compute, uploaded(gl, stack, _by_sampler(compute, interface.tables)))
+        bind(compute, uploaded(gl, stack, _tables_by_sampler(compute, interface.tables)))
 
         def run(n: np.ndarray, view: np.ndarray, texels: np.ndarray) -> Ran:
             return ran_of(*dispatched(gl, compute, rows_of(n, view, texels)), interface)
@@ -40,7 +40,7 @@ def prepared(compute: Any, interface: Interface) -> Iterator[Run]:
         yield run
 
 
-def _by_sampler(compute: Any, tables: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+def _tables_by_sampler(compute: Any, tables: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     samplers = {name: max((table for table in tables if table in name), key=len, default="") for name in compute}
     return {sampler: tables[table] for sampler, table in samplers.items() if table}
 

@@ -15,7 +15,8 @@ from types import ModuleType
 import numpy as np
 
 from ....ground.machine import children
-from .interface import FUNCTIONS, Ran
+from ...translator.writer import PUBLIC
+from .interface import Ran
 
 
 def imported(path: Path) -> ModuleType:
@@ -35,7 +36,7 @@ def main(words: list[str]) -> None:
     children.limit_this_process()
     path, folder, (prefix, takes_view, sign_bits) = Path(words[0]), Path(words[1]), words[2:]
     module = imported(path)
-    six = {name: getattr(module, f"{prefix}_{name}") for name in FUNCTIONS}
+    six = {name: getattr(module, f"{prefix}_{name}") for name in PUBLIC}
     with np.load(folder / "given.npz") as given:
         n, view, texels = given["n"], given["view"], given["texels"]
     rays = (view,) if int(takes_view) else ()

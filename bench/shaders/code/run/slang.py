@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
-from importlib.util import find_spec
 from pathlib import Path
 
 from ...isa import spirv
+from ...languages import tools
 from . import opengl
 from .hlsl import WRAPPER, glsl_of, translators
 from .interface import Interface, Run, Runner
-from .sources import EmittedSource, compile_with, first_line, folder, required
-
-INSTALL = "no Slang compiler: slangc is not on the path; install it (pip install --no-deps slangtorch)"
+from .sources import EmittedSource, compile_with, first_line, folder
 
 
-def compiler() -> str:
-    """slangc of the search path, or that of the package slangtorch, which is not imported. Raises MissingError."""
-    found = find_spec("slangtorch")
-    wheel = Path(found.origin).parent / "bin" if found and found.origin else Path()
-    return required(shutil.which("slangc") or shutil.which("slangc", path=str(wheel)), INSTALL)
+def _compiler() -> str:
+    return str(tools.path_of(tools.SLANG))
 
 
 @contextmanager
@@ -32,7 +26,7 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
         given, glsl, binary = (place / f"code.{ending}" for ending in ("slang", "comp", "spv"))
         given.write_text(source.text, encoding="utf-8")
         options = ("-target", "glsl", "-stage", "compute", "-entry", "main")
-        compile_with([compiler(), str(given), *options, "-o", str(glsl)], source, given)
+        compile_with([_compiler(), str(given), *options, "-o", str(glsl)], source, given)
         spirv.compiler()
         compile_with([spirv.COMPILER, "-V", "--target-env", "vulkan1.1", "-o", str(binary), str(glsl)])
         text = glsl_of(binary)
@@ -42,7 +36,7 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
 
 def how() -> str:
     """The compilers and the device. Raises MissingError, NoDeviceError."""
-    return f"slangc {first_line(compiler(), '-v')}, {translators()}, {opengl.device_name()}"
+    return f"slangc {first_line(_compiler(), '-v')}, {translators()}, {opengl.device_name()}"
 
 
 RUNNER = Runner(prepared, how)

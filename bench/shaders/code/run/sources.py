@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 import tempfile
 from collections.abc import Iterator, Sequence
@@ -29,10 +28,10 @@ class EmittedSource(Source):
 
     def __init__(self, wrapper: Path, code: Path, interface: Interface):
         super().__init__(wrapper, interface.defines, {"CODE": code})
-        self._lines: list[Line] = [self._kept(line) for line in self._lines]
+        self._lines: list[Line] = [self._kept_line(line) for line in self._lines]
         self.text = "".join(f"{line}\n" for line, _, _ in self._lines)
 
-    def _kept(self, line: Line) -> Line:
+    def _kept_line(self, line: Line) -> Line:
         text, path, number = line
         return ("" if path != self.place and text.lstrip().startswith("#version") else text, path, number)
 
@@ -44,16 +43,26 @@ def folder() -> Iterator[Path]:
         yield Path(made)
 
 
+def run_apart(path: Path, command: Sequence[str]) -> None:
+    """Run what was made of a file, in a process of its own for a limited time.
+
+    Raises:
+        ShaderError: it does not end, or ends badly.
+        PermissionError: it may not be run.
+    """
+    try:
+        done = children.finished(command, SECONDS)
+    except subprocess.TimeoutExpired as error:
+        raise ShaderError(f"{path}: it did not end within {SECONDS} s") from error
+    if done.returncode:
+        raise ShaderError(f"{path}: it {children.how_it_ended(done)}")
+
+
 def required(tool: str | None, install: str) -> str:
     """A tool that is there. Raises MissingError, which says what to install."""
     if not tool:
         raise MissingError(install)
     return tool
-
-
-def on_path(tool: str, install: str) -> str:
-    """A tool of the search path. Raises MissingError, which says what to install."""
-    return required(shutil.which(tool), f"{tool} is not on the path; install it ({install})")
 
 
 def compile_with(command: Sequence[str], source: Source | None = None, given: Path | None = None) -> str:

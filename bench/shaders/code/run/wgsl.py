@@ -55,7 +55,7 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
     program = _program(gpu, path, interface, tables.layout)
 
     def run(n: np.ndarray, view: np.ndarray, texels: np.ndarray) -> Ran:
-        made, words = _dispatched(gpu, program, tables.group, rows_of(n, view, texels))
+        made, words = _dispatched_rows(gpu, program, tables.group, rows_of(n, view, texels))
         return ran_of(made, words, interface)
 
     yield run
@@ -140,7 +140,7 @@ def _complaint(said: str) -> str:
     return words[:400]
 
 
-def _dispatched(gpu: Any, program: Any, tables: Any, given: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _dispatched_rows(gpu: Any, program: Any, tables: Any, given: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """What the shader makes of rows: float32 of shape (MADE count, 4) and uint32 of shape (count, 4)."""
     import wgpu
 

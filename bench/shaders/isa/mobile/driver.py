@@ -22,7 +22,7 @@ INSTALL = "build it once, in a checkout of normalbench (python -m tests.build_me
 
 def folder() -> Path | None:
     """The folder with the user's build; None where there is none."""
-    named = os.environ.get(VARIABLE) or _recorded()
+    named = os.environ.get(VARIABLE) or _recorded_text()
     return Path(named).expanduser() if named else None
 
 
@@ -32,7 +32,7 @@ def record(where: Path) -> None:
     (kept.folder() / RECORD).write_text(f"{where.resolve()}\n", encoding="utf-8")
 
 
-def _recorded() -> str:
+def _recorded_text() -> str:
     record = kept.folder() / RECORD
     return record.read_text(encoding="utf-8").strip() if kept.is_private(record) else ""
 

@@ -49,10 +49,10 @@ def instructions(assembly: str) -> Iterator[Instruction]:
 
 def names(assembly: str) -> list[str]:
     """The name of each operation, in order."""
-    return [_named(part) for one in instructions(assembly) for part in one.operations]
+    return [_operation_name(part) for one in instructions(assembly) for part in one.operations]
 
 
-def _named(operation: str) -> str:
+def _operation_name(operation: str) -> str:
     """An operation's name, without its conditions; empty for what has none."""
     match = _NAME.match(operation)
     return match[0] if match else ""
@@ -64,7 +64,7 @@ def kind(one: Instruction) -> str:
         return "memory" if any(signal != "thrsw" for signal in one.signals if signal) else "waiting"
     if _JUMP.match(one.operations[0]):
         return "control_flow"
-    found = {_named(operation) for operation in one.operations}
+    found = {_operation_name(operation) for operation in one.operations}
     if any(_WRITES_OUT.match(operation) for operation in one.operations) or any(map(_MEMORY.fullmatch, found)):
         return "memory"
     if unknown := {name for name in found - _TRANSCENDENTAL - _CONVERSIONS if not _ALU.fullmatch(name)}:

@@ -39,8 +39,8 @@ class CudaWriter(Writer):
     def _table(self, table: Table) -> str:
         return f"__constant__ sampler2D {table.name};"
 
-    def _global(self, constant: Declare) -> str:
-        return f"static constexpr {self._declared(constant)};"
+    def _global_text(self, constant: Declare) -> str:
+        return f"static constexpr {self._declaration_text(constant)};"
 
     def _signature(self, function: Function) -> str:
         parameters = (f"{self._kind(p.kind)} {'&' * p.is_changed}{self._name(p.name)}" for p in function.parameters)
@@ -50,40 +50,40 @@ class CudaWriter(Writer):
         scalar, bracket, count = kind.partition("[")
         return f"Array<{scalar}, {count.rstrip(']')}>" if bracket else kind
 
-    def _declared(self, declared: Declare) -> str:
+    def _declaration_text(self, declared: Declare) -> str:
         value = f" = {self._text(declared.value)}" if declared.value is not None else ""
         return f"{self._kind(declared.kind)} {self._name(declared.name)}{value}"
 
     def _elements(self, value: Elements) -> str:
         return f"{self._kind(value.kind)}{{{self._listed(value)}}}"
 
-    def _plain(self, statement: Statement) -> str:
+    def _simple_text(self, statement: Statement) -> str:
         match statement:
             case Assign(Swizzle(kind, inner, names) as target, mark, value) if len(names) > 1:
                 made = value if mark == "=" else Binary(kind, mark[:-1], target, value)
-                return f"assign<{_places(names)}>({self._text(inner)}, {self._text(made)})"
-        return super()._plain(statement)
+                return f"assign<{_field_indices(names)}>({self._text(inner)}, {self._text(made)})"
+        return super()._simple_text(statement)
 
-    def _written(self, value: Expression) -> tuple[str, int]:
+    def _text_and_level(self, value: Expression) -> tuple[str, int]:
         match value:
             case Swizzle(_, inner, names):
-                return self._swizzled(inner, names), PRIMARY
-        return super()._written(value)
+                return self._swizzle_text(inner, names), PRIMARY
+        return super()._text_and_level(value)
 
-    def _swizzled(self, inner: Expression, names: str) -> str:
+    def _swizzle_text(self, inner: Expression, names: str) -> str:
         if len(names) == 1:
-            return f"{self._text(inner, PRIMARY)}[{_places(names)}]"
-        return f"swizzled<{_places(names)}>({self._text(inner)})"
+            return f"{self._text(inner, PRIMARY)}[{_field_indices(names)}]"
+        return f"swizzled<{_field_indices(names)}>({self._text(inner)})"
 
     def _block(self, head: str, body: list[Statement], indent: str) -> str:
         # Compilers of shaders unroll every loop that they know the length of; CUDA's stops sooner unless asked.
         unrolls = f"{indent}#pragma unroll\n" if head.startswith("for") else ""
         return unrolls + super()._block(head, body, indent)
 
-    def _choice(self, value: Choice) -> tuple[str, int]:
+    def _choice_and_level(self, value: Choice) -> tuple[str, int]:
         """Both values are computed and one is taken, which is what compilers of shaders make of `?:`."""
         return f"chosen({', '.join(map(self._text, (value.condition, value.chosen, value.other)))})", PRIMARY
 
 
-def _places(names: str) -> str:
+def _field_indices(names: str) -> str:
     return ", ".join(str(FIELDS.index(name)) for name in names)

@@ -44,7 +44,7 @@ def _parted(lines: Sequence[str], sizes: Sequence[int]) -> list[str]:
             place, is_inside = int(match[1], 16), True
             while place >= starts[at + 1]:
                 at += 1
-            line = _moved(line, place, starts[at])
+            line = _relative_line(line, place, starts[at])
         if is_inside:
             found[at].append(line)
     if any(
@@ -54,7 +54,7 @@ def _parted(lines: Sequence[str], sizes: Sequence[int]) -> list[str]:
     return ["\n".join(some) + "\n" for some in found]
 
 
-def _moved(line: str, place: int, start: int) -> str:
+def _relative_line(line: str, place: int, start: int) -> str:
     """A line with its own place, and the one that it jumps to, from the kernel's start."""
     line = line.replace(f"/*{place:04x}*/", f"/*{place - start:04x}*/", 1)
     code, mark, words = line.partition(";")

@@ -49,16 +49,16 @@ class Nvrtc:
             given = (ctypes.c_char_p * len(options))(*options)
             if self._library.nvrtcCompileProgram(program, len(options), given):
                 raise DriverError(f"NVRTC does not compile it: {self._log(program)}")
-            return self._bytes("CUBIN", program)
+            return self._output_bytes("CUBIN", program)
         finally:
             self._library.nvrtcDestroyProgram(ctypes.byref(program))
 
     def _log(self, program: ctypes.c_void_p) -> str:
         """The first error that the compiler names, else its first line."""
-        lines = self._bytes("ProgramLog", program).decode(errors="replace").strip("\0\n").splitlines()
+        lines = self._output_bytes("ProgramLog", program).decode(errors="replace").strip("\0\n").splitlines()
         return next((line for line in lines if "error" in line), lines[0] if lines else "it does not say why")[:200]
 
-    def _bytes(self, what: str, program: ctypes.c_void_p) -> bytes:
+    def _output_bytes(self, what: str, program: ctypes.c_void_p) -> bytes:
         size = ctypes.c_size_t()
         self._asked(f"nvrtcGet{what}Size", program, ctypes.byref(size))
         held = ctypes.create_string_buffer(size.value)

@@ -22,10 +22,10 @@ FOLDERS = ("/usr/lib/{machine}-linux-gnu/dri", "/usr/lib64/dri", "/usr/lib/dri")
 @cache
 def driver_file() -> Path | None:
     """The driver, or None where there is none."""
-    return next((folder / DRIVER for folder in _folders() if (folder / DRIVER).exists()), None)
+    return next((folder / DRIVER for folder in _driver_folders() if (folder / DRIVER).exists()), None)
 
 
-def _folders() -> Iterator[Path]:
+def _driver_folders() -> Iterator[Path]:
     yield from map(Path, filter(None, os.environ.get("LIBGL_DRIVERS_PATH", "").split(os.pathsep)))
     yield from (Path(folder.format(machine=platform.machine())) for folder in FOLDERS)
 

@@ -41,11 +41,11 @@ class Step:
     change: Change
 
 
-def _same(codes: np.ndarray) -> np.ndarray:
+def _unchanged_codes(codes: np.ndarray) -> np.ndarray:
     return codes
 
 
-NOTHING = Step("", _same)
+NOTHING = Step("", _unchanged_codes)
 RANGES = (
     NOTHING,
     Step("c * 0.5 + 0.5", lambda c: c * 0.5 + 0.5),
@@ -55,15 +55,15 @@ RANGES = (
 )
 
 
-def _turned(codes: np.ndarray) -> np.ndarray:
+def _turned_codes(codes: np.ndarray) -> np.ndarray:
     x, y = codes.T
     return np.stack([x + y, x - y], axis=1)
 
 
 TURNS = (
     NOTHING,
-    Step("a turn by 45 degrees, (c.x + c.y, c.x - c.y)", _turned),
-    Step("a turn by 45 degrees, (c.x + c.y, c.x - c.y) / 2", lambda c: _turned(c) / 2),
+    Step("a turn by 45 degrees, (c.x + c.y, c.x - c.y)", _turned_codes),
+    Step("a turn by 45 degrees, (c.x + c.y, c.x - c.y) / 2", lambda c: _turned_codes(c) / 2),
 )
 
 
@@ -82,15 +82,15 @@ def _orders(size: int) -> tuple[Step, ...]:
     made = []
     for order in itertools.permutations(range(size)):
         for signs in itertools.product((1, -1), repeat=size):
-            made.append(Step(_order_said(order, signs), _ordered(order, signs)))
+            made.append(Step(_order_text(order, signs), _order_change(order, signs)))
     return tuple(sorted(made, key=lambda step: len(step.said)))
 
 
-def _ordered(order: Sequence[int], signs: Sequence[int]) -> Change:
+def _order_change(order: Sequence[int], signs: Sequence[int]) -> Change:
     return lambda codes: codes[:, list(order)] * np.array(signs, codes.dtype)
 
 
-def _order_said(order: Sequence[int], signs: Sequence[int]) -> str:
+def _order_text(order: Sequence[int], signs: Sequence[int]) -> str:
     moved = [at for at in range(len(order)) if order[at] != at]
     names = "its numbers" if len(order) == len(moved) else f"numbers {' and '.join(str(at + 1) for at in moved)}"
     swapped = [f"{names} swapped, c.{''.join(AXES[at] for at in order)}"] if moved else []

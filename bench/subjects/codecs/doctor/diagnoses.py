@@ -14,6 +14,7 @@ from .....gbuffer.gl.device import Device
 from ....ground.directions import circles, directions
 from . import exact, folds, nearly
 from .between import MOST, SAME_DEG, axes_of, step_between
+from .cut_off import cut_off
 from .domains import EXACT_DEG, HALVES, HEMISPHERE, SPHERE, Domain, asked, finite, guessed
 from .halves import Sides, lost, unread, unused
 from .likeness import likeness
@@ -35,7 +36,7 @@ class Diagnosis:
     Attributes:
         domain: what it is made for.
         wrong: what is likely wrong, lines.
-        broken: a direction of the domain where a function is not finite, so that nothing can be measured; else empty.
+        broken: a direction of the domain where a function is not finite, if many are; nothing can be measured then.
         hole: a direction outside of the domain where a function is not finite; else empty.
     """
 
@@ -62,32 +63,38 @@ def diagnosed(probe: Probe, gl: Device, name: str = "") -> Diagnosis:
     trip = trip_of(probe, directions())
     whole, kept = finite(trip), trip.of(trip.is_finite)
     meant = asked(name, kept, whole) if name else None
-    if not whole or meant not in (None, *whole):
+    # What is no number of a few directions is counted in tables, and the rest is measured.
+    is_nearly_whole = trip.is_finite[(meant or SPHERE).holds(trip)].mean() > MOST
+    if not is_nearly_whole and (not whole or meant not in (None, *whole)):
         broken = meant.held(trip).hole if meant else trip.hole
         return Diagnosis(meant or SPHERE, folds.mistakes(probe), broken)
-    found = _diagnosed(kept, probe, gl, meant)
+    found = _finite_diagnosis(kept, probe, gl, meant)
     if found.domain in whole:
         return replace(found, hole=trip.hole)
+    hole = found.domain.held(trip).hole
+    if is_nearly_whole:
+        # Its author may rely on these directions as well. A mistake that makes them is named in place of what follows
+        # from it.
+        wrong = [line for line in folds.mistakes(probe) if line not in found.wrong] + found.wrong
+        return replace(found, wrong=[hole, *wrong] if wrong else [f"{hole}; all other directions come back"])
     if found.wrong or found.domain != SPHERE:
-        return replace(found, broken=found.domain.held(trip).hole)
-    # All that is finite comes back. Where that is nearly the sphere, its author may rely on the rest as well.
-    is_a_fault = trip.is_finite.mean() > MOST
-    wrong = [f"{trip.hole}; all other directions come back"] if is_a_fault else []
-    return Diagnosis(whole[0], wrong, hole=trip.hole)
+        return replace(found, broken=hole)
+    return Diagnosis(whole[0], [], hole=trip.hole)
 
 
-def _diagnosed(trip: Trip, probe: Probe, gl: Device, meant: Domain | None) -> Diagnosis:
+def _finite_diagnosis(trip: Trip, probe: Probe, gl: Device, meant: Domain | None) -> Diagnosis:
     """What is likely wrong, of directions that are finite.
 
     Args:
         meant: the domain that the user says it is made for; None to find out.
     """
-    within = _within(trip)
+    # What packs by itself has few codes, as many as it likes.
+    within = NEARLY_DEG if probe.is_packed else _same_within_deg(trip)
     domain = meant or guessed(trip, within)
     wider = None if meant else _nearly_back(trip, domain)
     if wider and (found := list(nearly.mistakes(wider.held(trip), probe))):
-        return _nearly(trip, probe, wider, found)
-    if domain.name == HEMISPHERE and not meant and (half := list(_half(trip, probe, domain))):
+        return _near_diagnosis(trip, probe, wider, found)
+    if domain.name == HEMISPHERE and not meant and (half := list(_half_faults(trip, probe, domain))):
         return Diagnosis(SPHERE, [*half, *_of_held(domain.held(trip), probe)])
     if domain.name and not _is_lost(trip, domain, within):
         return Diagnosis(domain, _of_pair(trip, probe, domain, is_meant=bool(meant)))
@@ -100,12 +107,12 @@ def _nearly_back(trip: Trip, domain: Domain) -> Domain | None:
     return wider if wider.name and wider != domain else None
 
 
-def _nearly(trip: Trip, probe: Probe, domain: Domain, found: list[str]) -> Diagnosis:
+def _near_diagnosis(trip: Trip, probe: Probe, domain: Domain, found: list[str]) -> Diagnosis:
     """Of a domain that comes back nearly, and why."""
     return Diagnosis(domain, [*found, *exact.lengths(domain.held(trip)), *exact.ranges(trip, domain, probe)])
 
 
-def _within(trip: Trip) -> float:
+def _same_within_deg(trip: Trip) -> float:
     """How near a direction comes back to be the same one."""
     lattice = nearly.lattice_of(trip.codes)
     return max(SAME_DEG, OF_A_STEP_DEG / lattice.steps) if lattice else SAME_DEG
@@ -129,13 +136,20 @@ def _of_pair(trip: Trip, probe: Probe, domain: Domain, is_meant: bool) -> list[s
 
 def _of_held(held: Trip, probe: Probe) -> list[str]:
     """What is wrong, in lines, with directions that the code holds."""
-    found = list(nearly.mistakes(held, probe)) if np.median(held.angles()) > EXACT_DEG else []
+    found = list(_inexact(held, probe)) if np.median(held.angles()) > EXACT_DEG else []
     # What is scaled or shifted is far off where the map is steep, which says nothing more.
     seams = [] if found else [*exact.seam(held, probe), *exact.poles(held)]
     return [*found, *seams, *exact.lengths(held)]
 
 
-def _half(trip: Trip, probe: Probe, half: Domain) -> Iterator[str]:
+def _inexact(held: Trip, probe: Probe) -> Iterator[str]:
+    """Why directions come back nearly. The steps of a code that is packed are not those of its halves."""
+    found = [] if probe.is_packed else list(nearly.mistakes(held, probe))
+    rounds_itself = probe.is_packed or nearly.lattice_of(held.codes)
+    yield from found or (cut_off(held, probe) if rounds_itself else ())
+
+
+def _half_faults(trip: Trip, probe: Probe, half: Domain) -> Iterator[str]:
     """What is wrong where a half alone comes back; nothing where it is a design for that half."""
     sides = Sides(trip, probe, half)
     gone = sides.gone
@@ -148,10 +162,10 @@ def _half(trip: Trip, probe: Probe, half: Domain) -> Iterator[str]:
         why = "; ".join([*unread(probe, trip.codes), line])
         yield f"{why}; {gone.worst}"
     else:
-        yield _elsewhere(half, half.lost(trip))
+        yield _elsewhere_text(half, half.lost(trip))
 
 
-def _elsewhere(half: Domain, gone: Trip) -> str:
+def _elsewhere_text(half: Domain, gone: Trip) -> str:
     """How a half comes back that both functions know."""
     if axes := axes_of(gone):
         return f"directions with {half.lost_text} come back with {axes}: {gone.worst}"
@@ -162,14 +176,14 @@ def _of_none(trip: Trip, probe: Probe, gl: Device, given: Domain) -> Diagnosis:
     """Of functions that are no pair, or not one on the domain that a user gives."""
     nearby = given if given.name else guessed(trip, NEARLY_DEG)
     if given.name and (found := list(nearly.mistakes(given.held(trip), probe))):
-        return _nearly(trip, probe, given, found)
-    likely = nearby if nearby.name else _likely(trip)
+        return _near_diagnosis(trip, probe, given, found)
+    likely = nearby if nearby.name else _likely_domain(trip)
     held, ranges = likely.held(trip), list(exact.ranges(trip, likely, probe))
     # What is clipped comes back elsewhere, whatever else is right.
     is_clipped = any(exact.CLIPPED in said for said in ranges)
-    scaled = _scaled(trip, held, probe) if is_clipped and not _is_back_unclipped(held, probe) else ""
+    scaled = _scale_text(trip, held, probe) if is_clipped and not _is_back_unclipped(held, probe) else ""
     if scaled:
-        ranges, why = [], [f"{_apart(held, likely)}; {scaled}"]
+        ranges, why = [], [f"{_apart_text(held, likely)}; {scaled}"]
     else:
         why = [] if is_clipped else [_why(trip, held, probe, gl, likely)]
     # What a wrong code decodes to may have any length, and what stands between the two changes the range.
@@ -185,7 +199,7 @@ def _is_back_unclipped(trip: Trip, probe: Probe) -> bool:
     return bool(np.median(whole.angles()) < SAME_DEG)
 
 
-def _scaled(trip: Trip, held: Trip, probe: Probe) -> str:
+def _scale_text(trip: Trip, held: Trip, probe: Probe) -> str:
     """The scale between the two that makes a pair, if of a half alone; empty where none does."""
     begin = nearly.start(held, probe)
     decoded = probe.decode(begin.of(trip.codes).astype(np.float32))
@@ -194,9 +208,9 @@ def _scaled(trip: Trip, held: Trip, probe: Probe) -> str:
     return found[0] if found else ""
 
 
-def _apart(held: Trip, likely: Domain) -> str:
+def _apart_text(held: Trip, likely: Domain) -> str:
     """How far the two are from a pair."""
-    return f"{NO_PAIR}: {held.angles().mean():.3g} degrees apart on average{_where(likely)} without any storage"
+    return f"{NO_PAIR}: {held.angles().mean():.3g} degrees apart on average{_domain_text(likely)} without any storage"
 
 
 def _why(trip: Trip, held: Trip, probe: Probe, gl: Device, likely: Domain) -> str:
@@ -207,7 +221,7 @@ def _why(trip: Trip, held: Trip, probe: Probe, gl: Device, likely: Domain) -> st
         if axes := axes_of(half.held(trip)):
             held = half.held(trip)
             return f"directions with {half.text} come back with {axes}{_or_numbers(trip, probe)}: {held.worst}"
-    return f"{_apart(held, likely)}; {_what_fits(trip, probe, gl, likely) or held.worst}"
+    return f"{_apart_text(held, likely)}; {_what_fits(trip, probe, gl, likely) or held.worst}"
 
 
 def _or_numbers(trip: Trip, probe: Probe) -> str:
@@ -216,7 +230,7 @@ def _or_numbers(trip: Trip, probe: Probe) -> str:
     return f", as with {between[0].said} between the two" if between else ""
 
 
-def _where(domain: Domain) -> str:
+def _domain_text(domain: Domain) -> str:
     return f" of {domain.made_for.replace('normals', 'directions')}" if domain.made_for else ""
 
 
@@ -226,8 +240,8 @@ def _what_fits(trip: Trip, probe: Probe, gl: Device, likely: Domain) -> str:
         return mistakes[0]
     if between := step_between(trip, probe):
         step, domain = between
-        return f"{step.said} {MAKES_ONE}{_where(domain)}"
-    if scaled := _scaled(trip, likely.held(trip), probe):
+        return f"{step.said} {MAKES_ONE}{_domain_text(domain)}"
+    if scaled := _scale_text(trip, likely.held(trip), probe):
         return scaled
     like = likeness(gl, probe, likely)
     if like.encoder and like.decoder and not like.shared():
@@ -239,8 +253,8 @@ def _what_fits(trip: Trip, probe: Probe, gl: Device, likely: Domain) -> str:
     return ""
 
 
-def _likely(trip: Trip) -> Domain:
-    """The domain where nothing comes back well: a half that comes back far better than the rest."""
+def _likely_domain(trip: Trip) -> Domain:
+    """The half that comes back far better than the rest, where nothing comes back well; the sphere if none does."""
     angles = trip.angles()
     for half in HALVES:
         inside = half.holds(trip)

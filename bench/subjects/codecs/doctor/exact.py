@@ -32,6 +32,8 @@ UNUSUAL = 30.0
 # How far beside a direction that comes back elsewhere others are tried, and how many of them.
 BESIDE, TRIES = 1e-4, 4
 CLIPPED, UNUSED = "storages clip what is beyond", "% is unused"
+# Below it a float32 holds every whole number.
+WHOLE_FLOATS = 2**24
 # A number of at most so many values tells them apart however much of its range it uses.
 FEW_VALUES = 16
 
@@ -126,6 +128,8 @@ def lengths(trip: Trip) -> Iterator[str]:
 
 def ranges(trip: Trip, domain: Domain, probe: Probe) -> Iterator[str]:
     """Numbers that use less than a storage has, of all directions, or more, of those that the encoding is made for."""
+    if probe.is_packed:
+        return
     held = domain.held(trip)
     clipped = np.clip(trip.codes, -1, 1)
     low, high = clipped.min(axis=0), clipped.max(axis=0)
@@ -145,8 +149,26 @@ def ranges(trip: Trip, domain: Domain, probe: Probe) -> Iterator[str]:
             yield f"number {at + 1} of the code is {between}: {100 * (1 - used):.0f} {UNUSED}"
 
 
+def bits_used(codes: np.ndarray) -> int:
+    """How many of the 32 bits of integers, whose halves are two numbers in [-1, 1], are not the same in all.
+
+    Of floats that are whole numbers, the bits of these.
+    """
+    halves = np.rint((codes.astype(np.float64) * 0.5 + 0.5) * (2**16 - 1)).astype(np.uint32)
+    whole = halves[:, 0] | halves[:, 1] << 16
+    as_floats = whole.view(np.float32)
+    with np.errstate(invalid="ignore"):
+        is_counted = bool(((as_floats == np.rint(as_floats)) & (np.abs(as_floats) < WHOLE_FLOATS)).all())
+    whole = as_floats.astype(np.int64) if is_counted else whole
+    return int(np.bitwise_or.reduce(whole ^ whole[0])).bit_count()
+
+
 def spared(trip: Trip, probe: Probe) -> Iterator[str]:
     """Numbers of few values that do not reach both ends of their range, which loses nothing unless bits are short."""
+    if probe.is_packed:
+        used = bits_used(trip.codes)
+        yield from [f"{used} of the 32 bits of the code are used"] if used < 32 else ()
+        return
     for at in range(probe.size):
         found = values(trip.codes, at)
         if len(found) > 1 and (found[-1] - found[0]) / 2 < USED:

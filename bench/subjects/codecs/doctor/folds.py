@@ -128,13 +128,13 @@ class Axes:
 
     def code(self, p: np.ndarray) -> np.ndarray:
         """The code of a point of the octahedron's square."""
-        return self._turned(p) / 2 if self.is_turned else p
+        return self._turned_points(p) / 2 if self.is_turned else p
 
     def point(self, c: np.ndarray) -> np.ndarray:
         """The point of the square that a code stands for."""
-        return self._turned(c) if self.is_turned else c
+        return self._turned_points(c) if self.is_turned else c
 
-    def _turned(self, p: np.ndarray) -> np.ndarray:
+    def _turned_points(self, p: np.ndarray) -> np.ndarray:
         x, y = p.T
         return np.stack([x + y, x - y], axis=1)
 
@@ -196,12 +196,12 @@ def found(probe: Probe) -> Found:
 
     everywhere = np.full(turned.shape[:2], True)
     return Found(
-        _matched(ENCODERS, lambda model: _alike(encoded(model), given, everywhere)),
-        _matched(DECODERS, lambda model: _alike(decoded(model), back, is_point)),
+        _matching_axes(ENCODERS, lambda model: _alike(encoded(model), given, everywhere)),
+        _matching_axes(DECODERS, lambda model: _alike(decoded(model), back, is_point)),
     )
 
 
-def _matched(models: Mapping[str, Sequence[Side]], alike: Callable[[Side], np.ndarray]) -> dict[str, set[int]]:
+def _matching_axes(models: Mapping[str, Sequence[Side]], alike: Callable[[Side], np.ndarray]) -> dict[str, set[int]]:
     matched = {
         said: set(np.flatnonzero(np.any([alike(model) for model in variants], axis=0)).tolist())
         for said, variants in models.items()

@@ -98,7 +98,7 @@ def unused(trip: Trip, probe: Probe) -> Iterator[str]:
     """The share of the square that no direction is given, of codes of two numbers that come back."""
     cells = np.unique(np.floor((np.clip(trip.codes, -1, 1) * 0.5 + 0.5) * CELLS).clip(max=CELLS - 1), axis=0)
     # Cells at the rim count whole. Where most are used nothing is wasted, and encode is not asked for more.
-    if probe.size != 2 or len(cells) / CELLS**2 > LEAST_USED + RIM_OF_CELLS:
+    if probe.size != 2 or probe.is_packed or len(cells) / CELLS**2 > LEAST_USED + RIM_OF_CELLS:
         return
     codes = square(2)
     own = np.abs(codes - probe.encode(unit(probe.decode(codes)))).max(axis=1) < SAME_CODE

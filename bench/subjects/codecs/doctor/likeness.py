@@ -13,7 +13,7 @@ from .....gbuffer.gl.device import Device
 from ....ground.angles import angles_deg
 from ....ground.directions import directions
 from .between import NOTHING, RANGES, SAME_DEG, TURNS, Step, decoded_after
-from .domains import SPHERE, Domain
+from .domains import HALVES, SPHERE, Domain
 from .folds import frames
 from .probe import Probe, probe_of, trip_of
 
@@ -53,6 +53,15 @@ def likeness(gl: Device, probe: Probe, domain: Domain) -> Likeness:
     return Likeness(encoder, _decoders(probe, codes, turned))
 
 
+def names_alone(gl: Device, probe: Probe, is_encoder: bool) -> tuple[str, ...]:
+    """The encodings of the catalogue that one function alone is of: of all directions, else of those with z >= 0."""
+    for domain in (SPHERE, HALVES[0]):
+        found = likeness(gl, probe, domain)
+        if names := found.encoder if is_encoder else found.decoder:
+            return names
+    return ()
+
+
 def _is_comparable(encoding: Encoding, size: int, domain: Domain) -> bool:
     """Whether an encoding has so many numbers and a map of its own, and holds a domain."""
     is_alike = encoding.components + encoding.sign_bits == size and not encoding.is_precise
@@ -64,17 +73,19 @@ def _codes_of(gl: Device, encoding: Encoding, turned: np.ndarray) -> np.ndarray:
     return codes.reshape(*turned.shape[:2], -1)
 
 
-def _held(encoding: Encoding, turned: np.ndarray) -> np.ndarray:
+def _held_mask(encoding: Encoding, turned: np.ndarray) -> np.ndarray:
     """Which directions an encoding is made for, bool of shape (axes, count)."""
     return turned[..., 2] > 0 if encoding.domain != "sphere" else np.full(turned.shape[:2], True)
 
 
 def _is_encoder(own: np.ndarray, codes: np.ndarray, turned: np.ndarray, encoding: Encoding) -> bool:
     """Whether a user's codes are an encoding's in some axes, but for a matrix and a shift of their numbers."""
-    return any(_fits(own[held], its[held]) for its, held in zip(codes, _held(encoding, turned), strict=True))
+    return any(
+        _is_linear_fit(own[held], its[held]) for its, held in zip(codes, _held_mask(encoding, turned), strict=True)
+    )
 
 
-def _fits(own: np.ndarray, codes: np.ndarray) -> bool:
+def _is_linear_fit(own: np.ndarray, codes: np.ndarray) -> bool:
     wide = np.column_stack([codes, np.ones(len(codes))]).astype(np.float64)
     if len(own) <= 2 * wide.shape[1] or not (np.isfinite(wide).all() and np.isfinite(own).all()):
         return False
@@ -87,25 +98,25 @@ def _fits(own: np.ndarray, codes: np.ndarray) -> bool:
 
 def _decoders(probe: Probe, codes: Mapping[str, np.ndarray], turned: np.ndarray) -> tuple[str, ...]:
     """The encodings whose codes a user's decoder takes, but for a range, a turn and axes."""
-    changes = _changes(probe.size)
+    changes = _code_steps(probe.size)
     made = []
     for name, its in codes.items():
-        held = _held(ENCODINGS[name], turned)
+        held = _held_mask(ENCODINGS[name], turned)
         # In axes of which the encoding holds the directions.
         at = int(np.argmax(held.sum(axis=1)))
         back = decoded_after(probe, its[at], changes)
-        if held[at].any() and any(_is_back(one, turned, held[at]) for one in back):
+        if held[at].any() and any(_is_decoded_back(one, turned, held[at]) for one in back):
             made.append(name)
     return tuple(made)
 
 
-def _is_back(decoded: np.ndarray, turned: np.ndarray, held: np.ndarray) -> bool:
+def _is_decoded_back(decoded: np.ndarray, turned: np.ndarray, held: np.ndarray) -> bool:
     with np.errstate(invalid="ignore"):
         near = angles_deg(np.broadcast_to(decoded, turned.shape), turned) < SAME_DEG
     return bool((near[:, held].mean(axis=1) > NEARLY_ALL).any())
 
 
-def _changes(size: int) -> Sequence[Step]:
+def _code_steps(size: int) -> Sequence[Step]:
     if size != 2:
         return RANGES
     return [

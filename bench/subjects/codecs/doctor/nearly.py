@@ -181,10 +181,10 @@ def mistakes(trip: Trip, probe: Probe, begin: Start = UNCHANGED) -> Iterator[str
         better[:, at] = x[:, at] * fit.scale + fit.shift
     after = Trip(trip.n, trip.view, better, probe.decode(better)).angles()
     if FEWER * np.median(after) < np.median(trip.angles()):
-        yield from _said(fits, trip, probe)
+        yield from _rounding_sentences(fits, trip, probe)
 
 
-def _said(fits: list[Fit], trip: Trip, probe: Probe) -> Iterator[str]:
+def _rounding_sentences(fits: list[Fit], trip: Trip, probe: Probe) -> Iterator[str]:
     shown = f"up to {np.quantile(trip.angles(), 0.99):.3g} degrees off without any storage"
     scale = np.array([1 / fit.scale for fit in fits])
     # Where c is 0, and where it is at its ends: a shift in [0, 1] is one of the scale, too.
@@ -214,7 +214,7 @@ def _scale_said(fits: list[Fit], scale: np.ndarray, shift: np.ndarray, probe: Pr
     """Scales in words: one of all numbers, or each by itself with its shift, those left out that are right."""
     if max(np.ptp(scale), np.ptp(shift)) <= ALIKE * np.abs(scale - 1).max():
         one = float(scale.mean())
-        return f"{_fraction(one)} times the code that decode takes{_about(one, float(shift.mean()), probe)}"
+        return f"{_fraction(one)} times the code that decode takes{_fixed_point_text(one, float(shift.mean()), probe)}"
     off = np.abs(scale - 1) > ALIKE * np.abs(scale - 1).max()
     said = [
         f"{scale[at]:.3g} times number {fits[at].number}{_shift_said(scale[at], shift[at])}"
@@ -223,7 +223,7 @@ def _scale_said(fits: list[Fit], scale: np.ndarray, shift: np.ndarray, probe: Pr
     return f"{' and '.join(said)} of the code that decode takes"
 
 
-def _about(scale: float, shift: float, probe: Probe) -> str:
+def _fixed_point_text(scale: float, shift: float, probe: Probe) -> str:
     """What stays where it is when codes are scaled, if that is not 0: 0.5, or else a shift in the user's own range."""
     own = (1 - scale + shift) / 2 if probe.is_unit else shift
     stays = own / (1 - scale)

@@ -29,12 +29,14 @@ class Probe:
         decode: codes to what comes back, as long as it is.
         size: how many numbers a code has.
         is_unit: whether the user's own numbers are in [0, 1]: each is c / 2 + 1 / 2 of the c that a code has here.
+        is_packed: whether the user's own code is one integer of 32 bits, whose halves are the numbers.
     """
 
     encode: Callable[[np.ndarray], np.ndarray]
     decode: Callable[[np.ndarray], np.ndarray]
     size: int
     is_unit: bool = False
+    is_packed: bool = False
 
     @property
     def range(self) -> str:
@@ -60,7 +62,9 @@ def probe_of(gl: Device, encoding: Encoding) -> Probe:
         view = np.tile(np.array([*VIEW, 0.0], np.float32), (len(wide), 1))
         return exact_values(gl, encoding, wide, view, wide)
 
-    return Probe(lambda n: both(n)[0][:, :size], lambda codes: both(codes)[1][:, :3], size, encoding.is_unit)
+    return Probe(
+        lambda n: both(n)[0][:, :size], lambda codes: both(codes)[1][:, :3], size, encoding.is_unit, encoding.is_packed
+    )
 
 
 @dataclass(frozen=True)

@@ -38,9 +38,9 @@ class HalfPasses:
         Raises as `compute.computed` does.
         """
         texels = computed(self._encode, n, views)
-        return computed(self._decode, self._stored(texels), views)[:, :3]
+        return computed(self._decode, self._stored_texels(texels), views)[:, :3]
 
-    def _stored(self, texels: np.ndarray) -> np.ndarray:
+    def _stored_texels(self, texels: np.ndarray) -> np.ndarray:
         codec, stored = self._codec, texels.copy()
         for channel in range(codec.encoding.components):
             number = jnp.asarray(texels[:, channel])

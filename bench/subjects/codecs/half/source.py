@@ -31,12 +31,12 @@ class HalfSource(Source):
     ):
         self._kept = tuple(f"#define {name} " for name in kept)
         super().__init__(path, defines, names)
-        changed = [self._changed(line) for line in self._lines]
+        changed = [self._line_in_halves(line) for line in self._lines]
         # The macros hold numbers of 16 bits, which the extension must have made known.
         self._lines = sorted(changed, key=lambda line: not line[0].startswith(("#version", "#extension")))
         self.text = "".join(f"{line}\n" for line, _, _ in self._lines)
 
-    def _changed(self, line: Line) -> Line:
+    def _line_in_halves(self, line: Line) -> Line:
         text, path, number = line
         is_ours = path == self.place or path.parent == HERE
         is_macro = number == 1 and text.startswith("#define") and not text.startswith(self._kept)

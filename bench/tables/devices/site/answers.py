@@ -37,7 +37,7 @@ class Known:
         self._codecs = list(dict.fromkeys(codec for codec in codecs if codec and codec.fits))
 
     @cached_property
-    def _rows(self) -> Mapping[str, Row]:
+    def _price_rows(self) -> Mapping[str, Row]:
         from ...pick.measure import length_shares
         from ...pick.prices import Costs
 
@@ -52,7 +52,7 @@ class Known:
     def of(self, row: Row) -> Row:
         """What is known of a device's codec; nothing of one of the reader's own."""
         codec = _codec(row)
-        return self._rows.get(codec.name, {}) if codec else {}
+        return self._price_rows.get(codec.name, {}) if codec else {}
 
 
 def _codec(row: Row) -> Codec | None:
@@ -70,15 +70,15 @@ def answers(rows: Sequence[Row], known: Known) -> Iterator[Sheet]:
     groups: dict[tuple[Any, ...], list[Row]] = {}
     for row in rows:
         groups.setdefault(tuple(row[name] for name in QUESTION), []).append(row)
-    for question in sorted(groups, key=lambda one: (_bytes(one[0]), one)):
-        yield _sheet(question, answered([_asked(row, known) for row in groups[question]]))
+    for question in sorted(groups, key=lambda one: (_bytes_per_texel(one[0]), one)):
+        yield _sheet(question, answered([_pick_row(row, known) for row in groups[question]]))
 
 
-def _bytes(storage: str) -> int:
+def _bytes_per_texel(storage: str) -> int:
     return sum(STORAGES[storage].bits) // 8 if storage in STORAGES else MANY
 
 
-def _asked(row: Row, known: Known) -> Row:
+def _pick_row(row: Row, known: Known) -> Row:
     """A device's row as `pick` takes them."""
     encoding, codec = ENCODINGS.get(row["encoding"]), _codec(row)
     made: Row = {"encoding": row["encoding"], "storage": row["storage"], "asked": row["storage"]}
@@ -100,10 +100,10 @@ def _sheet(question: Sequence[str], group: Sequence[Row]) -> Sheet:
     said = f"rounded to {rounding}" if rounding == "nearest" else rounding
     title = f"{storage} in {target}, {said}: the codes that no other one beats"
     keys = {"storage": storage, "take": best["encoding"] if best else None}
-    return Sheet(title, [_short(row) for row in kept], said=tuple(_sentences(storage, best, group)), keys=keys)
+    return Sheet(title, [_short_row(row) for row in kept], said=tuple(_sentences(storage, best, group)), keys=keys)
 
 
-def _short(row: Row) -> Row:
+def _short_row(row: Row) -> Row:
     times = ("encode_ms", "decode_ms") if row["ms"] is not None else ()
     return {
         name: row.get(name)
@@ -112,19 +112,19 @@ def _short(row: Row) -> Row:
 
 
 def _sentences(storage: str, best: Row | None, group: Sequence[Row]) -> Iterator[str]:
-    count = _bytes(storage)
+    count = _bytes_per_texel(storage)
     where = f"{storage}, {count} bytes" if count < MANY else storage
     if best is None:
         yield f"{where}: no code qualifies."
     else:
         yield f"{where}: take {best['encoding']}."
         errors = f"Its mean error on this device is {degrees(best['angle_mean_deg'])}"
-        yield f"{errors}, its largest {degrees(best['angle_max_deg'])}. {_price(best)}"
+        yield f"{errors}, its largest {degrees(best['angle_max_deg'])}. {_price_sentence(best)}"
         yield from rungs(group, best)
     yield from left_out(group)
 
 
-def _price(row: Row) -> str:
+def _price_sentence(row: Row) -> str:
     slots = f"{row['slots']:g} issue slots with {row['readers']} readers" if row["slots"] is not None else ""
     if row["ms"] is None:
         return f"This device has no times; the code takes {slots}." if slots else "What it costs is not known."

@@ -24,7 +24,7 @@ def site_command(folder: Path, output: Path) -> int:
         UsageError: there is no device file, or the site cannot be written.
     """
     paths = checked_number(_files_in(folder))
-    found, wrong = _read(paths)
+    found, wrong = _device_files(paths)
     if not found:
         raise UsageError(f"{folder}: there is no device file in it; {SAVED}")
     shown = devices(found)
@@ -42,7 +42,7 @@ def _files_in(folder: Path) -> list[Path]:
     return sorted(path for path in found if not path.name.startswith("."))
 
 
-def _read(paths: list[Path]) -> tuple[list[Read], int]:
+def _device_files(paths: list[Path]) -> tuple[list[Read], int]:
     """The files that are devices', and how many are not, each of which is told."""
     found, wrong = [], 0
     for path in paths:

@@ -7,7 +7,6 @@ belong; any other file stays as it is.
 from __future__ import annotations
 
 import json
-import os
 import re
 import shutil
 from collections.abc import Iterator, Mapping
@@ -16,7 +15,7 @@ from pathlib import Path
 
 from .....encodings.codecs.files import file_json
 from ....ground.output.errors import UsageError
-from ....ground.output.writing import check_folder
+from ....ground.output.writing import check_folder, clear_away, partial_of, whole_file
 
 MARKER = ".normalbench-site.json"
 # What a site's own files are called; a marker that lists others was not written by this program.
@@ -31,13 +30,13 @@ def write_site(folder: Path, made: Mapping[str, str]) -> None:
         UsageError: a file of that name is not this program's, the marker is damaged, or it cannot be written; then the
             folder is as it was.
     """
-    before = _before(folder)
+    before = _files_before(folder)
     check_folder(folder)
     for path in made:
         if path not in before and (folder / path).exists():
             raise UsageError(f"{folder / path} is not of an earlier site; take it away, or name another folder")
     try:
-        with _partial(folder) as partial:
+        with _partial_folder(folder) as partial:
             _write(partial, made, sorted({*before, *made}))
             _put(partial, folder, made)
         _clear(folder, set(before) - set(made), made)
@@ -45,7 +44,7 @@ def write_site(folder: Path, made: Mapping[str, str]) -> None:
         raise UsageError(f"cannot write {folder}: {error.strerror or error}") from error
 
 
-def _before(folder: Path) -> list[str]:
+def _files_before(folder: Path) -> list[str]:
     """What this program wrote there before. Raises UsageError."""
     if folder.exists() and not folder.is_dir():
         raise UsageError(f"{folder} is not a folder; site writes into one")
@@ -67,11 +66,12 @@ def _before(folder: Path) -> list[str]:
 
 
 @contextmanager
-def _partial(folder: Path) -> Iterator[Path]:
+def _partial_folder(folder: Path) -> Iterator[Path]:
     """A folder beside, on the same disk, that is gone afterwards."""
     folder = folder.resolve()
     folder.parent.mkdir(parents=True, exist_ok=True)
-    partial = folder.with_name(f".{folder.name}.{os.getpid()}.partial")
+    clear_away(folder)
+    partial = partial_of(folder)
     try:
         partial.mkdir()
         yield partial
@@ -80,12 +80,12 @@ def _partial(folder: Path) -> Iterator[Path]:
 
 
 def _write(folder: Path, made: Mapping[str, str], listed: list[str]) -> None:
-    for path, text in {**made, MARKER: _marker(listed)}.items():
+    for path, text in {**made, MARKER: _marker_text(listed)}.items():
         (folder / path).parent.mkdir(exist_ok=True)
         (folder / path).write_text(text, encoding="utf-8")
 
 
-def _marker(files: list[str]) -> str:
+def _marker_text(files: list[str]) -> str:
     return json.dumps({"made_by": "normalbench site", "files": files}, indent=1) + "\n"
 
 
@@ -104,7 +104,5 @@ def _clear(folder: Path, stale: set[str], made: Mapping[str, str]) -> None:
     for path in stale:
         (folder / path).unlink(missing_ok=True)
     if stale:
-        marker = folder / MARKER
-        partial = marker.with_name(f"{MARKER}.partial")
-        partial.write_text(_marker(sorted(made)), encoding="utf-8")
-        partial.replace(marker)
+        with whole_file(folder / MARKER) as partial:
+            partial.write_text(_marker_text(sorted(made)), encoding="utf-8")

@@ -68,7 +68,7 @@ def pages(devices: Sequence[Device]) -> dict[str, str]:
         Entry(one, path, own, list(answers(own, known))) for one, path, own in zip(devices, paths, rows, strict=True)
     ]
     made = {entry.path: device_html(_device_page(entry)) for entry in entries}
-    return made | {INDEX: _index(entries)}
+    return made | {INDEX: _index_page(entries)}
 
 
 def _paths(names: Iterable[str]) -> Iterator[str]:
@@ -87,24 +87,24 @@ def _device_page(entry: Entry) -> DevicePage:
     about = {"GPU": file.renderer, "vendor": file.vendor, "browser": file.browser, "saved": file.made}
     about |= {"normalbench": file.program, "fingerprint of the run": file.sources}
     known = {name: text for name, text in about.items() if text}
-    codecs = [_without(row, OF_DEVICE) for row in entry.rows]
+    codecs = [_row_without(row, OF_DEVICE) for row in entry.rows]
     facts = [{"name": row["name"], "value": row["value"]} for row in fact_rows(device)]
-    tables = [_shown("Every codec", codecs), *([_shown("Facts", facts)] if facts else [])]
-    answered = [Answer((*sheet.said, *sheet.aside), _front(sheet)) for sheet in entry.answers]
+    tables = [_shown_table("Every codec", codecs), *([_shown_table("Facts", facts)] if facts else [])]
+    answered = [Answer((*sheet.said, *sheet.aside), _front_table(sheet)) for sheet in entry.answers]
     said = f"{device.called} {difference(entry.rows)}."
     return DevicePage(device.called, entry.path, said, known, answered, tables)
 
 
-def _front(sheet: Sheet) -> Table:
+def _front_table(sheet: Sheet) -> Table:
     """The codes of an answer; none where no code qualifies."""
     return table(sheet.title, sheet.rows, lambda _: "") if sheet.rows else Table(sheet.title, [], [], "")
 
 
-def _without(row: Row, names: Sequence[str]) -> Row:
+def _row_without(row: Row, names: Sequence[str]) -> Row:
     return {name: value for name, value in row.items() if name not in names}
 
 
-def _shown(title: str, rows: Sequence[Row]) -> Table:
+def _shown_table(title: str, rows: Sequence[Row]) -> Table:
     """Rows as a page shows them, with the definitions of their columns."""
 
     def says(name: str) -> str:
@@ -115,34 +115,34 @@ def _shown(title: str, rows: Sequence[Row]) -> Table:
     return table(title, [{name: row[name] for name in order} for row in rows], says)
 
 
-def _index(entries: Sequence[Entry]) -> str:
+def _index_page(entries: Sequence[Entry]) -> str:
     rows = [row for entry in entries for row in entry.rows]
-    return index_html(sentences(rows), [_devices(entries), _codecs(rows), _taken(entries)])
+    return index_html(sentences(rows), [_device_list(entries), _codec_list(rows), _taken_list(entries)])
 
 
 def _table(title: str, rows: Sequence[Row]) -> Table:
     return table(title, rows, lambda name: INDEXED.get(name, ""))
 
 
-def _devices(entries: Sequence[Entry]) -> Searched:
-    rows = [{"device": e.device.called} | _without(overview(e.rows)[0], ("device", "browser")) for e in entries]
+def _device_list(entries: Sequence[Entry]) -> Searched:
+    rows = [{"device": e.device.called} | _row_without(overview(e.rows)[0], ("device", "browser")) for e in entries]
     intro = "A row for each GPU and browser. Its name leads to its page."
     words, links = [entry.words for entry in entries], [entry.path for entry in entries]
     return Searched("devices", "Devices", intro, _table("Agreement by device", rows), words, links)
 
 
-def _codecs(rows: Sequence[Row]) -> Searched:
+def _codec_list(rows: Sequence[Row]) -> Searched:
     groups: dict[tuple[Any, ...], list[Row]] = {}
     for row in rows:
         groups.setdefault(codec_of(row), []).append(row)
     words = [" ".join([*map(device_of, group), group[0]["storage"], group[0]["target"]]) for group in groups.values()]
     intro = "A row for each codec and target: on which devices its codes differ from the run's."
     return Searched(
-        "codecs", "Codecs", intro, _table("Agreement by codec", [_codec(g) for g in groups.values()]), words
+        "codecs", "Codecs", intro, _table("Agreement by codec", [_codec_row(g) for g in groups.values()]), words
     )
 
 
-def _codec(rows: Sequence[Row]) -> Row:
+def _codec_row(rows: Sequence[Row]) -> Row:
     first, off, quick = rows[0], [device_of(row) for row in rows if differs(row)], fastest(rows)
     about = {"codec": codec_name(first), "rounding": first["rounding"], "target": first["target"]}
     about |= {"devices": len(rows), "agree": len(rows) - len(off), "differs_on": "; ".join(off) or None}
@@ -150,23 +150,23 @@ def _codec(rows: Sequence[Row]) -> Row:
     return about | {"fastest_on": device_of(quick) if quick else None, "fastest_ms": time_of(quick) if quick else None}
 
 
-def _taken(entries: Sequence[Entry]) -> Searched:
+def _taken_list(entries: Sequence[Entry]) -> Searched:
     """The code to take on each device, with a column for each storage."""
-    titles = dict.fromkeys(_column(sheet) for entry in entries for sheet in entry.answers)
-    rows = [{"device": e.device.called} | {**dict.fromkeys(titles), **_taken_on(e)} for e in entries]
+    titles = dict.fromkeys(_column_name(sheet) for entry in entries for sheet in entry.answers)
+    rows = [{"device": e.device.called} | {**dict.fromkeys(titles), **_codecs_taken_on(e)} for e in entries]
     intro = "The answer of pick for each storage, by the errors of the device."
     words, links = [entry.words for entry in entries], [entry.path for entry in entries]
     shown = words_table("The code to take, by device and storage", rows)
     return Searched("take", "What to take", intro, shown, words, links)
 
 
-def _column(sheet: Sheet) -> str:
+def _column_name(sheet: Sheet) -> str:
     """What the column of a question's storage is called; a storage of a reader's own may be called "device"."""
     return f"in {sheet.keys['storage']}"
 
 
-def _taken_on(entry: Entry) -> Mapping[str, Any]:
+def _codecs_taken_on(entry: Entry) -> Mapping[str, Any]:
     found: dict[str, Any] = {}
     for sheet in entry.answers:
-        found.setdefault(_column(sheet), sheet.keys["take"])
+        found.setdefault(_column_name(sheet), sheet.keys["take"])
     return found

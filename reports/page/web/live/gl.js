@@ -6,7 +6,7 @@ const VECTORS = { 2: "vec2", 3: "vec3", 4: "vec4" };
 // By the sized format: what a texture of it is made of and read as.
 const PIXELS = {
   RGBA8: ["RGBA", "UNSIGNED_BYTE"], RG8: ["RG", "UNSIGNED_BYTE"], R8: ["RED", "UNSIGNED_BYTE"],
-  RGB10_A2: ["RGBA", "UNSIGNED_INT_2_10_10_10_REV"],
+  RGB10_A2: ["RGBA", "UNSIGNED_INT_2_10_10_10_REV"], RGB565: ["RGB", "UNSIGNED_SHORT_5_6_5"],
   RG16F: ["RG", "HALF_FLOAT"], RGBA16F: ["RGBA", "HALF_FLOAT"], R11F_G11F_B10F: ["RGB", "UNSIGNED_INT_10F_11F_11F_REV"],
   R32F: ["RED", "FLOAT"], RG32F: ["RG", "FLOAT"], RGBA32F: ["RGBA", "FLOAT"],
   R32UI: ["RED_INTEGER", "UNSIGNED_INT"], RG32UI: ["RG_INTEGER", "UNSIGNED_INT"], RGBA32UI: ["RGBA_INTEGER", "UNSIGNED_INT"],

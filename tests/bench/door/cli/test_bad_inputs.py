@@ -44,6 +44,7 @@ ANSWERS = {
             "test_a_truncated_glb_is_one_line",
             "test_a_bad_text_is_one_line",
         ],
+        "test_packed_scenes": ["test_a_bad_meshopt_view_is_one_line", "test_a_bad_draco_primitive_is_one_line"],
     },
     "index out of range, node cycle: refused": {
         "test_bad_scene_files": ["test_a_bad_gltf_is_one_line", "test_a_bad_text_is_one_line"],
@@ -57,6 +58,7 @@ ANSWERS = {
             "test_a_bad_file_is_one_line",
         ],
         "test_bad_scene_files": ["test_what_is_too_large_is_refused_before_it_is_read"],
+        "test_scene_textures": ["test_a_bad_picture_is_one_line", "test_all_pictures_of_a_file_have_a_bound_together"],
         "test_render": ["test_bad_input_is_one_line_and_nothing_is_written"],
     },
     "a user's shader that does not compile: its file and line, other cases go on": {
@@ -87,7 +89,7 @@ ANSWERS = {
         "test_devices_site": ["test_damaged_files_are_named_and_left_out", "test_markup_of_a_device_stays_text"],
     },
     "interrupted run, full disk: finished rows are kept, running again resumes": {
-        "test_runs": ["test_a_run_killed_again_and_again_ends_as_one_that_was_not"],
+        "test_killed_writers": ["test_a_writer_killed_before_any_of_its_changes_leaves_whole_files"],
         "test_cli": ["test_a_run_that_fails_in_the_end_keeps_its_rows_and_no_half_of_a_table"],
     },
     "fuzzed TOML and gate expressions: one line, soon, nothing else opened": {

@@ -21,6 +21,7 @@ vec3 mine_decode(vec2 e, vec3 view) { return vec3(e, sqrt(max(1.0 - dot(e, e), 0
 """
 GATE = '[[gate]]\nencoding = "octahedral"\nnormals = "axes"\nbackend = "jax"\npsnr_db = "at least 1"\n'
 JAX = ("quality", "--storage", "rg8", "--backend", "jax")
+GLSL = ("quality", "--storage", "rg8", "--backend", "glsl", "--normals", "axes")
 QUICK = (*JAX, "--encoding", "octahedral")
 PIPED = {
     "gates.toml": ("check", "gates.toml"),
@@ -66,13 +67,14 @@ def test_a_name_that_is_no_utf_8_is_measured_and_written(run, tmp_path, monkeypa
     assert status == 0 and Path("results", "report.html").exists(), err
 
 
-def test_a_comma_in_a_files_name_is_said(run, tmp_path, monkeypatch):
+@pytest.mark.usefixtures("gl")
+def test_a_comma_in_a_files_name_is_a_part_of_it(run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     np.save("a,b.npy", some_normals())
     Path("a,b.glsl").write_text(SHADER)
-    for words in ((*QUICK, "--normals", "a,b.npy"), (*JAX, "--encoding", "a,b.glsl")):
+    for words in ((*QUICK, "--normals", "a,b.npy"), (*GLSL, "--encoding", "a,b.glsl")):
         status, out, err = run(*words)
-        assert (status, out, err.count("\n")) == (2, "", 1) and "a comma in a file's name" in err, err
+        assert status == 0 and out, err
 
 
 def test_far_too_many_channels_are_refused_at_once(run, tmp_path, monkeypatch):

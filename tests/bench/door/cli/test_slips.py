@@ -85,7 +85,7 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
         (*ROW, "--encoding", "mine.hlsl:Encode"),
         "mine.hlsl:Encode: name both functions, such as",
     ),
-    "functions of GLSL": ((*ROW, "--encoding", "short.glsl:s:t"), "short.glsl:s:t: name both functions"),
+    "functions of GLSL": ((*ROW, "--encoding", "short.glsl:s:t"), "no function is named s; there are: s_encode"),
     "WGSL to doctor": (("doctor", "mine.wgsl"), "no encoder and decoder found; the two functions must be"),
     "a file without its ending": (
         (*ROW, "--encoding", "hlsl"),
@@ -113,7 +113,7 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
     "a shader that is not text": ((*ROW, "--encoding", "bytes.glsl"), "bytes.glsl: it is not text in UTF-8"),
     "doctor for a text": (
         ("doctor", "words.txt"),
-        "words.txt: its name does not end in .glsl, .hlsl, .hlsli, .fx, .slang or .wgsl",
+        "words.txt: its name does not end in .glsl, .hlsl, .hlsli, .fx, ",
     ),
     "a folder that is called like a shader": (("doctor", "folder.glsl"), "folder.glsl: it is a folder; name a file"),
     "a capture that is not there": (("quality", "--normals", "missing.exr"), "missing.exr"),

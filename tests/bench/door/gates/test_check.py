@@ -130,6 +130,30 @@ def test_figures_may_come_from_a_run(run, tmp_path):
     assert status == 1 and [row["holds"] for row in json.loads(out)] == ["pass", "pass", "FAIL"]
 
 
+def rendered(encoding: str, db: float) -> dict:
+    about = {"encoding": encoding, "storage": "rgba8", "pipeline": "hybrid", "scene": "gloss", "normal_bits": 16}
+    return TABLES["render"].empty() | about | {"psnr_db": db, "normal_psnr_db": db, "mse": 1 / db}
+
+
+def test_a_rank_of_a_run_is_its_place_among_all_rows_of_the_run(run, tmp_path):
+    """As its files for others have it, whichever rows a gate names."""
+    folder, path = tmp_path / "run", tmp_path / "gates.toml"
+    with opened(folder, {}) as made:
+        made.keep("render", Step({}, None, ""), [rendered("xy", 40.0), rendered("octahedral", 50.0)])
+    path.write_text('[[gate]]\ntable = "render"\nencoding = "xy"\nrank = "at most 1"\n')
+    status, out, _ = run("check", str(path), "--run", str(folder), "--format", "json")
+    assert status == 1 and [row["figure"] for row in json.loads(out)] == [2]
+
+
+def test_rows_of_another_version_are_no_bug_of_a_gate(run, tmp_path):
+    folder, path = tmp_path / "run", tmp_path / "gates.toml"
+    with opened(folder, {}) as made:
+        made.keep("quality", Step({}, None, ""), [{"encoding": "xy", "psnr": 40.0}])
+    path.write_text('[[gate]]\nencoding = "xy"\npsnr_db = "at least 1"\n')
+    status, _, err = run("check", str(path), "--run", str(folder))
+    assert status == 2 and "are not those of this version; measure them again: " in err, err
+
+
 TABLES_GATED = {
     "cost": 'encoding = "octahedral"\noperation = "encode"\ninstructions = "at most {}"',
     "lights": 'light_buffer = "rgbm"\nexperiment = "random"\ncounts = "8"\nmodel_max = "at most {}"',
@@ -202,7 +226,10 @@ def test_limits_hold_at_their_very_value_and_not_for_what_is_no_number():
         ('[[gate]]\npsnr_db = "at least 1"\ncodec = "xy"', "unknown option 'codec'; known: "),
         ('[[gate]]\npsnr_db = "at least 1"\nencoding = "xyy"', "gate 1: unknown encoding 'xyy'"),
         ('[[gate]]\npsnr = "at least 1"\nencoding = "xy"\ncount = 10', "quality: no column 'psnr'; figures are bits"),
-        ('[[gate]]\ntable = "depths"\nerror_max = "at most 1"', "unknown table 'depths'; known: pick, quality, render"),
+        (
+            '[[gate]]\ntable = "depths"\nerror_max = "at most 1"',
+            "unknown table 'depths'; did you mean depth? known: pick, quality, render",
+        ),
         ('[[gate]]\ntable = 3\nerror_max = "at most 1"', "unknown table 3; known: pick, quality, render"),
         ('[[gate]]\ntable = ["depth"]\nerror_max = "at most 1"', "table is ['depth']; it must be a text or a number"),
         ('[[gate]]\ndevice = "at least 3"', "quality: device is not a figure"),

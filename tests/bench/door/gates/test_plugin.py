@@ -110,7 +110,7 @@ def test_a_marker_holds_before_the_test(inside):
             "unknown option 'encodin'; known: encoding, storage, rounding, arithmetic, normals, *",
             "the marker normalbench takes options and limits by name, not 'xy'",
             'no limit given; add for example psnr_db = "at least 47.5"',
-            "unknown table 'costs'; known: pick, quality, render, *",
+            "unknown table 'costs'; did you mean cost? known: pick, quality, render, *",
             "quality: no column 'psnr'; figures are bits, *",
             "unknown table *quality*; known: pick, quality, render, *",
             "encoding is *xy*; it must be a text",
@@ -386,10 +386,11 @@ def test_a_run_that_does_not_use_it_imports_nothing_of_it_but_its_options(pytest
             assert not heavy & set(sys.modules)
             named = [m.removeprefix("normalbench.bench") for m in sys.modules if m.startswith("normalbench.")]
             rooms = ("", ".door", ".door.pytest_plugin", ".ground", ".ground.options", ".ground.output", ".tables")
+            rooms += (".shaders", ".shaders.languages", ".shaders.languages.source_options")
             assert {m for m in named if not m.startswith(".tables.")} <= {
                 *rooms, ".door.pytest_plugin.plugin", ".door.pytest_plugin.own_options", ".ground.options.option",
                 ".ground.options.counts", ".ground.options.gpu_families", ".ground.output.errors",
-                ".ground.spelling", ".ground.choose"
+                ".ground.spelling", ".ground.choose", "normalbench.reports", "normalbench.reports.sheets"
             }
             light = (".table", ".registry", ".rates")
             assert all(m.endswith(light) or m.count(".") == 2 for m in named if ".tables." in m)

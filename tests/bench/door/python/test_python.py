@@ -8,6 +8,7 @@ import jax
 import numpy as np
 import pandas as pd
 import pytest
+from manual import ROOT
 from slowly import all_but
 
 import normalbench as nb
@@ -54,6 +55,18 @@ def test_integers_are_those_of_the_format():
     assert np.asarray(nb.encode("xyz/rgba8_snorm", -up).integers).tolist() == [[0, 0, 2**32 - 127]]
     assert np.asarray(nb.encode("xyz/rgba16f", up).integers).tolist() == [[0, 0, 0x3C00]]
     assert np.asarray(nb.encode("xyz/rgba32f", up).integers).tolist() == [[0, 0, 0x3F800000]]
+
+
+@pytest.mark.usefixtures("gl", "slang")
+def test_a_shader_file_without_a_twin_is_run_by_opengl():
+    """A path has slashes of its own; numbers and normals are those of the same code of the catalogue."""
+    n = directions(60).reshape(20, 3, 3)
+    mine = str(ROOT / "tests" / "inputs" / "encoders" / "mine.ush")
+    for storage in ("rgb10a2", "rg8_snorm/truncate"):
+        codes, known = nb.encode(f"{mine}/{storage}", n), nb.encode(f"octahedral/{storage}", n)
+        assert codes.values.shape == known.values.shape == (20, 3, 2)
+        assert np.abs(codes.integers.astype(int) - known.integers.astype(int)).max() <= 1
+        assert np.allclose(nb.decode(f"{mine}/{storage}", known), nb.decode(f"octahedral/{storage}", known), atol=1e-5)
 
 
 def test_any_shape_goes_through_and_back_under_jit():

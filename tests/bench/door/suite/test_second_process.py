@@ -1,6 +1,5 @@
 """A run of two processes: the answer first, the same rows and files, and nothing left of it when it is ended."""
 
-import json
 import os
 import shutil
 import signal
@@ -12,11 +11,11 @@ from types import SimpleNamespace
 
 import pytest
 
+from normalbench.bench.door import beside
 from normalbench.bench.door import run as run_of
-from normalbench.bench.door import second_child
 from normalbench.bench.ground.machine.children import environment
 from normalbench.bench.keep.runs import read_run
-from normalbench.bench.run import second
+from normalbench.bench.run import piped, second
 from normalbench.bench.run.measuring import HERE, Asked
 from normalbench.bench.show import report
 from normalbench.bench.tables.registry import TABLES
@@ -62,7 +61,7 @@ def test_two_processes_leave_what_one_does(run, tmp_path, cores, monkeypatch):
 def test_what_a_dead_process_did_not_measure_is_measured_here(run, tmp_path, cores, monkeypatch):
     """A second process that dies costs time and no rows; what it said last is told."""
     cores(2)
-    monkeypatch.setattr(second, "python", lambda _: [sys.executable, "-c", "raise SystemExit('broken')"])
+    monkeypatch.setattr(piped, "python", lambda _: [sys.executable, "-c", "raise SystemExit('broken')"])
     status, _, err = run(*SMALL, "-o", str(tmp_path / "run"))
     assert status == 0 and read_run(tmp_path / "run").finished, err
     assert set(read_run(tmp_path / "run").tables) == {"mix", "effects", "quality"}
@@ -85,14 +84,16 @@ def test_charts_that_cannot_be_written_are_one_line(run, tmp_path, cores):
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("gl")
-def test_an_error_there_is_an_error_here(run, tmp_path, cores, monkeypatch):
-    """One line, the same exit status, and what was measured is kept."""
+def test_an_error_there_is_an_error_here(run, tmp_path, cores):
+    """One line, the same exit status, and what was measured is kept: here a folder has the name of a file."""
     cores(2)
-    line = json.dumps({"error": "cannot write x.npz: No space left on device", "status": 2})
-    monkeypatch.setattr(second, "python", lambda _: [sys.executable, "-c", f"print({line!r})"])
-    status, _, err = run(*SMALL, "-o", str(tmp_path / "run"))
-    assert status == 2 and err == "normalbench: cannot write x.npz: No space left on device\n"
-    assert set(read_run(tmp_path / "run").tables) == {"effects"}
+    folder = tmp_path / "run"
+    assert run("run", "--tables", "mix", *CODE, "-o", str(folder))[0] == 0
+    (folder / TABLES["quality"].files["live"] / "octahedral-rg8.json").mkdir(parents=True)
+    status, _, err = run(*SMALL, "-o", str(folder))
+    lines = err.splitlines()
+    assert status == 2 and len(lines) == 2 and "goes on" in lines[0] and f"cannot write {folder}/live" in lines[1], err
+    assert set(read_run(folder).tables) == {"mix", "quality", "effects"}
 
 
 def children_of(process: int) -> set[int]:
@@ -138,7 +139,7 @@ def test_the_answer_comes_first(cores, monkeypatch):
     )
     monkeypatch.setattr(run_of, "show_summary", lambda table, _: seen.append(f"{table.name} is shown"))
     tables = [TABLES[name] for name in ("vectors", "frames", "pick")]
-    run_of._measure_all(None, [Asked(table, table.options(), None, ()) for table in tables], {}, HERE, None)
+    run_of._measure_all(None, [Asked(table, table.options(), None, ()) for table in tables], HERE, None)
     assert seen[:2] == ["pick", "pick is shown"], seen
 
 
@@ -148,10 +149,9 @@ def test_the_second_process_writes_what_the_first_has_measured(monkeypatch, rows
     written, sent = [], []
     work = SimpleNamespace(write=lambda done, _: written.append(done))
     ask = SimpleNamespace(table=SimpleNamespace(name="pick", work=work), steps=["a step"])
-    journal = SimpleNamespace(find=lambda *_: rows, send=sent.append)
-    monkeypatch.setattr(second_child, "measured", lambda *_: rows)
-    second_child._write_others([ask], journal)
-    assert (written, sent) == (([rows], [{"written": "pick"}]) if rows else ([], []))
+    monkeypatch.setattr(beside, "measured", lambda *_: rows)
+    beside._write_others([ask], SimpleNamespace(find=lambda *_: rows), sent.append)
+    assert (written, sent) == (([rows], [second.Written("pick")]) if rows else ([], []))
 
 
 @pytest.mark.slow

@@ -1,6 +1,8 @@
 """A run whose workers and scheduler are killed again and again has the files of one that nobody disturbed."""
 
+import os
 import random
+import signal
 import subprocess
 import sys
 import time
@@ -8,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from attack.kills import figures, images, names
+from speed.scheduled import Scheduled, scheduled
 
 # A part of the default run that takes a minute or two on two cores: JAX, GL and pictures.
 PART = "quality,mix,frames,vectors"
@@ -30,12 +33,12 @@ def started(folder: Path, *on: str) -> subprocess.Popen[str]:
     return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
 
 
-def running(pid: int, module: str) -> list[int]:
-    """A process's children that run a module."""
+def children(pid: int) -> list[int]:
+    """The worker processes of a command."""
     # -ww: else `ps` cuts its lines where the environment says how wide a terminal is, and the module's name is lost.
     command = ["ps", "-ww", "-o", "pid=,args=", "--ppid", str(pid)]
     found = subprocess.run(command, capture_output=True, text=True).stdout
-    return sorted(int(line.split()[0]) for line in found.splitlines() if f"bench.run.workers.{module}" in line)
+    return sorted(int(line.split()[0]) for line in found.splitlines() if "bench.run.piped" in line)
 
 
 def steps_done(folder: Path) -> int:
@@ -49,42 +52,80 @@ def wait_for(steps: int, process: subprocess.Popen[str], folder: Path) -> None:
         time.sleep(0.02)
 
 
-def kill_one(process: subprocess.Popen[str], module: str, rng: random.Random) -> bool:
-    """Kill one of its children that run a module; whether there was one."""
-    there = running(process.pid, module)
-    if there:
-        subprocess.run(["kill", "-KILL", str(rng.choice(there))], check=False)
-    return bool(there)
+class Local:
+    """Workers that the command starts, and starts again."""
+
+    on, victims = "local:4", ["worker"] * WORKER_KILLS
+
+    def kill(self, process: subprocess.Popen[str], victim: str, rng: random.Random) -> None:  # noqa: ARG002
+        while process.poll() is None:
+            if there := children(process.pid):
+                os.kill(rng.choice(there), signal.SIGKILL)
+                return
+            time.sleep(0.1)
 
 
-@pytest.mark.nightly("bench/run/workers/test_on.py::test_a_killed_worker_and_a_killed_scheduler_cost_no_row")
+class Joined:
+    """Workers of a scheduler. Another one takes the place of each that was killed."""
+
+    def __init__(self, there: Scheduled):
+        self.on, self._there = there.address, there
+        self.victims = ["worker"] * (WORKER_KILLS - SCHEDULER_KILLS)
+        for at in range(SCHEDULER_KILLS):
+            self.victims.insert(3 + 4 * at, "scheduler")
+
+    def kill(self, process: subprocess.Popen[str], victim: str, rng: random.Random) -> None:  # noqa: ARG002
+        if victim == "worker":
+            hit = self._there.workers.pop(rng.randrange(len(self._there.workers)))
+            hit.kill()
+            hit.wait()
+            self._there.join()
+        else:
+            self._there.scheduler.kill()
+            self._there.scheduler.communicate()
+            self._there.start(self._there.address.rpartition(":")[2])
+
+
+@pytest.fixture
+def workers(request):
+    """What is killed, by its name."""
+    if request.param == "local":
+        yield Local()
+        return
+    with scheduled({}, {}, {}, {}) as there:
+        yield Joined(there)
+
+
+@pytest.fixture(scope="module")
+def alone(tmp_path_factory):
+    """A run that nobody disturbs."""
+    folder = tmp_path_factory.mktemp("alone") / "run"
+    process = started(folder)
+    _, err = process.communicate()
+    assert process.returncode == 0, err
+    return folder
+
+
+@pytest.mark.nightly("bench/run/workers/test_on.py::test_a_killed_worker_costs_no_row")
 @pytest.mark.usefixtures("gl")
-def test_kills_of_workers_and_of_the_scheduler_change_nothing(tmp_path):
+@pytest.mark.parametrize("workers", ["local", "scheduler"], indirect=True)
+def test_kills_of_workers_and_of_the_scheduler_change_nothing(tmp_path, alone, workers):
     """At random moments, from the first rows on: the same figures to the digit, the same pictures, the same files."""
-    alone = started(tmp_path / "alone")
-    _, err = alone.communicate()
-    assert alone.returncode == 0, err
-
-    rng = random.Random(20260801)
-    process = started(tmp_path / "killed", "--on", "local:4")
-    began = time.monotonic()
-    victims = ["worker"] * WORKER_KILLS
-    for at in range(SCHEDULER_KILLS):
-        victims.insert(3 + 4 * at, "scheduler")
-    killed = []
-    for victim in victims:
-        wait_for(steps_done(tmp_path / "killed") + rng.randint(*PAUSES), process, tmp_path / "killed")
+    rng, folder = random.Random(20260801), tmp_path / "killed"
+    process = started(folder, "--on", workers.on)
+    began, killed = time.monotonic(), []
+    for victim in workers.victims:
+        wait_for(steps_done(folder) + rng.randint(*PAUSES), process, folder)
         if process.poll() is not None:
             break
-        while not (is_hit := kill_one(process, victim, rng)) and process.poll() is None:
-            time.sleep(0.1)
-        killed += [victim] * is_hit
+        workers.kill(process, victim, rng)
+        killed.append(victim)
     _, err = process.communicate()
     took = time.monotonic() - began
     assert process.returncode == 0 and "Traceback" not in err, err
     assert len(killed) >= FEWEST, f"killed in {took:.0f} s: {killed}; it said: {err}"
-    assert "scheduler" in killed, killed
-    assert figures(tmp_path / "killed") == figures(tmp_path / "alone")
-    assert images(tmp_path / "killed") == images(tmp_path / "alone")
-    assert names(tmp_path / "killed") == names(tmp_path / "alone")
+    assert set(killed) == set(workers.victims), killed
+    assert figures(folder) == figures(alone)
+    assert images(folder) == images(alone)
+    assert names(folder) == names(alone)
     print(f"{len(killed)} kills in {took:.0f} s")

@@ -3,6 +3,7 @@
 import os
 import re
 import shlex
+import signal
 import socket
 import subprocess
 import sys
@@ -13,13 +14,14 @@ from pathlib import Path
 import pytest
 from dask import config
 from manual import PAGES, ROOT
+from speed.scheduled import HOST, scheduled
 
-from normalbench.bench.run.workers.scheduler import HOST
 from normalbench.bench.run.workers.worker import interface_towards
 
 NORMALBENCH = [sys.executable, "-m", "normalbench"]
 # Long enough for ten looks at its sockets while the workers are there.
 LONG = ("quality", "--encoding", "all", "--storage", "rgba8", "--normals", "sphere", "--count", "2^20")
+LONG += ("--on", "local:4")
 # 127.0.0.1, ::1 and the former as IPv6, as the kernel writes them: words of 32 bits in the machine's own order.
 HERE = {"0100007F", "00000000000000000000000001000000", "0000000000000000FFFF00000100007F"}
 LISTENS = "0A"
@@ -84,16 +86,37 @@ def started():
 
 
 @pytest.mark.slow
-def test_local_workers_listen_on_this_machine_alone(started, tmp_path):
-    """Two sockets each of four workers and a scheduler: what is sent to workers, and what dask serves over HTTP."""
-    looked_at(started([*NORMALBENCH, *LONG, "--on", "local:4", "-o", str(tmp_path / "rows.json")]), fewest=10)
+def test_local_workers_listen_nowhere(started, tmp_path):
+    """Ten looks at the sockets of a command and its four workers, all of which measure by then."""
+    process, seen, until = started([*NORMALBENCH, *LONG, "-o", str(tmp_path / "rows.json")]), 0, time.monotonic() + 120
+    while process.poll() is None and time.monotonic() < until and seen < 10:
+        assert not listening(process.pid)
+        kept = tmp_path / ".rows.json.rows"
+        seen += kept.exists() and len(family_of(process.pid)) > 4
+        time.sleep(0.1)
+    assert seen == 10, f"{seen} looks; the command ended: {process.poll()}"
 
 
 @pytest.mark.slow
-def test_a_worker_listens_where_it_reaches_its_scheduler(started):
-    scheduler = started([sys.executable, "-m", "normalbench.bench.run.workers.scheduler"], stdin=-1, stdout=-1)
-    worker = started([*NORMALBENCH, "worker", scheduler.stdout.readline().strip()])
-    looked_at(worker, fewest=2)
+def test_a_worker_listens_where_it_reaches_its_scheduler():
+    """Two sockets: what is sent to workers, and what dask serves over HTTP."""
+    with scheduled({}) as there:
+        looked_at(there.workers[0], fewest=2)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_worker_that_is_ended_leaves_no_file(tmp_path, number):
+    """Neither of its orders nor of dask's."""
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
+    words = ("quality", "--encoding", "xy", "--storage", "rg8", "--normals", "axes", "--backend", "jax", "--on")
+    with scheduled({"TMPDIR": str(temporary)}) as there:
+        subprocess.run([*NORMALBENCH, *words, there.address], check=True, capture_output=True)
+        assert [*temporary.iterdir()]
+        there.workers[0].send_signal(number)
+        there.workers[0].wait(30)
+        assert not [*temporary.iterdir()], "a folder is left"
 
 
 @pytest.mark.parametrize(("address", "own"), [("tcp://127.0.0.1:8786", HOST), ("tls://localhost:1", HOST)])
@@ -141,7 +164,7 @@ def test_local_workers_want_no_certificates_and_leave_nothing_behind(tmp_path):
     variables = os.environ | {"DASK_DISTRIBUTED__COMM__REQUIRE_ENCRYPTION": "True", "TMPDIR": str(tmp_path)}
     done = subprocess.run([*NORMALBENCH, *words], capture_output=True, text=True, env=variables)
     assert done.returncode == 0 and not done.stderr, done.stderr
-    assert not [path for path in tmp_path.iterdir() if "dask" in path.name], "what dask wrote is left"
+    assert not [*tmp_path.iterdir()], "something is left"
 
 
 def block(name: str) -> list[str]:

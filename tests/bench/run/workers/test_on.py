@@ -12,9 +12,10 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
+from speed.scheduled import scheduled
 
+from normalbench.bench.run import piped
 from normalbench.bench.run.workers import words
-from normalbench.bench.run.workers.local import LocalProcesses, Process
 
 SMALL = ("quality", "--encoding", "xyz,octahedral", "--storage", "rgba8", "--normals", "axes")
 # EGL finds no driver under it.
@@ -56,9 +57,19 @@ def test_without_dask_it_says_what_to_install(run, monkeypatch):
     monkeypatch.setattr(
         words, "find_spec", lambda name: None if name == "distributed" else importlib.util.find_spec(name)
     )
-    status, _, err = run(*SMALL, "--on", "local:2")
-    assert status == 3 and "pip install 'normalbench[workers]'" in err
-    assert run("worker", "tcp://127.0.0.1:1")[0] == 3
+    for command in ((*SMALL, "--on"), ("worker",)):
+        status, _, err = run(*command, "tcp://127.0.0.1:1")
+        assert status == 3 and "pip install 'normalbench[workers]'" in err
+
+
+@pytest.mark.slow
+def test_workers_of_this_machine_need_no_dask():
+    """In a process that cannot import it, twice, as a program may that uses the Python functions."""
+    said = {"encoding": "xyz,octahedral", "storage": "rgba8", "normals": "axes", "backend": "jax", "on": "local:1"}
+    code = "import sys\nsys.modules['dask'] = sys.modules['distributed'] = None\nimport normalbench as nb\n"
+    code += f"for _ in range(2):\n    print(len(nb.quality(**{said})))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
+    assert done.stdout.split() == ["2", "2"], done.stderr
 
 
 def test_the_worker_command_refuses_a_bad_address(run):
@@ -83,16 +94,8 @@ def test_steps_by_glsl_go_to_no_worker_without_gl(run, monkeypatch, tmp_path):
     """One worker of two has no GL: rows by both back ends are those of one process, and it is said who is left out."""
     monkeypatch.setattr("normalbench.bench.run.workers.pool.WAIT_S", 60.0)
     assert run(*SMALL, "-o", str(tmp_path / "one.json"))[0] == 0
-    processes = LocalProcesses(1)
-    own = os.environ | NO_GL
-    monkeypatch.setattr("normalbench.bench.run.workers.local.environment", lambda: own)
-    blind = Process("worker", processes.address)
-    try:
-        status, _, err = run(*SMALL, "-o", str(tmp_path / "two.json"), "--on", processes.address)
-    finally:
-        blind.end()
-        blind.wait()
-        processes.close()
+    with scheduled({}, NO_GL) as there:
+        status, _, err = run(*SMALL, "-o", str(tmp_path / "two.json"), "--on", there.address)
     assert status == 0 and "measured by this process" not in err
     assert json.loads((tmp_path / "one.json").read_text()) == json.loads((tmp_path / "two.json").read_text())
     # The worker without GL may join when all is done.
@@ -105,7 +108,7 @@ def test_what_no_worker_can_measure_is_measured_here(gl, run, monkeypatch, tmp_p
     monkeypatch.setattr("normalbench.bench.run.workers.pool.WAIT_S", 0.5)
     assert run(*SMALL, "-o", str(tmp_path / "one.json"))[0] == 0
     own = os.environ | NO_GL
-    monkeypatch.setattr("normalbench.bench.run.workers.local.environment", lambda: own)
+    monkeypatch.setattr(piped, "environment", lambda: own)
     status, _, err = run(*SMALL, "-o", str(tmp_path / "two.json"), "--on", "local:1")
     assert status == 0 and "quality: 2 steps are measured by this process: no worker has this GL device" in err
     assert json.loads((tmp_path / "one.json").read_text()) == json.loads((tmp_path / "two.json").read_text())
@@ -131,8 +134,11 @@ MANY = ("quality", "--encoding", "all", "--storage", "rgba8", "--normals", "sphe
 
 
 def begun(folder: Path, *words: str) -> subprocess.Popen[str]:
+    """A command whose temporary files lie in a folder of their own."""
+    (folder / "temporary").mkdir(exist_ok=True)
     command = [sys.executable, "-m", "normalbench", *MANY, *words, "-o", str(folder / "rows.json")]
-    return subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    variables = os.environ | {"TMPDIR": str(folder / "temporary")}
+    return subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=variables)
 
 
 def kept_in(folder: Path) -> int:
@@ -159,11 +165,12 @@ def rows_alone(tmp_path_factory):
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [*INTERRUPTED, signal.SIGKILL])
 def test_an_interruption_leaves_rows_and_no_process(tmp_path, rows_alone, number):
-    """What is kept stays, the workers end, and the same command ends with the rows of one that nobody disturbed."""
+    """What is kept stays, the workers end, nothing of them is left, and the same command ends with the rows of one that
+    nobody disturbed."""
     process = begun(tmp_path, "--on", "local:2")
     wait_for(tmp_path, 3)
     workers = children(process.pid)
-    assert len(workers) >= 3, "two workers and a scheduler"
+    assert len(workers) >= 2, "two workers"
     process.send_signal(number)
     _, err = process.communicate(timeout=30)
     assert process.returncode in ({130, 143} if number != signal.SIGKILL else {-9}) and "Traceback" not in err
@@ -171,6 +178,7 @@ def test_an_interruption_leaves_rows_and_no_process(tmp_path, rows_alone, number
     while any(map(is_there, workers)) and time.monotonic() < until:
         time.sleep(0.1)
     assert not [pid for pid in workers if is_there(pid)], "a process is left"
+    assert not [*(tmp_path / "temporary").iterdir()], "a folder is left"
     assert kept_in(tmp_path) > 3
     again = begun(tmp_path, "--on", "local:2")
     assert "steps were measured before" in again.communicate()[1] and again.returncode == 0
@@ -191,12 +199,39 @@ def a_process_of(pid: int, module: str) -> int:
 
 
 @pytest.mark.slow
-def test_a_killed_worker_and_a_killed_scheduler_cost_no_row(tmp_path, rows_alone):
+def test_a_killed_worker_costs_no_row(tmp_path, rows_alone):
+    """Another one is started, and the folder of the one that was killed goes."""
     process = begun(tmp_path, "--on", "local:2")
-    for steps, victim in ((3, "bench.run.workers.worker"), (8, "bench.run.workers.scheduler")):
+    for steps in (3, 8):
         wait_for(tmp_path, steps)
         assert process.poll() is None, "it ended before anything was killed"
-        os.kill(a_process_of(process.pid, victim), signal.SIGKILL)
+        os.kill(a_process_of(process.pid, "bench.run.piped"), signal.SIGKILL)
     _, err = process.communicate(timeout=300)
-    assert process.returncode == 0 and "the scheduler was lost; another one is started" in err, err
+    assert process.returncode == 0, err
     assert (tmp_path / "rows.json").read_bytes() == rows_alone
+    assert not [*(tmp_path / "temporary").iterdir()], "a folder is left"
+
+
+@pytest.mark.slow
+def test_a_killed_scheduler_and_its_killed_worker_cost_no_row(tmp_path, rows_alone):
+    """The command and the workers wait for another scheduler at the same address."""
+    with scheduled({}, {}) as there:
+        process = begun(tmp_path, "--on", there.address)
+        wait_for(tmp_path, 3)
+        there.workers[0].kill()
+        wait_for(tmp_path, 8)
+        there.scheduler.kill()
+        there.scheduler.communicate()
+        there.start(there.address.rpartition(":")[2])
+        assert process.poll() is None, "it ended before anything was killed"
+        _, err = process.communicate(timeout=300)
+    assert process.returncode == 0, err
+    assert (tmp_path / "rows.json").read_bytes() == rows_alone
+
+
+@pytest.mark.slow
+def test_workers_that_do_not_stay_end_the_command(run, monkeypatch):
+    """In a line, with the last that one of them said."""
+    monkeypatch.setattr(piped, "python", lambda _: [sys.executable, "-c", "raise SystemExit('broken')"])
+    status, out, err = run(*SMALL, "--on", "local:2")
+    assert (status, out) == (2, "") and err.endswith("--on local:2: the workers do not stay: broken\n"), err

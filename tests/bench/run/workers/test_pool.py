@@ -10,8 +10,8 @@ import pytest
 from normalbench.bench.ground.options.words import Words, given_in
 from normalbench.bench.run.measuring import Asked
 from normalbench.bench.run.workers.admission import Admission
+from normalbench.bench.run.workers.carrier import LOST
 from normalbench.bench.run.workers.chunks import MOST_LOST, MOST_TOGETHER, chunk_size
-from normalbench.bench.run.workers.link import LOST
 from normalbench.bench.run.workers.pool import Pool
 from normalbench.bench.run.workers.tasks import Answer, StepAnswer
 from normalbench.bench.tables.registry import TABLES
@@ -45,9 +45,6 @@ class FakeCrew:
             self.admission.take(address, OWN | {"name": address} | changes)
 
     def expect(self):
-        pass
-
-    def close(self):
         pass
 
     def idle(self):

@@ -1,19 +1,17 @@
 """What workers measure is what one process measures, to the digit, with the same pictures."""
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
+from speed.scheduled import scheduled
 from written import as_document
 
 import normalbench as nb
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.run.workers import orders
-from normalbench.bench.run.workers.local import LocalProcesses
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.table import Role
 from normalbench.gbuffer.scenes.mesh import sphere
@@ -53,10 +51,9 @@ PICTURED = ("lights", "render")
 
 @pytest.fixture(scope="module")
 def scheduler():
-    """Two workers, and their scheduler's address."""
-    processes = LocalProcesses(2)
-    yield processes.address
-    processes.close()
+    """The address of a scheduler of two workers."""
+    with scheduled({}, {}) as there:
+        yield there.address
 
 
 def rows_of(path: Path, table: str) -> list[dict]:
@@ -76,15 +73,14 @@ def measured(run, folder: Path, table: str, words: str, *on: str) -> tuple[list[
     return rows_of(folder / "rows.json", table), pictures(folder / "images")
 
 
-@pytest.mark.parametrize(
-    "table", [pytest.param(name, marks=[pytest.mark.slow] * (name != "quality")) for name in COMMANDS]
-)
-def test_the_rows_and_pictures_are_those_of_one_process(gl, radv, run, scheduler, tmp_path, table):  # noqa: ARG001
+@pytest.mark.slow
+@pytest.mark.parametrize("table", COMMANDS)
+def test_the_rows_and_pictures_are_those_of_one_process(gl, radv, run, tmp_path, table):  # noqa: ARG001
     """Every figure to the last digit, in the same order; every picture to the last byte."""
     (tmp_path / "one").mkdir()
     (tmp_path / "two").mkdir()
     here = measured(run, tmp_path / "one", table, COMMANDS[table])
-    there = measured(run, tmp_path / "two", table, COMMANDS[table], "--on", scheduler)
+    there = measured(run, tmp_path / "two", table, COMMANDS[table], "--on", "local:2")
     assert here[0] and here == there
     assert bool(here[1]) == (table in PICTURED), f"{len(here[1])} pictures"
 
@@ -147,24 +143,18 @@ def test_many_large_files_travel_each_with_its_own_steps(gl, run, scheduler, tmp
 
 @pytest.mark.slow
 def test_python_takes_workers_as_well(scheduler):
-    found, same = (
-        nb.quality(encoding=["octahedral", "xyz"], storage=["rgba8"], normals="axes", on=on) for on in (scheduler, None)
+    """Of this machine, and of a scheduler."""
+    alone, *others = (
+        nb.quality(encoding=["octahedral", "xyz"], storage=["rgba8"], normals="axes", on=on)
+        for on in (None, "local:2", scheduler)
     )
-    pd.testing.assert_frame_equal(found, same)
+    for one in others:
+        pd.testing.assert_frame_equal(one, alone)
 
 
 @pytest.mark.slow
-def test_a_process_may_start_workers_twice():
-    """In a process of its own: the first to import dask.distributed has found its settings gone."""
-    code = "from normalbench.bench.run.workers.places import place\n"
-    code += "for _ in range(2):\n    with place('local:1'):\n        print('started')"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
-    assert done.stdout.split() == ["started", "started"], done.stderr
-
-
-@pytest.mark.slow
-def test_a_value_of_pythons_own_is_refused(scheduler):
+def test_a_value_of_pythons_own_is_refused():
     """Workers measure what has a name or is a file."""
     normals = {"own": np.eye(3)}
     with pytest.raises(UsageError, match="normals: own is a value of this process; workers measure names and files"):
-        nb.quality(encoding="octahedral", storage="rg8", normals=normals, on=scheduler)
+        nb.quality(encoding="octahedral", storage="rg8", normals=normals, on="local:1")

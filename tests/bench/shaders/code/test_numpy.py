@@ -112,6 +112,24 @@ vec2 mine_encode(vec3 n, vec3 view) {
     uint b = uint(abs(n.x) * 100.0) & -4u, c = uint(abs(n.y) * 100.0) << 33;
     return vec2(a != 0 ? 0.5 : float(b) / 128.0, float(c & 255u) / 256.0 + float(-1u >> 8) / 67108864.0);
 }""",
+    "a called loop that ends for some normals alone": """
+float doubled(float x) { while (x < 1.0) x *= 2.0; return x; }
+float at_once(float x) { return doubled(x) * 0.25; }
+bool is_large(float x) { return doubled(x) > 1.5; }
+vec2 mine_encode(vec3 n, vec3 view) {
+    float sum = 0.0;
+    if (n.x > 0.0) { sum = at_once(n.x); }
+    for (int i = 0; i < 3; i++) {
+        if (n.y <= 0.0) break;
+        sum += doubled(n.y) * 0.125;
+    }
+    float w = n.x + 0.5;
+    for (int i = 0; w > 0.0 && doubled(w) > 1.25; i++) w -= 0.25;
+    sum += w * 0.0625;
+    bool a = n.z > 0.0 && is_large(n.z), b = n.z <= 0.0 || is_large(n.z);
+    if (n.x > 0.5) return vec2(sum * 0.5, a ? 0.5 : 0.25);
+    return vec2(n.z > 0.0 ? doubled(n.z) * 0.25 : sum * 0.25, b ? 0.5 : 0.25);
+}""",
     "lines behind what leaves": """
 vec2 mine_encode(vec3 n, vec3 view) {
     float s = 0.0;

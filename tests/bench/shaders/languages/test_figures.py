@@ -38,6 +38,7 @@ def angles(name: str, count: int, file: Path):
         rounding=rounding,
         normals="sphere",
         backend="glsl",
+        arithmetic="float",
         count=count,
     ).set_index("encoding")
     (own,) = set(found.index) - {catalogues}

@@ -30,12 +30,53 @@ def test_lines_keep_their_file_and_number(tmp_path):
     assert source.explained(99, "wrong") == f"{path}:4: at the end of the file: wrong"
 
 
-def test_a_file_is_included_once(tmp_path):
-    written(tmp_path, '#include "mine.hlsl"\npart', "part.hlsli")
-    assert Source(written(tmp_path, '#include "part.hlsli"\n#include <part.hlsli>\nmine')).text.split() == [
-        "part",
-        "mine",
-    ]
+@pytest.mark.parametrize("guard", ["#pragma once\n", ""])
+def test_a_file_is_not_included_by_itself(tmp_path, guard):
+    """Nor, with #pragma once, a second time."""
+    written(tmp_path, f'{guard}#include "mine.hlsl"\npart', "part.hlsli")
+    found = Source(written(tmp_path, '#include "part.hlsli"\n#include <part.hlsli>\nmine')).text.split()
+    assert [word for word in found if word in ("part", "mine")] == ["part"] * (1 if guard else 2) + ["mine"]
+
+
+ONCE, GUARD = "#pragma once\npart", "\n#ifndef PART\n#define PART\npart\n#endif"
+
+
+@pytest.mark.parametrize("part, times", [("part", 2), (ONCE, 2), (GUARD, 2)])
+def test_each_branch_has_what_it_includes(tmp_path, part, times):
+    """Whichever is compiled: a guard in the file keeps it from being there twice."""
+    written(tmp_path, part, "part.hlsli")
+    text = '#if A\n#include "part.hlsli"\n#else\n#include <part.hlsli>\n#endif\n#include "part.hlsli"'
+    found = Source(written(tmp_path, text)).text.split().count("part")
+    assert found == times + 1
+    assert Source(written(tmp_path, '#include "part.hlsli"\n' + text)).text.split().count("part") == (
+        1 if part != "part" else times + 2
+    )
+
+
+def test_a_guard_is_no_branch(tmp_path):
+    """What a guarded file includes is there for those behind it as well: a library is read once, not once a path."""
+    for at in range(30):
+        inner = f'#include "{at + 1}.hlsli"\n' * 2 if at < 29 else "part"
+        guard = f"#ifndef G{at}\n#define G{at}\n{inner}\n#endif" if at % 2 else f"#pragma once\n{inner}"
+        written(tmp_path, guard, f"{at}.hlsli")
+    assert Source(written(tmp_path, '#include "0.hlsli"\n#include "7.hlsli"')).text.split().count("part") == 1
+
+
+def test_a_list_of_macros_is_included_as_often_as_it_is_asked_for(tmp_path):
+    written(tmp_path, "KIND(a)\nKIND(b)", "list.hlsli")
+    text = '#define KIND(x) float x;\n#include "list.hlsli"\n#undef KIND\n#define KIND(x) x,\n#include "list.hlsli"\n'
+    assert Source(written(tmp_path, text)).text.split().count("KIND(a)") == 2
+
+
+@pytest.mark.parametrize("part", ["", "x\n", "\n" * 10**5, "y" * 10**6])
+def test_a_bomb_of_includes_is_refused_at_once(tmp_path, part):
+    for at in range(40):
+        written(tmp_path, part + f'#include "{at + 1}.hlsli"\n' * 2, f"{at}.hlsli")
+    written(tmp_path, "z", "40.hlsli")
+    began = time.process_time()
+    with pytest.raises(UsageError, match=r"with what it includes|are included more than"):
+        Source(tmp_path / "0.hlsli")
+    assert time.process_time() - began < 4, f"{time.process_time() - began:.1f} s"
 
 
 @pytest.mark.parametrize(
@@ -51,16 +92,21 @@ def test_what_lies_elsewhere_is_not_read(tmp_path, name, why):
     """It becomes an #error, which does no harm in a branch that is left out."""
     written(tmp_path, "secret", "outside.hlsli")
     folder = tmp_path / "folder"
-    folder.mkdir()
+    (folder / ".git").mkdir(parents=True)
     (folder / "link.hlsli").symlink_to(tmp_path / "outside.hlsli")
     source = Source(written(folder, f'\n#include "{name}"'))
     assert source.text == "\n#error not read\n" and "secret" not in source.text
     assert source.explained(2, "#error :").startswith(f"{folder / 'mine.hlsl'}:2: {name} {why}")
 
 
-@pytest.mark.parametrize(
-    "text", ['#inc\\\nlude "part.hlsli"', "#define FILE <part.hlsli>\n#include FILE", '#/**/include "a" "b"']
-)
+def test_a_macro_in_place_of_a_file_is_none(tmp_path):
+    """Some engines have no marks around the name of a file."""
+    written(tmp_path, "int part;", "part.hlsli")
+    source = Source(written(tmp_path, "#define FILE <part.hlsli>\n#include FILE\n#include part.hlsli"))
+    assert source.text == "#define FILE <part.hlsli>\n#error not read\nint part;\n"
+
+
+@pytest.mark.parametrize("text", ['#inc\\\nlude "part.hlsli"', '#/**/include "a" "b"'])
 def test_an_include_in_disguise_is_refused(tmp_path, text):
     with pytest.raises(UsageError, match="in one line"):
         Source(written(tmp_path, text))

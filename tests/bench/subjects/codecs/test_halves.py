@@ -207,7 +207,8 @@ def test_a_code_that_is_finite_on_its_half_alone_is_taken_for_it(tmp_path, monke
         axis, side = found.get("half", (2, 1))
         assert found["wrong"] == [] and found["domain"] == "hemisphere" and "no number" in found["hole"], found
         assert f"{'xyz'[axis]} {'>=' if side > 0 else '<='} 0" == half
-    assert "no number" in first_look(tmp_path / "dir.glsl", "sphere")["broken"]
+    found = first_look(tmp_path / "dir.glsl", "sphere")
+    assert "no number" in (found.get("broken") or found["wrong"][0])
 
 
 def test_a_code_that_is_finite_on_its_half_alone_is_measured_there(run, tmp_path, monkeypatch):
@@ -227,7 +228,8 @@ def test_a_hole_in_the_half_that_comes_back_is_no_other_half(tmp_path):
     text = "vec2 dir_encode(vec3 n) { return n.xy * 0.5 + 0.5; }\n"
     text += "vec3 dir_decode(vec2 e) { e = e * 2.0 - 1.0; return vec3(e, sqrt(1.0 - dot(e, e))); }\n"
     (tmp_path / "dir.glsl").write_text(text)
-    assert "no number" in first_look(tmp_path / "dir.glsl")["broken"]
+    found = first_look(tmp_path / "dir.glsl")
+    assert found["domain"] == "hemisphere" and "no number" in found["wrong"][0]
 
 
 SPHEREMAP = """vec2 dir_encode(vec3 n) { return n.xy / sqrt(8.0 * n.z + 8.0) + 0.5; }
@@ -240,17 +242,20 @@ vec3 dir_decode(vec2 e) {
 
 
 def test_a_hole_in_a_code_for_the_sphere_is_a_finding_unless_it_is_meant_for_less(run, tmp_path):
-    """It is measured where it is finite: z >= 0, or what faces the viewer."""
+    """What is no number is counted; the others are measured."""
     (tmp_path / "dir.glsl").write_text(SPHEREMAP)
     status, out, _ = run("doctor", "dir.glsl", "--format", "json")
     first = json.loads(out)[0]
-    assert status == 1 and first["domain"] == "hemisphere"
+    assert status == 1 and first["domain"] == "sphere"
     assert first["finding"] == "encode of (0, 0, -1) is (nan, nan), no number; all other directions come back"
     for domain in ("hemisphere", "view"):
         status, out, _ = run("doctor", "dir.glsl", "--domain", domain, "--format", "json")
         assert status == 0 and {row["domain"] for row in json.loads(out)} == {domain}, out
     status, out, _ = run("doctor", "dir.glsl", "--domain", "sphere", "--format", "json")
     assert status == 1 and "no number" in json.loads(out)[0]["finding"]
+    words = ("--storage", "rgba32f", "--normals", "sphere", "--count", "4096", "--backend", "glsl", "--format", "json")
+    status, out, _ = run("quality", "--encoding", "dir.glsl", *words)
+    assert status == 0 and json.loads(out)[0]["angle_mean_deg"] < 0.05
 
 
 def test_directions_that_are_lost_are_counted(run, tmp_path):

@@ -14,7 +14,7 @@ from normalbench.bench.ground.options.option import Reading
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.subjects.normals.captures import capture, typed
 from normalbench.encodings.storages.rounding import from_srgb, to_srgb
-from normalbench.gbuffer.scenes.playground import CAMERA, playground
+from normalbench.gbuffer.scenes.built_in.playground import CAMERA, playground
 
 
 def turned(yaw: float, pitch: float) -> np.ndarray:

@@ -32,8 +32,8 @@ from normalbench.bench.tables.quality.measure import Case, measure
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
-from normalbench.gbuffer.scenes.playground import CAMERA
-from normalbench.gbuffer.scenes.playground import playground as rendered
+from normalbench.gbuffer.scenes.built_in.playground import CAMERA
+from normalbench.gbuffer.scenes.built_in.playground import playground as rendered
 
 RG8 = Codec(ENCODINGS["octahedral"], STORAGES["rg8"])
 ROTATION = np.array([(2, -1, 2), (2, 2, -1), (-1, 2, 2)]) / 3

@@ -1,0 +1,112 @@
+"""What the second process of a run does; see `run/second.py`.
+
+Imports nothing heavy: the first process names these functions before it has imported what they need.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ..ground.machine.memory import give_back_what_a_table_needed, have_few_heaps, keep_what_is_imported
+from ..ground.output.errors import MissingError, told
+from ..keep.plain import key_text, plain
+from ..keep.runs import read_run
+from ..run.measuring import Asked, asked_together, measured
+from ..run.piped import Send
+from ..run.second import Drawn, Kept, Written
+from ..tables.registry import TABLES
+from ..tables.table import Row, Step
+
+
+@dataclass(frozen=True)
+class Asking:
+    """What is asked of a table: its name, sets of its options, and its outputs."""
+
+    table: str
+    options: Sequence[Any]
+    outputs: Any
+
+    @classmethod
+    def of(cls, ask: Asked) -> Asking:
+        """What a process asks another one for."""
+        return cls(ask.table.name, (ask.options, *ask.others), ask.outputs)
+
+    def asked(self) -> Asked:
+        """The same in the other process. Raises UsageError and MissingError."""
+        return asked_together(TABLES[self.table], self.options, self.outputs)
+
+
+class Sent:
+    """Rows that the first process keeps."""
+
+    def __init__(self, folder: Path, send: Send):
+        run = read_run(folder)
+        self._rows = {key_text(one["table"], one["key"]): one["rows"] for one in (*run.steps, *run.parts)}
+        self._send = send
+
+    def find(self, table: str, step: Step) -> list[Row] | None:
+        """The rows of a step that were kept before; None where there are none."""
+        return self._rows.get(key_text(table, step.key))
+
+    def keep(self, table: str, step: Step, rows: Sequence[Row]) -> list[Row]:
+        """Send the rows of a step, and give them as they are read back."""
+        kept = plain(rows)
+        self._send(Kept(key_text(table, step.key), kept))
+        return kept
+
+
+def prepare(send: Send) -> None:  # noqa: ARG001 # as of all that a process calls
+    """Import what is needed, while the first process looks for what to measure."""
+    have_few_heaps()
+    # What is missing is said by the first process.
+    with suppress(MissingError):
+        from ..ground.machine.devices import require_jax
+        from ..show import report  # noqa: F401
+
+        require_jax()
+        for table in TABLES.values():
+            if table.is_measured_beside:
+                # Looked up when it is first asked for.
+                _ = table.work
+
+
+def measure(send: Send, folder: Path, own: Sequence[Asking], others: Sequence[Asking], said: Iterable[str]) -> None:
+    """Measure tables one after the other; then write what the first process has measured, and draw charts.
+
+    Args:
+        folder: of the run.
+        own: tables that this process measures and writes.
+        others: tables that the first process measures, and whose files this one writes.
+        said: lines that the first process has told.
+
+    Raises:
+        UsageError, MissingError: what was wrong.
+    """
+    from ..show.report import draw_ahead
+
+    told.update(said)
+    sent = Sent(folder, send)
+    asks = [asking.asked() for asking in own]
+    keep_what_is_imported()
+    for ask in asks:
+        _write(ask, sent, send)
+        give_back_what_a_table_needed()
+    _write_others((asking.asked() for asking in others), Sent(folder, send), send)
+    send(Drawn(draw_ahead(folder)))
+
+
+def _write(ask: Asked, sent: Sent, send: Send) -> None:
+    """Measure a table where rows are missing, and write its files."""
+    ask.table.work.write(measured(ask, sent), lambda _: None)
+    send(Written(ask.table.name))
+
+
+def _write_others(asks: Iterable[Asked], sent: Sent, send: Send) -> None:
+    """The files of tables that the first process has measured by now."""
+    for ask in asks:
+        if all(sent.find(ask.table.name, step) is not None for step in ask.steps):
+            _write(ask, sent, send)

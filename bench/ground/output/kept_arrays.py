@@ -1,0 +1,49 @@
+"""Arrays that took long to make, kept in the user's cache folder: an NPZ file for each key."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from pathlib import Path
+
+import numpy as np
+
+from . import cache
+
+Arrays = Mapping[str, np.ndarray]
+
+
+def kept_arrays(key: str, make: Callable[[], Arrays]) -> Arrays:
+    """The arrays of a key, or what is made now and kept. A folder that cannot be written is no error.
+
+    Args:
+        key: lower-case hexadecimal digits; it differs where the arrays would.
+    """
+    path = cache.folder() / "arrays" / f"{key}.npz"
+    found = None if cache.is_off() else _read(path)
+    if found is None:
+        found = make()
+        if not cache.is_off():
+            with suppress(OSError):
+                cache.put(path, _packed(found))
+    return found
+
+
+def _read(path: Path) -> Arrays | None:
+    """None where there is no file, another user may have written it, or it is damaged: NPZ has a checksum."""
+    if not cache.is_private(path):
+        return None
+    try:
+        # np.load would leave a file open that is no archive, and read other kinds.
+        with path.open("rb") as stream, np.lib.npyio.NpzFile(stream, allow_pickle=False) as file:
+            return {name: file[name] for name in file.files}
+    except (OSError, ValueError, KeyError, EOFError, NotImplementedError, zipfile.BadZipFile):
+        return None
+
+
+def _packed(arrays: Arrays) -> bytes:
+    data = io.BytesIO()
+    np.savez(data, **arrays)  # pyright: ignore[reportArgumentType] # no array is called like an option of savez
+    return data.getvalue()

@@ -1,0 +1,159 @@
+"""A process of this machine that calls the functions which it is sent, one after the other, in its main thread.
+
+    python -m normalbench.bench.run.piped
+
+is that process. Calls come through its standard input, and what functions send goes through its standard output, as
+pickles one after the other. It ends when its standard input does, as when the process that started it was killed.
+Imports nothing heavy.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import traceback
+from collections.abc import Callable
+from contextlib import suppress
+from queue import SimpleQueue
+from threading import Event, Thread
+from types import FrameType
+from typing import IO, Any
+
+from ..ground.machine.children import environment, python, text_of
+from ..ground.machine.memory import look_for_garbage_seldom
+from ..ground.machine.posix.processes import OWN_GROUP, end_group
+from ..ground.output.errors import MissingError, UsageError
+
+# How long a process may take to end by itself, in seconds.
+END_S = 5.0
+# Where Python, compilers and the process's own children write what is to go with it.
+TEMPORARY = "TMPDIR"
+Send = Callable[[Any], None]
+
+
+class Piped:
+    """The process, as the one that started it sees it.
+
+    Args:
+        first: what it calls at once, such as imports.
+        take: called in a thread with each value that a function sends, and with an exception where one raised.
+
+    Attributes:
+        ended: set once nothing comes any more.
+    """
+
+    def __init__(self, first: Callable[[Send], None], take: Callable[[Any], None]):
+        self.ended = Event()
+        self._folder = tempfile.mkdtemp(prefix="normalbench-")
+        self._errors = tempfile.TemporaryFile()  # noqa: SIM115 # as long as the process
+        self._process = subprocess.Popen(
+            python(__name__),
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._errors,
+            env=environment() | {TEMPORARY: self._folder},
+            **OWN_GROUP,
+        )
+        self.call(first)
+        self._reader = Thread(target=self._read, args=(take,), daemon=True)
+        self._reader.start()
+
+    @property
+    def status(self) -> int | None:
+        """Its exit status, below 0 for a signal; None while it runs."""
+        return self._process.poll()
+
+    def call(self, function: Callable[..., None], *arguments: Any) -> None:
+        """Have it call a function with what sends a value here, and arguments. One that has ended does not."""
+        # Bytes within a pickle: importing what they name is left to its main thread.
+        call = pickle.dumps(pickle.dumps((function, arguments)))
+        assert self._process.stdin
+        with suppress(OSError, ValueError):
+            self._process.stdin.write(call)
+            self._process.stdin.flush()
+
+    def _read(self, take: Callable[[Any], None]) -> None:
+        assert self._process.stdout
+        # A process that is killed may send a part of a pickle.
+        with suppress(EOFError, pickle.UnpicklingError):
+            while True:
+                take(pickle.load(self._process.stdout))
+        self.ended.set()
+
+    def end(self) -> None:
+        """Ask it to end; `wait` sees to it that it does."""
+        assert self._process.stdin
+        with suppress(OSError):
+            self._process.stdin.close()
+
+    def wait(self) -> list[str]:
+        """End it with all that it started, and its folder. Gives the lines that it wrote to standard error."""
+        self.end()
+        with suppress(subprocess.TimeoutExpired):
+            self._process.wait(END_S)
+        end_group(self._process.pid)
+        self._process.wait()
+        self._reader.join()
+        shutil.rmtree(self._folder, ignore_errors=True)
+        with self._process, self._errors:
+            return text_of(self._errors).splitlines()
+
+
+def _end_now(*_: int | FrameType | None) -> None:
+    """End this process at once, whatever it computes, with all that it started and its folder."""
+    shutil.rmtree(os.environ[TEMPORARY], ignore_errors=True)
+    end_group(0)
+
+
+def _own_ends() -> tuple[IO[bytes], IO[bytes]]:
+    """Where calls come from and where values go. Children read nothing, and what libraries print goes to standard
+    error."""
+    calls, values = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
+    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+    os.dup2(2, 1)
+    return calls, values
+
+
+def _take(calls: IO[bytes], waiting: SimpleQueue[bytes]) -> None:
+    """Calls as they come, until nobody can call any more."""
+    with suppress(EOFError, pickle.UnpicklingError):
+        while True:
+            waiting.put(pickle.load(calls))
+    _end_now()
+
+
+def _call(call: bytes, send: Send) -> None:
+    """Call a function; what it raises is sent."""
+    try:
+        function, arguments = pickle.loads(call)
+        function(send, *arguments)
+    except (UsageError, MissingError) as error:
+        send(error)
+    except Exception as error:
+        send(RuntimeError(f"{type(error).__name__}: {error}\n{traceback.format_exc()}"))
+
+
+def main() -> None:
+    """Call what standard input asks for."""
+    look_for_garbage_seldom()
+    signal.signal(signal.SIGTERM, _end_now)
+    calls, values = _own_ends()
+    waiting = SimpleQueue[bytes]()
+    Thread(target=_take, args=(calls, waiting), daemon=True).start()
+
+    def send(value: Any) -> None:
+        # As a whole: what cannot be sent raises before a part of it was.
+        values.write(pickle.dumps(value))
+        values.flush()
+
+    while True:
+        _call(waiting.get(), send)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,31 @@
+"""The programs in a file of an engine's materials: blocks of HLSL, each of which is compiled by itself."""
+
+from __future__ import annotations
+
+import itertools
+import re
+
+from .items import blank
+from .source import Source
+
+_BLOCK = re.compile(r"^[ \t]*(?:HLSL|CG)(PROGRAM|INCLUDE)[ \t]*$(.*?)^[ \t]*END(?:HLSL|CG)[ \t]*$", re.M | re.S)
+COMMON = "INCLUDE"
+
+
+def programs_of(source: Source) -> list[Source]:
+    """A source for each program of a file that has such blocks: what is common to all, and the program, each line where
+    it stands. A file without blocks is one program."""
+    found = list(_BLOCK.finditer(source.text))
+    if not found:
+        return [source]
+    common = [match for match in found if match[1] == COMMON]
+    alone = [match for match in found if match[1] != COMMON]
+    several = [sorted([*common, one], key=re.Match.start) for one in alone] or [common]
+    return [source.with_text(_only(source.text, blocks)) for blocks in several]
+
+
+def _only(text: str, blocks: list[re.Match[str]]) -> str:
+    """A text with blanks for what is in none of some blocks."""
+    edges = [0, *(edge for block in blocks for edge in block.span(2)), len(text)]
+    parts = [text[start:end] for start, end in itertools.pairwise(edges)]
+    return "".join(part if at % 2 else blank(part) for at, part in enumerate(parts))

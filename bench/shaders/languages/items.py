@@ -1,0 +1,161 @@
+"""What stands at the top of a text in a language that looks like C: functions, structures, globals, one after another.
+
+Nothing is understood of them but braces and semicolons; what they mean is the compiler's to say. A namespace is no
+item: what is in it is.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterable, Iterator
+from typing import NamedTuple
+
+# What is in quotes may have braces.
+_QUOTED = re.compile(r"\"[^\"\n]*\"|'[^'\n]*'")
+# What belongs to a function that stands behind it.
+_ATTRIBUTE = re.compile(r"[\]>]\s*$")
+_DIRECTIVE = re.compile(r"^[ \t]*#(?:.*\\\n)*.*$", re.M)
+# NAME(...) at the end of what stands before a body, with a semantic or not; `cbuffer NAME : register(b0)` is none.
+_NAME = re.compile(r"\b(?!register\b)([A-Za-z_]\w*)\s*\((?:[^()]|\([^()]*\))*\)\s*(?::\s*\w+\s*|->\s*\w+\s*)?$")
+_SPACE, _STRUCTURE = re.compile(r"\bnamespace\s+([\w:]+)\s*$"), re.compile(r"\bstruct\s+(\w+)\s*\{(.*)\}[^{}]*$", re.S)
+_WORD, _PASTED = re.compile(r"\w+"), re.compile(r"(\w*)\s*##\s*(\w*)")
+
+
+def blank(text: str) -> str:
+    """Blanks in place of a text, in as many lines."""
+    return "\n".join(" " * len(line) for line in text.split("\n"))
+
+
+class Item(NamedTuple):
+    """An item.
+
+    Attributes:
+        start: where it begins.
+        end: where it ends.
+        function: the name of the function that it defines, as NAME or SPACE::NAME; empty where it defines none.
+        body: where the braces of that function begin; its end where it defines none.
+    """
+
+    start: int
+    end: int
+    function: str
+    body: int
+
+    @property
+    def name(self) -> str:
+        """The name of its function without the namespace."""
+        return self.function.rpartition("::")[2]
+
+
+def items(text: str) -> list[Item]:
+    """The items of a text without comments, which together with the braces of its namespaces are all of it."""
+    found: list[Item] = []
+    spaces: list[str] = []
+    bare = _QUOTED.sub(lambda match: blank(match[0]), _without_directives(text))
+    depth = start = body = 0
+    for match in re.finditer(r"[{};]", bare):
+        mark, at = match[0], match.end()
+        if mark == "{" and not depth and (space := _SPACE.search(bare, start, match.start())):
+            spaces.append(f"{space[1]}::")
+            start = at
+        elif mark == "{":
+            body = body if depth else match.start()
+            depth += 1
+        elif mark == "}" and not depth:
+            start = at
+            del spaces[-1:]
+        else:
+            depth -= mark == "}"
+            if not depth:
+                found += _items(bare, start, at, body if mark == "}" else at, "".join(spaces))
+                start = at
+    return [*found, Item(start, len(text), "", len(text))]
+
+
+def _items(bare: str, start: int, end: int, body: int, space: str) -> list[Item]:
+    """What stands between two ends: an item, or a function and what stands in the lines before it, such as a macro."""
+    match = _NAME.search(bare[start:body].rstrip()) if body < end else None
+    if not match:
+        return [Item(start, end, "", end)]
+    line = bare.rfind("\n", start, start + match.start()) + 1
+    has_type = bool(bare[line : start + match.start()].strip())
+    before = bare[start:line]
+    if line <= start or not has_type or not before.strip() or _ATTRIBUTE.search(before):
+        return [Item(start, end, space + match[1], body)]
+    return [Item(start, line, "", line), Item(line, end, space + match[1], body)]
+
+
+def functions_in(text: str) -> list[str]:
+    """The names of the functions that a text defines, each once; SPACE::NAME of those in a namespace or a structure."""
+    return list(dict.fromkeys(_functions_in(text, "")))
+
+
+def _functions_in(text: str, space: str) -> Iterator[str]:
+    for item in items(text):
+        if item.function:
+            yield space + item.function
+        elif match := _STRUCTURE.search(_without_directives(text[item.start : item.end])):
+            yield from _functions_in(match[2], f"{space}{match[1]}::")
+
+
+def words_of(text: str) -> set[str]:
+    """The words of a text, but the names of its functions where they are defined."""
+    bodies = _rewritten(text, ((item.start, item.body, "") for item in items(text) if item.function))
+    return set(_WORD.findall(bodies))
+
+
+def defined_in(text: str) -> Iterator[str]:
+    """What a text defines at its top: functions, types, globals, namespaces."""
+    for item in items(text):
+        head = re.split(r"[{=(:;[]", _without_directives(text[item.start : item.end]), maxsplit=1)[0]
+        yield from (match[1] for one in head.split(",") if (match := re.search(r"(\w+)\s*$", one)))
+
+
+def heads(text: str) -> str:
+    """A text with a semicolon for the body of each of its functions; each line stays where it is."""
+    return _rewritten(text, ((item.body, item.end, ";") for item in items(text) if item.function))
+
+
+def without(text: str, some: Iterable[Item]) -> str:
+    """A text with blanks for some of its items; its directives stay, and each line stays where it is."""
+    return _rewritten(text, ((item.start, item.end, "") for item in some))
+
+
+def reached(text: str, names: Collection[str]) -> str:
+    """A text without the functions that those of these names, and what is no function, do not need."""
+    every = items(text)
+    words = set(_WORD.findall(" ".join(_DIRECTIVE.findall(text))))
+    words |= {name.rpartition("::")[2] for name in names}
+    words |= {word for item in every if not item.function for word in _WORD.findall(text[item.start : item.end])}
+    parts = {part for pair in _PASTED.findall(text) for part in pair if part}
+    left = [item for item in every if item.function]
+    while now := {item for item in left if item.name in words or _may_be_pasted(item.name, parts)}:
+        words |= {word for item in now for word in _WORD.findall(text[item.body : item.end])}
+        left = [item for item in left if item not in now]
+    return without(text, left)
+
+
+def _may_be_pasted(name: str, parts: Collection[str]) -> bool:
+    """Whether a macro may paste a name of one of some parts."""
+    return any(name.startswith(part) or name.endswith(part) for part in parts)
+
+
+def _rewritten(text: str, parts: Iterable[tuple[int, int, str]]) -> str:
+    """A text with other words, and blanks, in parts of it: start, end and words, which come one after another."""
+    made, last = [], 0
+    for start, end, words in sorted(parts):
+        made += [text[last:start], words, blanked(text[start:end])[len(words) :]]
+        last = end
+    return "".join([*made, text[last:]])
+
+
+def blanked(text: str) -> str:
+    """Blanks in place of a text but for its directives, in as many lines."""
+    kept: Iterator[str] = iter(_DIRECTIVE.findall(text))
+    parts = _DIRECTIVE.split(text)
+    return "".join(blank(part) + next(kept, "") for part in parts)
+
+
+def _without_directives(text: str) -> str:
+    """A text with blanks for its directives."""
+    return _DIRECTIVE.sub(lambda match: blank(match[0]), text)

@@ -1,0 +1,324 @@
+"""Two functions that are given and give more than a normal and its code, called as an encoder and its decoder.
+
+    Pack(s.normalWS=n; s.roughness=0.5)->o1.xyz
+    Unpack(o1.xyz=e)->s.normalWS
+
+says what a function is given, and where the code or the normal is in what it gives: `n` is the normal, `e` the code,
+`view` the view-space position. `->(n.xy; face)` is a code of two places. What is not bound is as `FREE` has it.
+"""
+
+from __future__ import annotations
+
+import itertools
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from .pairs import NORMAL, NORMALS, PACKED, Function, NoPairError, Pair, Place, role, speaks_of_others, stem
+
+# A function's name with what it is given and gives.
+TEXT = re.compile(r"(?P<name>(?:\w+::)*\w+)(?:\((?P<bound>[^()]*)\))?(?:->(?P<made>[\w.]+|\([^()]*\)))?")
+_PLACE = re.compile(r"[A-Za-z_][\w.]*")
+_VALUE = re.compile(r"(?:n|e|view)(?:\.[xyzw]{1,4})?|true|false|[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+# What is not bound: numbers of a material are in the middle of what they may be.
+FREE: Mapping[str, str] = MappingProxyType({"float": "0.5", "uint": "0", "int": "0", "bool": "false"})
+N, CODE, VIEW = "n", "e", "view"
+# Names, in lower case, of the view-space position or the way to it.
+OF_VIEW = ("view", "pos", "eye", "camera")
+RESULT = "normalbench_result"
+# Where a code may be in four numbers.
+SWIZZLES = ("xy", "xyz", "xyw", "zw", "yzw")
+
+
+@dataclass(frozen=True)
+class Wiring:
+    """How a function is called.
+
+    Attributes:
+        function: its name.
+        bound: by its place, what a number or a vector that it is given is: n, view, e or e.xy, or a number.
+        made: the places of what it gives that are the code, or the normal; none for its whole result.
+    """
+
+    function: str
+    bound: tuple[tuple[str, str], ...] = ()
+    made: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        bound = f"({'; '.join(f'{place}={value}' for place, value in self.bound)})" if self.bound else ""
+        made = "".join(self.made) if len(self.made) == 1 else f"({'; '.join(self.made)})"
+        return f"{self.function}{bound}{f'->{made}' if self.made else ''}"
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether nothing is said but the name."""
+        return not (self.bound or self.made)
+
+
+def wiring_of(text: str) -> Wiring:
+    """The wiring that a text says. Raises NoPairError."""
+    match = TEXT.fullmatch(text)
+    parts = [one.partition("=") for one in re.split(r"[;,]", match["bound"] or "") if one.strip()] if match else []
+    if not match or not all(
+        _PLACE.fullmatch(place.strip()) and _VALUE.fullmatch(value.strip()) for place, _, value in parts
+    ):
+        raise NoPairError(f"{text} is not written as Pack(s.normal=n; s.roughness=0.5)->o1.xyz")
+    made = re.split(r"[;,]", (match["made"] or "").strip("()"))
+    if wrong := [one.strip() for one in made if one.strip() and not _PLACE.fullmatch(one.strip())]:
+        raise NoPairError(f"{text}: {wrong[0]!r} is no place of what a function gives")
+    return Wiring(
+        match["name"],
+        tuple((place.strip(), value.strip()) for place, _, value in parts),
+        tuple(one.strip() for one in made if one.strip()),
+    )
+
+
+def wired(pair: Sequence[Wiring], found: Sequence[Function]) -> tuple[str, Pair]:
+    """A text in HLSL of two functions that call two others as they are wired, and these two.
+
+    Raises:
+        NoPairError: what is wired is not there, or is no normal and no code.
+    """
+    encode, decode = (_function_of(one, found) for one in pair)
+    for wiring, not_given, given in zip(pair, (CODE, N), (N, CODE), strict=True):
+        if any(value.partition(".")[0] == not_given for _, value in wiring.bound):
+            raise NoPairError(f"{wiring}: it is given {given}, not {not_given}")
+    size, kind = _made(encode, pair[0])
+    made, kind_back = _made(decode, pair[1])
+    if made != NORMAL or kind_back != "float":
+        raise NoPairError(f"{pair[1]} gives no normal; say where it is, as in {pair[1].function}(...)->n")
+    if not (size in (2, 3) and kind == "float") and not (size == 1 and kind in PACKED):
+        raise NoPairError(f"{pair[0]} gives a code of {size} numbers; say which two or three, as in ->o1.xy")
+    code = kind if size == 1 else f"float{size}"
+    text = _caller(encode, pair[0], "float3", N, code) + _caller(decode, pair[1], code, CODE, "float3")
+    sizes = ((size if size > 1 else 0), NORMAL), (NORMAL, size if size > 1 else 0)
+    (made_e, given_e), (made_d, given_d) = sizes
+    takes = code if size == 1 else ""
+    views = [(NORMAL,) if _uses_view(one) else () for one in pair]
+    return text, Pair(
+        Function(_name(encode), made_e, (given_e, *views[0]), code),
+        Function(_name(decode), made_d, (given_d, *views[1]), "float3", takes),
+    )
+
+
+def _function_of(wiring: Wiring, found: Sequence[Function]) -> Function:
+    several = [one for one in found if one.name == wiring.function]
+    if not several:
+        known = ", ".join(dict.fromkeys(one.name for one in found)) or "none"
+        raise NoPairError(f"no function is named {wiring.function}; there are: {known}")
+    places = {place for place, _ in wiring.bound}
+    return next((one for one in several if places <= set(_all_paths(one))), several[0])
+
+
+def _all_paths(function: Function) -> Iterator[str]:
+    for place in (place for one in function.parameters for place in one.places):
+        yield place.path
+        yield from (f"{place.path}.{swizzle}" for swizzle in _swizzles(place.size))
+
+
+def _swizzles(size: int) -> Iterator[str]:
+    return ("".join(letters) for count in range(1, 5) for letters in itertools.permutations("xyzw"[:size], count))
+
+
+def _outputs(function: Function) -> list[Place]:
+    """What a function gives: its result, and its parameters."""
+    made = [place for one in function.parameters if one.is_made for place in one.places]
+    return [*function.results, *made]
+
+
+def _output(function: Function, path: str) -> Place:
+    """A place of what a function gives, or a part of it. Raises NoPairError."""
+    for place in _outputs(function):
+        if path == place.path:
+            return place
+        # Of a result that is a vector, xyz is a part.
+        whole, _, letters = path.rpartition(".")
+        if whole == place.path and letters in set(_swizzles(place.size)):
+            return Place(path, place.kind, len(letters))
+    known = ", ".join(place.path or "its result" for place in _outputs(function)) or "nothing"
+    raise NoPairError(f"{function.name} does not give {path}; it gives {known}")
+
+
+def _made(function: Function, wiring: Wiring) -> tuple[int, str]:
+    """How many numbers a wired function gives, and of which type."""
+    places = [_output(function, path) for path in wiring.made] or _outputs(function)
+    kinds = {place.kind for place in places}
+    return sum(place.size for place in places), kinds.pop() if len(places) == 1 else "float"
+
+
+def _name(function: Function) -> str:
+    return f"{function.name.replace('::', '_')}_wired"
+
+
+def _uses_view(wiring: Wiring) -> bool:
+    return any(value.partition(".")[0] == VIEW for _, value in wiring.bound)
+
+
+def _caller(function: Function, wiring: Wiring, given: str, called: str, made: str) -> str:
+    """A function that calls another one as it is wired.
+
+    Args:
+        given: the type of what it is given, which is called so.
+        made: the type of what it gives.
+    """
+    known = set(_all_paths(function))
+    if unknown := next((place for place, _ in wiring.bound if place not in known), ""):
+        raise NoPairError(
+            f"{function.name} is not given {unknown}; it is given {', '.join(one.path for one in _inputs(function))}"
+        )
+    bound = dict(wiring.bound)
+    asked = {place.partition(".")[0] for place in bound}
+    parameters = list(itertools.takewhile(lambda one: not one.has_default or one.name in asked, function.parameters))
+    lines = [f"{one.kind} {_local(one.name)} = ({one.kind})0;" for one in parameters]
+    lines += [
+        f"{_local(place.path)} = {FREE[place.kind]};" for one in parameters if one.is_given for place in one.places
+    ]
+    lines += [f"{_local(place)} = {_value(function, place, value)};" for place, value in bound.items()]
+    call = f"{function.name}({', '.join(_local(one.name) for one in parameters)})"
+    lines.append(f"{function.kind} {RESULT} = {call};" if function.results else f"{call};")
+    view = f", float3 {_local(VIEW)}_given" if _uses_view(wiring) else ""
+    result = ", ".join(_local(path) if path else RESULT for path in _made_paths(function, wiring))
+    body = "\n    ".join([*lines, f"return {made}({result});"])
+    return f"{made} {_name(function)}({given} {_local(called)}_given{view}) {{\n    {body}\n}}\n"
+
+
+def _made_paths(function: Function, wiring: Wiring) -> list[str]:
+    of_result = {place.path for place in function.results}
+    return [_of_result(path, of_result) for path in wiring.made or [place.path for place in _outputs(function)]]
+
+
+def _of_result(path: str, of_result: set[str]) -> str:
+    """A place as a program names it, where the result has a name."""
+    whole = path.rpartition(".")[0]
+    return f".{path}" if path and {path, whole} & of_result else path
+
+
+def _local(path: str) -> str:
+    """A parameter, or what is in it, as a variable."""
+    return f"{RESULT}{path}" if path.startswith(".") else f"wired_{path}"
+
+
+def _inputs(function: Function) -> list[Place]:
+    return [place for one in function.parameters if one.is_given for place in one.places]
+
+
+def _value(function: Function, path: str, value: str) -> str:
+    """A value as a program writes it, of a place's type."""
+    name, _, letters = value.partition(".")
+    if name not in (N, CODE, VIEW):
+        return value
+    given = f"{_local(name)}_given{f'.{letters}' if letters else ''}"
+    kind = next((place.kind for one in function.parameters for place in one.places if place.path == path), "float")
+    # A whole number may come back from a storage a little less.
+    return f"({kind})({given} + 0.5)" if kind in ("uint", "int") and letters else given
+
+
+# A code's places in what an encoder gives, and by its place what of the code a decoder is given.
+_Ways = Iterator[tuple[tuple[str, ...], tuple[tuple[str, str], ...]]]
+
+
+def candidates(found: Sequence[Function]) -> list[tuple[Wiring, Wiring]]:
+    """The ways in which functions whose names say so may be an encoder and its decoder, the likeliest first."""
+    encoders = [one for one in found if role(one.name) == "encode" and one.parameters]
+    decoders = [one for one in found if role(one.name) == "decode" and one.parameters]
+    both = [(one, other) for one in encoders for other in decoders if not speaks_of_others(Pair(one, other))]
+    both = [pair for pair in both if stem(pair[0].name) == stem(pair[1].name)] or both
+    return [wirings for one, other in both for wirings in sorted(_wirings(one, other), key=_is_of_other_names)]
+
+
+def _is_of_other_names(wirings: tuple[Wiring, Wiring]) -> bool:
+    """Whether a code comes from a place of one name and goes to one of another: GBuffer2 is meant for gbuffer2."""
+    encode, decode = wirings
+    made = {place.partition(".")[0].lower() for place in encode.made}
+    given = {place.partition(".")[0].lower() for place, value in decode.bound if value.partition(".")[0] == CODE}
+    return made != given
+
+
+def _wirings(encode: Function, decode: Function) -> Iterator[tuple[Wiring, Wiring]]:
+    normal, back = _normal_of(_inputs(encode)), _normal_of(_outputs(decode))
+    if not normal or not back:
+        return
+    made_back = _named(decode, back.path if back.size == NORMAL else f"{back.path}.xyz".strip("."), NORMAL)
+    bound = ((normal.path, N), *_free(encode, [normal.path]))
+    for made, given in _codes(encode, decode, normal):
+        rest = _free(decode, [place for place, _ in given])
+        yield (
+            Wiring(encode.name, bound, made),
+            Wiring(decode.name, (*given, *rest), made_back),
+        )
+
+
+def _named(function: Function, path: str, size: int) -> tuple[str, ...]:
+    """A place of what a function gives, as a wiring says it: nothing where it gives nothing else."""
+    return (path,) if path else ("xyz"[:size],) if len(_outputs(function)) > 1 else ()
+
+
+def _free(function: Function, taken: Sequence[str]) -> Iterator[tuple[str, str]]:
+    """What else a function is given: the position by its name, and values in the middle."""
+    for one in function.parameters:
+        for place in one.places if one.is_given and not one.has_default else ():
+            is_view = place.size == NORMAL and any(word in place.path.lower() for word in OF_VIEW)
+            if not any(path == place.path or path.startswith(f"{place.path}.") for path in taken):
+                yield place.path, VIEW if is_view else FREE[place.kind]
+
+
+def _normal_of(places: Sequence[Place]) -> Place | None:
+    """Which of some vectors is the normal: the only one of three numbers, or the only one that is called so; or the
+    only one of four, if there is nothing else."""
+    vectors = [place for place in places if place.kind == "float" and place.size == NORMAL]
+    named = [place for place in vectors if _is_called_normal(place)]
+    wide = [place for place in places if place.kind == "float" and place.size > NORMAL and len(places) == 1]
+    return next((some[0] for some in (vectors, named, wide) if len(some) == 1), None)
+
+
+def _is_called_normal(place: Place) -> bool:
+    last = place.path.rpartition(".")[2].lower()
+    return last == N or any(word in last for word in NORMALS)
+
+
+def _codes(encode: Function, decode: Function, normal: Place) -> _Ways:
+    outputs = [place for place in _outputs(encode) if place.path != normal.path]
+    if len(outputs) < len(_outputs(encode)):
+        # The normal becomes its code: two of its numbers or three, and what else there is.
+        for letters in SWIZZLES[:2]:
+            for some in _parts(outputs):
+                yield from _given([Place(f"{normal.path}.{letters}", "float", len(letters)), *some], encode, decode)
+    elif outputs:
+        for some in _parts(outputs):
+            yield from _given(some, encode, decode)
+
+
+def _parts(outputs: Sequence[Place]) -> Iterator[list[Place]]:
+    """Places or parts of them that may be a code, or belong to it."""
+    if sum(place.size for place in outputs) <= NORMAL:
+        yield list(outputs)
+    for place in outputs:
+        if place.size > NORMAL and place.kind == "float":
+            parts = ((f"{place.path}.{letters}".strip("."), len(letters)) for letters in SWIZZLES)
+            yield from ([Place(path, place.kind, size)] for path, size in parts)
+        elif len(outputs) > 1 and place.kind == "float" and place.size > 1 and _is_called_normal(place):
+            yield [place]
+
+
+def _given(parts: Sequence[Place], encode: Function, decode: Function) -> _Ways:
+    """A code of some parts, if the decoder takes it in the same order."""
+    inputs, size = _inputs(decode), sum(part.size for part in parts)
+    made = tuple(path for part in parts for path in _named(encode, part.path, part.size))
+    if size > NORMAL:
+        return
+    if len(parts) == 1:
+        last = parts[0].path.rpartition(".")[2]
+        letters = last if last in SWIZZLES else "xyz"[:size]
+        for place in inputs:
+            # Four numbers may hold something else as well; three are a code or a normal.
+            if place.size == size or (place.size > NORMAL and size > 1):
+                yield made, ((place.path if place.size == size else f"{place.path}.{letters}", CODE),)
+    elif len(inputs) == len(parts):
+        ends = [0, *itertools.accumulate(part.size for part in parts)]
+        letters = ["xyz"[start:end] for start, end in itertools.pairwise(ends)]
+        paths = [
+            place.path if place.size == part.size else f"{place.path}.{'xyz'[: part.size]}"
+            for place, part in zip(inputs, parts, strict=True)
+        ]
+        yield made, tuple((path, f"{CODE}.{some}") for path, some in zip(paths, letters, strict=True))

@@ -1,0 +1,81 @@
+"""Environments from equirectangular .hdr and .exr files, no larger than is of use."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from ....encodings.codecs.files import called
+from ....gbuffer.environment.averaged import averaged
+from ....gbuffer.environment.environment import Environment
+from ...ground.output.errors import UsageError
+from ..normals.pixel_files import check_sides, read_image, refused
+
+ENDINGS = (".hdr", ".exr")
+# Widths that are read, and the largest that is lit by: a texel of it is a third of a degree.
+LEAST_WIDTH, MOST_WIDTH, WIDTH = 16, 8192, 1024
+# Coarse levels are a quarter as high: heights are multiples of that.
+MULTIPLE = 8
+COLOURS = ("R", "G", "B")
+
+
+def environment_of(path: Path) -> Environment:
+    """The environment in a file; averaged to at most 1024 x 512 texels, and to a width that 8 divides.
+
+    Raises:
+        UsageError: it cannot be read, is not equirectangular, or its radiance is no light; one line with a remedy.
+    """
+
+    def choose(names: Sequence[str]) -> Sequence[str]:
+        return _colours(path, names)
+
+    with np.errstate(over="ignore"):
+        planes = read_image(path, choose, _check).planes.astype(np.float32)
+    _check_light(path, planes)
+    height, width = planes.shape[1:]
+    radiance, name = np.moveaxis(planes, 0, -1), called(path.name)
+    wanted = min(WIDTH, width - width % MULTIPLE)
+    if width == wanted:
+        return Environment(name, np.ascontiguousarray(radiance))
+    return Environment(name, averaged(radiance, wanted // 2), changes=(f"averaged from {width} x {height}",))
+
+
+def _colours(path: Path, names: Sequence[str]) -> Sequence[str]:
+    """Red, green and blue; alpha and what else is there are not read. Raises UsageError."""
+    found = {name.upper(): name for name in reversed(names)}
+    if not set(COLOURS) <= set(found):
+        raise refused(
+            path, f"it has {', '.join(names[:40])}", "an environment has channels R, G and B: save it in colour"
+        )
+    return [found[colour] for colour in COLOURS]
+
+
+def _check(path: Path, sides: tuple[int, int], channels: int) -> None:
+    """Raises UsageError where an image has not the sides of an environment."""
+    width, height = sides
+    if width != 2 * height:
+        remedy = "an equirectangular environment is twice as wide as high: export it as one"
+        raise refused(path, f"{width} x {height} pixels", remedy)
+    if width > MOST_WIDTH:
+        raise refused(
+            path, f"{width} x {height} pixels", f"at most {MOST_WIDTH} x {MOST_WIDTH // 2} are read: scale it down"
+        )
+    if width < LEAST_WIDTH:
+        raise refused(path, f"{width} x {height} pixels", f"at least {LEAST_WIDTH} x {LEAST_WIDTH // 2} are needed")
+    check_sides(path, sides, channels)
+
+
+def _check_light(path: Path, planes: np.ndarray) -> None:
+    """Raises UsageError for radiance that is no light, with the place of the first."""
+    wrong = ~(np.isfinite(planes) & (planes >= 0))
+    if wrong.any():
+        raise _no_light(path, planes, wrong)
+
+
+def _no_light(path: Path, planes: np.ndarray, wrong: np.ndarray) -> UsageError:
+    row, column = (int(index) for index in np.argwhere(wrong.any(0))[0])
+    channel = int(wrong[:, row, column].argmax())
+    what = f"{COLOURS[channel]} is {planes[channel, row, column]:g} at column {column}, row {row}, counted from 0"
+    return refused(path, f"{what}, as at {wrong.any(0).sum()} pixels in all", "radiance is finite and not negative")

@@ -1,0 +1,39 @@
+"""Scenes under an environment that was asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+
+from ....gbuffer.environment.environment import Environment
+from ....gbuffer.scenes.catalogue import SceneMaker
+from ....gbuffer.scenes.scene import Scene
+from ....gbuffer.scenes.setting import Setting
+from ...ground.output.errors import UsageError
+from .environment_names import environment_named
+
+
+def scenes_under(word: str | None, makers: Iterable[SceneMaker]) -> Iterator[SceneMaker]:
+    """Scenes with the environment that a word names, a sun in it as a light; as they are where it is None.
+
+    Raises:
+        UsageError: there is no such environment, or a scene is not metal/rough.
+    """
+    if word is None:
+        yield from makers
+        return
+    around = environment_named(word)
+    for maker in makers:
+        if not maker.make(Setting(objects=1, lights=0)).is_metal_rough:
+            raise UsageError(f"--environment: {maker.name} has no metal/rough materials, which alone reflect it")
+        yield replace(maker, make=Under(maker, around))
+
+
+class Under:
+    """Makes a scene under an environment."""
+
+    def __init__(self, maker: SceneMaker, environment: Environment):
+        self._maker, self._environment = maker, environment
+
+    def __call__(self, setting: Setting) -> Scene:
+        return self._maker.make(setting).under(self._environment)

@@ -1,0 +1,45 @@
+"""What the catalogue does with as many bits as a code uses that packs itself."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+from ....encodings.catalogue import ENCODINGS
+from ....encodings.codecs.codec import Codec
+from ....encodings.storages.storage import STORAGES
+from ...subjects.normals.normal_sets import NORMAL_SETS
+from ..pick import measure as pick
+
+Row = dict[str, Any]
+# Normals that a best code is found on.
+COUNT = 2**14
+
+
+def best_columns(codec: Codec) -> Row:
+    """The most exact code of the catalogue with as many bits, and its mean angle, which is kept in the cache.
+
+    Nothing for a code that does not pack itself.
+    """
+    encoding = codec.encoding
+    return _best_columns(encoding.packed_bits, encoding.domain) if encoding.is_packed else {}
+
+
+@cache
+def _best_columns(bits: int, domain: str) -> Row:
+    chosen = _codecs(bits, domain)
+    if not chosen:
+        return {}
+    normals = NORMAL_SETS["hemisphere" if domain == "hemisphere" else "sphere"](COUNT, 0)
+    means = pick.mean_angles(chosen, normals)
+    name = min(means, key=lambda one: means[one])
+    return {"best_codec": name, "best_mean_deg": means[name]}
+
+
+def _codecs(bits: int, domain: str) -> list[Codec]:
+    """The codes of the catalogue that hold a domain and have so many bits, or the most below."""
+    holding = [one for one in ENCODINGS.values() if one.domain in ("sphere", domain) and not one.sign_bits]
+    made = [Codec(encoding, storage) for encoding in holding for storage in STORAGES.values()]
+    fitting = [codec for codec in made if codec.fits and codec.bits <= bits]
+    most = max((codec.bits for codec in fitting), default=0)
+    return [codec for codec in fitting if codec.bits == most]

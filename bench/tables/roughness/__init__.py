@@ -1,0 +1,1 @@
+"""From which roughness a normal code carries reflections."""

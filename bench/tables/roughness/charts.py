@@ -1,0 +1,62 @@
+"""The curve of bits over roughness."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from ....reports.charts.chart import MUTED, Axis, Chart, Kind, Mark, Names, Scale
+from ....reports.page.codec_key import CodecKey
+from ..charts import having
+from ..table import Row
+
+# What FLIP cannot be below, so that it has a place on an axis of logarithms.
+LEAST = 1e-4
+
+
+def charts(rows: Sequence[Row]) -> Iterator[Chart]:
+    """One chart, where there are pictures with FLIP."""
+    usable = [r for r in having(rows, "flip_p99", "roughness") if r.get("threshold") is None or r.get("decides")]
+    if usable:
+        yield roughness_chart(usable, sorted({row["threshold"] for row in rows if row.get("threshold") is not None}))
+
+
+def roughness_chart(rows: Sequence[Row], thresholds: Sequence[float]) -> Chart:
+    """FLIP's 99th percentile over roughness, the worst of objects and environments, a line for each code.
+
+    Args:
+        rows: of the roughness table, with FLIP: single pictures, and crossings that decide, the worst there.
+        thresholds: drawn as dotted lines.
+    """
+    worst: dict[tuple[str, float], Row] = {}
+    for row in rows:
+        at = CodecKey.of(row).label, row["roughness"]
+        if at not in worst or row["flip_p99"] > worst[at]["flip_p99"]:
+            worst[at] = row
+    points = tuple(
+        {"codec": codec, "x": roughness, "y": max(row["flip_p99"], LEAST)}
+        | {"what": f"{row['object']} in {row['environment']}"}
+        for (codec, roughness), row in sorted(worst.items())
+    )
+    ends = (min(point["x"] for point in points), max(point["x"] for point in points))
+    lines = tuple({"line": f"{threshold:g}", "x": x, "y": threshold} for threshold in thresholds for x in ends)
+    codecs = tuple(dict.fromkeys(CodecKey.of(row).label for row in rows))
+    tips = (("codec", "codec"), ("x", "roughness"), ("y", "FLIP, 99th percentile"), ("what", "worst on"))
+    return Chart(
+        name="roughness",
+        title="A mirror shows each step of a code; a dull surface hides it",
+        subtitle="FLIP's 99th percentile over roughness, the worst of objects and environments",
+        description="FLIP's 99th percentile over the pixels of an object that reflects its environment, on a scale of "
+        "logarithms, over perceptual roughness: a line for each code, the worst of objects and environments. Dotted "
+        "lines are the thresholds. The figures are in the table.",
+        x=Axis(title="perceptual roughness"),
+        y=Axis(title="FLIP, 99th percentile", scale=Scale.LOG),
+        rows=points,
+        colour=Names("codec", codecs),
+        marks=(
+            Mark(kind=Kind.LINES, rows=lines, by=("line",), colour=MUTED, dash="dotted"),
+            Mark(kind=Kind.LINES, by=("codec",), colour="codec", tips=tips),
+            Mark(kind=Kind.POINTS, colour="codec", tips=tips),
+            Mark(kind=Kind.ENDS, rows=lines, by=("line",), colour=MUTED, text="line"),
+            Mark(kind=Kind.ENDS, by=("codec",), colour="codec", text="codec"),
+        ),
+    )

@@ -1,0 +1,109 @@
+"""The roughness table: what a normal code does to reflections, from mirrors to dull surfaces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from ...ground.options.option import Encodings, Option, Plot, Roundings, Size, StorageNames
+from ...shaders.languages.source_options import SourceOptions
+from .. import shared_columns as shared
+from ..table import Column, Group, Role, Section, Table
+
+KEY, HOW = Role.KEY, Role.HOW
+
+
+@dataclass(frozen=True, kw_only=True)
+class RoughnessOptions(SourceOptions):
+    """What `roughness` measures. Names and numbers are comma-separated."""
+
+    encoding: Encodings = "octahedral"
+    storage: StorageNames = "rg8,rgb10a2,rgb8_12_12,rg16"
+    rounding: Roundings = "nearest"
+    object: Annotated[str, Option("--object", "sphere, panel20, panel4; comma-separated, or all.")] = "all"
+    environment: Annotated[
+        str, Option("--environment", "studio, strips, lamp, sky, or .hdr and .exr files; comma-separated.", files=True)
+    ] = "studio,strips,lamp"
+    threshold: Annotated[
+        str, Option("--threshold", "FLIP's 99th percentile that a code may have, comma-separated.")
+    ] = "0.1,0.05"
+    size: Size = "256x256"
+
+
+@dataclass(frozen=True, kw_only=True)
+class RoughnessOutputs:
+    """What `roughness` writes beside its rows."""
+
+    plot: Plot = None
+
+
+COLUMNS = (
+    shared.ENCODING,
+    shared.STORAGE,
+    Column("rounding", "How the storage rounds.", KEY, drops=5),
+    Column(
+        "threshold",
+        "In a row of a least roughness: FLIP's 99th percentile that is kept from there on. Empty in the rows of single "
+        "pictures.",
+        KEY,
+    ),
+    Column(
+        "object",
+        "What fills the picture: a sphere; panels whose normal turns by 20 or by 4 degrees across it.",
+        KEY,
+    ),
+    Column("environment", "What it reflects.", KEY),
+    Column(
+        "roughness",
+        "Perceptual roughness, 0 for a mirror; of a least roughness, to 0.01. Empty there: none is enough.",
+        KEY,
+    ),
+    Column(
+        "decides",
+        "Set in a row of a least roughness whose object and environment need the most of its code.",
+        Role.RAW,
+        shown=False,
+    ),
+    Column("bits", shared.BITS.says, drops=9),
+    Column("psnr_db", "Of the displayed image, over the object's pixels.", unit="dB", better="more"),
+    Column("flip", "FLIP's mean over the object's pixels, at 67 pixels a degree.", better="less", drops=6),
+    Column(
+        "flip_p99",
+        "FLIP's 99th percentile over the object's pixels: 0.1 is a grey off by 5 to 6 of 255, 0.05 one off by 2.",
+        better="less",
+    ),
+    Column("off_percent", "Share of the object's pixels that are off by more than 1 of 255.", unit="%", better="less"),
+    Column("largest", "Largest difference of a channel, of 255.", better="less", drops=7),
+    Column("exposure", "Light is multiplied by 2 to this power before it is shown.", HOW, "stops", drops=4),
+    Column("tone_mapping", "How light beyond 1 is shown.", HOW, drops=4),
+    Column("environment_size", "Texels of the environment, and what was done to it.", HOW, drops=4),
+    Column("size", "Width and height of the image in pixels.", HOW, drops=4),
+    shared.DEVICE,
+    shared.SKIPPED,
+)
+
+TABLE = Table(
+    name="roughness",
+    package=__package__ or "",
+    help="From which roughness on a normal code carries reflections: a mirror shows each step of a code, a dull "
+    "surface none.\n\nA sphere and two panels of a metal that reflects all light fill the picture one by one, under "
+    "three environments. A code carries a roughness where FLIP's 99th percentile is at most --threshold there and at "
+    "every greater roughness, on the worst of objects and environments. 0.1 is what we call acceptable and 0.05 "
+    "invisible: both are conventions.",
+    example="normalbench roughness --storage rg8,rgb10a2 --environment studio",
+    options=RoughnessOptions,
+    outputs=RoughnessOutputs,
+    columns=COLUMNS,
+    single={"storage": "rg8", "object": "panel20", "environment": "studio", "threshold": "0.1"},
+    group=Group.MEASURE,
+    in_all=False,
+    section=Section(
+        title="What reflections need",
+        short="Roughness",
+        intro="A mirror shows each step of a normal's code as a band; a dull surface hides them. From which roughness "
+        "on does a code carry reflections?",
+        method="A sphere and two slowly turning panels of a perfect metal fill the picture one by one, under each "
+        "environment. The picture with the code's normals is compared with the one of exact normals, as displayed, at "
+        "24 roughnesses. The least roughness of a code is found to 0.01 by drawing at the crossing.",
+    ),
+)

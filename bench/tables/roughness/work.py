@@ -1,0 +1,96 @@
+"""How the roughness table is measured and shown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from ....gbuffer.environment.environment import Environment
+from ....gbuffer.environment.prefilter import key_of
+from ...ground.choose import choose
+from ...ground.machine.devices import require_device, require_jax
+from ...ground.options.counts import checked_numbers
+from ...ground.options.targets import checked_target
+from ...ground.output.errors import UsageError
+from ...measures.metrics.images import require_flip
+from ...subjects.codecs.names import codecs_named, fitting
+from ...subjects.environments.environment_names import environment_named
+from ..table import Measured, Row, Sheet, Step, Work, each
+from .charts import charts
+from .measure import Case, answers, in_order, measure
+from .objects import OBJECTS
+from .table import RoughnessOptions, RoughnessOutputs
+
+
+def _steps(options: RoughnessOptions, _: RoughnessOutputs) -> list[Step]:
+    """A step for each code. Raises UsageError and MissingError."""
+    require_jax()
+    device = require_device()
+    require_flip("roughness")
+    size, _samples = checked_target(options.size, 1, 1, device)
+    thresholds = tuple(checked_numbers("--threshold", options.threshold, float, 0.001, 1.0))
+    objects = tuple(choose("object", options.object, {name: name for name in OBJECTS}))
+    around = _environments(options.environment)
+    codecs, _left_out = fitting(codecs_named(options.encoding, options.storage, options.rounding))
+    made = [Case(tuple(codecs), name, one, thresholds, size) for one in around for name in objects]
+    return [Step(_key(case), case, case.name) for case in made]
+
+
+def _environments(words: str) -> tuple[Environment, ...]:
+    """Raises UsageError for an unknown one, and for two of one name."""
+    found = tuple(environment_named(word) for word in filter(None, map(str.strip, words.split(","))))
+    names = [one.name for one in found]
+    if not found:
+        raise UsageError("--environment: name at least one, such as studio")
+    if twice := next((name for name in names if names.count(name) > 1), None):
+        raise UsageError(f"--environment: {twice} is named twice")
+    return found
+
+
+def _key(case: Case) -> Row:
+    key: Row = {"codecs": [codec.name for codec in case.codecs], "object": case.object, "size": list(case.size)}
+    return key | {"environment": key_of(case.environment.radiance), "thresholds": list(case.thresholds)}
+
+
+def _shown(done: Measured) -> Iterator[Sheet]:
+    yield from _summary(done.rows)
+    names = (
+        "encoding",
+        "storage",
+        "rounding",
+        "object",
+        "environment",
+        "roughness",
+        "psnr_db",
+        "flip_p99",
+        "off_percent",
+    )
+    kept = [row for row in done.rows if row["threshold"] is None and row["flip_p99"] is not None]
+    if kept:
+        yield Sheet("each picture in which FLIP was measured", [{name: row[name] for name in names} for row in kept])
+
+
+def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
+    """From which roughness on each code keeps each threshold."""
+    lines: dict[tuple[object, ...], Row] = {}
+    for row in answers(rows):
+        about = {name: row[name] for name in ("encoding", "storage", "rounding", "bits")}
+        line = lines.setdefault(tuple(about.values()), about)
+        at = f"{row['threshold']:g}"
+        line[f"from, at {at}"] = "none" if row["roughness"] is None else f"{row['roughness']:.2f}"
+        line[f"decided by, at {at}"] = f"{row['object']} in {row['environment']}"
+    if lines:
+        yield Sheet("the least roughness from which on each code carries reflections", list(lines.values()))
+
+
+def _measured(case: Case) -> list[Row]:
+    return measure(require_device(), case)
+
+
+WORK = Work(
+    steps=_steps,
+    measure=each(_measured),
+    finish=in_order,
+    shown=_shown,
+    summary=_summary,
+    charts=charts,
+)

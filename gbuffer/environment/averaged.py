@@ -1,0 +1,25 @@
+"""A smaller picture of all directions: the mean over the area of each of its texels."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def averaged(radiance: np.ndarray, height: int) -> np.ndarray:
+    """(height, 2 height, 3), float32, of (rows, 2 rows, 3) with as many rows or more: no light is lost or made."""
+    rows, columns = radiance.shape[:2]
+    # The area of a band goes by the cosine of its polar angle.
+    bands, wanted = (-np.cos(np.arange(count + 1) * np.pi / count) for count in (rows, height))
+    smaller = np.empty((height, 2 * height, 3), np.float32)
+    for channel in range(3):
+        found = _means(radiance[..., channel].astype(np.float64), bands, wanted)
+        smaller[..., channel] = _means(found.T, np.linspace(0, 1, columns + 1), np.linspace(0, 1, 2 * height + 1)).T
+    return smaller
+
+
+def _means(values: np.ndarray, edges: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """Means between `wanted` edges of values that are constant between `edges`, both along the first axis."""
+    sums = np.concatenate([np.zeros_like(values[:1]), np.cumsum(values * np.diff(edges)[:, None], axis=0)])
+    index = np.clip(np.searchsorted(edges, wanted, side="right") - 1, 0, len(values) - 1)
+    up_to = sums[index] + values[index] * (wanted - edges[index])[:, None]
+    return np.diff(up_to, axis=0) / np.diff(wanted)[:, None]

@@ -1,0 +1,48 @@
+"""The environments there are without a file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from types import MappingProxyType
+
+import numpy as np
+
+from . import bright_edges, sky, studio
+from .environment import Environment
+
+
+@dataclass(frozen=True)
+class EnvironmentMaker:
+    """An environment by formula.
+
+    Attributes:
+        name, title: what it is called, and what it shows.
+        radiance: makes its picture, (height, 2 height, 3), float32.
+        has_sun: whether a sun is in it, which scenes have as a light.
+    """
+
+    name: str
+    title: str
+    radiance: Callable[[], np.ndarray]
+    has_sun: bool = False
+
+    def make(self) -> Environment:
+        """It; one value, whose levels a device keeps."""
+        return _made(self)
+
+
+@cache
+def _made(maker: EnvironmentMaker) -> Environment:
+    return Environment(maker.name, maker.radiance())
+
+
+ENVIRONMENTS: Mapping[str, EnvironmentMaker] = MappingProxyType(
+    {
+        "studio": EnvironmentMaker("studio", studio.TITLE, studio.studio),
+        "sky": EnvironmentMaker("sky", sky.TITLE, sky.sky, has_sun=True),
+        "strips": EnvironmentMaker("strips", bright_edges.STRIPS, bright_edges.strips),
+        "lamp": EnvironmentMaker("lamp", bright_edges.LAMP, bright_edges.lamp),
+    }
+)

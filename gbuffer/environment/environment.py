@@ -1,0 +1,46 @@
+"""A picture of all directions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True, eq=False)
+class Environment:
+    """Radiance from every direction, in an equirectangular picture.
+
+    The centre of texel (row, column) of (height, width) is at polar angle t = pi (row + 1/2) / height from +y and
+    longitude p = 2 pi (column + 1/2) / width - pi: the direction (sin p sin t, cos t, -cos p sin t) in world space, so
+    that -z is in the middle.
+
+    Attributes:
+        name: what tables call it.
+        radiance: linear light, (height, width, 3), float32; width is twice the height.
+        sun: what was taken out of it as a light: the direction that the light goes, unit, and irradiance on a surface
+            across it, linear colour; None where nothing was.
+        changes: what was done to the picture since it was read or made, for rows.
+    """
+
+    name: str
+    radiance: np.ndarray
+    sun: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
+    changes: tuple[str, ...] = ()
+
+
+def directions(height: int) -> np.ndarray:
+    """Of the centres of an environment's texels, (height, 2 height, 3), float64, unit."""
+    t = (np.arange(height)[:, None] + 0.5) * np.pi / height
+    return towards(t, (np.arange(2 * height) + 0.5) * np.pi / height - np.pi)
+
+
+def towards(t: np.ndarray, p: np.ndarray) -> np.ndarray:
+    """The unit directions of polar angles and longitudes in radians, of the shape that the two make together and 3."""
+    return np.stack(np.broadcast_arrays(np.sin(p) * np.sin(t), np.cos(t), -np.cos(p) * np.sin(t)), -1)
+
+
+def solid_angles(height: int) -> np.ndarray:
+    """Of a texel of each row, (height, 1), float64, in steradians."""
+    edges = np.cos(np.arange(height + 1) * np.pi / height)
+    return -np.diff(edges)[:, None] * np.pi / height

@@ -1,0 +1,208 @@
+"""An environment seen through GGX's lobe around each direction: sums over all of its texels, not samples.
+
+The lobe depends on two latitudes and a difference of longitudes. So what a row of texels gives to a row of directions
+is a convolution along the longitudes, a product of spectra. A lobe of several texels is summed by its values in their
+middles. One that is narrower is integrated over each texel, which is an area of one radiance: far from the lobe's
+middle by two latitudes and exactly along the longitudes, and near it by as many nodes as it takes.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import fft
+
+# Half the width of a lobe, in texels, from which values in the middles of texels are enough: their sum is the lobe's
+# integral to 1e-7.
+RESOLVED = 3
+# This many rows away two nodes integrate any lobe over a texel to 1e-4 of it.
+NEAR = 6.5
+# Nodes of a piece of a near texel; pieces are half as wide as the lobe in its middle, and double from there.
+NODES = 4
+# Rows of directions at once, and longitudes of the lobe at once: what the processor's cache holds.
+ROWS, LONGITUDES = 8, 64
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Where texels and directions are.
+
+    Attributes:
+        height: rows of the environment; it is twice as wide.
+        step: how many texels a direction has along either side: 1, or an even number.
+        alpha: the lobe's, above 0.
+    """
+
+    height: int
+    step: int
+    alpha: float
+
+    @property
+    def width(self) -> int:
+        return 2 * self.height
+
+    @property
+    def texel(self) -> float:
+        """Height of a texel, in radians, and its width."""
+        return np.pi / self.height
+
+    @property
+    def latitudes(self) -> np.ndarray:
+        """Polar angles of the rows of directions."""
+        return (np.arange(self.height // self.step) + 0.5) * self.texel * self.step
+
+    @property
+    def offset(self) -> float:
+        """From a direction to the texel in the middle or right of it, in texels of longitude."""
+        return 0.0 if self.step == 1 else 0.5
+
+    @property
+    def scale(self) -> float:
+        """Half the lobe's width, in radians."""
+        return 2 * self.alpha
+
+    @property
+    def is_resolved(self) -> bool:
+        """Whether values in the middles of texels are enough."""
+        return self.scale >= RESOLVED * self.texel
+
+
+def lobe(cosine: np.ndarray, alpha: float) -> np.ndarray:
+    """D n.l for n = v = r, by r.l, up to a factor; it overwrites its input."""
+    density = cosine * (0.5 * (alpha**2 - 1))
+    density += 0.5 * (1 + alpha**2)
+    np.square(density, out=density)
+    np.maximum(cosine, 0, out=cosine)
+    return np.divide(cosine, density, out=cosine)
+
+
+def seen_through_lobe(radiance: np.ndarray, alpha: float, step: int = 1) -> np.ndarray:
+    """The mean of an environment by the lobe of each direction, (height / step, width / step, 3), float64.
+
+    Args:
+        radiance: (height, width, 3), width twice the height.
+        alpha: roughness squared, above 0.
+        step: how many texels a direction has along either side: 1, or an even number that divides the height.
+    """
+    grid = Grid(len(radiance), step, alpha)
+    spectra = _spectra(grid, radiance)
+    rows = len(grid.latitudes)
+    seen = np.empty((rows, 2 * rows, 3))
+    for first in range(0, -(-rows // 2), ROWS):
+        # Rows below the equator see the mirror image.
+        upper = np.arange(first, min(first + ROWS, -(-rows // 2)))
+        sums, weights = _sums(grid, grid.latitudes[upper], spectra)
+        seen[upper], seen[rows - 1 - upper] = (_pixels(grid, half) / weights for half in (sums[..., :3], sums[..., 3:]))
+    return seen
+
+
+def _spectra(grid: Grid, radiance: np.ndarray) -> np.ndarray:
+    """Spectra along the longitudes, (frequencies, rows, 12): of each channel, then of the picture upside down; real
+    parts of all of them, then imaginary ones."""
+    found = np.asarray(fft.rfft(radiance.astype(np.float64), axis=1, workers=1)).swapaxes(0, 1)
+    found = found * _width(grid)[:, None, None]
+    both = np.concatenate([found, found[:, ::-1]], axis=-1)
+    return np.ascontiguousarray(np.concatenate([np.real(both), np.imag(both)], axis=-1))
+
+
+def _width(grid: Grid) -> np.ndarray:
+    """The spectrum of a texel along its row: a peak in its middle, or an area."""
+    frequencies = np.arange(grid.height + 1)
+    return np.ones(len(frequencies)) if grid.is_resolved else np.sinc(frequencies / grid.width)
+
+
+def _sums(grid: Grid, latitudes: np.ndarray, spectra: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Spectra of radiance times lobe, (frequencies, rows of directions, 6); and sums of the lobe, (rows, 1, 1)."""
+    lobes = _lobe_spectra(grid, latitudes)
+    found = lobes @ spectra
+    return found[..., :6] + 1j * found[..., 6:], lobes[0].sum(-1)[:, None, None]
+
+
+def _pixels(grid: Grid, spectrum: np.ndarray) -> np.ndarray:
+    """Rows of directions, (rows, width / step, 3), from spectra with frequencies first."""
+    turned = spectrum * np.exp(-2j * np.pi * grid.offset / grid.width * np.arange(len(spectrum)))[:, None, None]
+    every = np.asarray(fft.irfft(turned, grid.width, axis=0, workers=1))
+    return every[grid.step // 2 :: grid.step].swapaxes(0, 1)
+
+
+def _lobe_spectra(grid: Grid, latitudes: np.ndarray) -> np.ndarray:
+    """Of the lobes around directions of these latitudes along each row of texels, (frequencies, directions, rows)."""
+    found = _transformed(grid, _far_lobes(grid, latitudes))
+    if not grid.is_resolved:
+        for number, latitude in enumerate(latitudes):
+            near, lobes = _near_lobes(grid, latitude)
+            # These are integrated along the longitudes already, and their texels' spectra have the width in them.
+            found[:, number, near] = _transformed(grid, lobes) / _width(grid)[:, None]
+    return found
+
+
+def _transformed(grid: Grid, lobes: np.ndarray) -> np.ndarray:
+    """The spectrum of a lobe from half of its longitudes, which is real: around a texel's middle or its edge."""
+    if not grid.offset:
+        return np.asarray(fft.dct(lobes, 1, axis=0, workers=1))
+    found = np.asarray(fft.dct(lobes, 2, axis=0, workers=1))
+    # The highest frequency is 0 at all nodes.
+    return np.concatenate([found, np.zeros_like(found[:1])])
+
+
+def _far_lobes(grid: Grid, latitudes: np.ndarray) -> np.ndarray:
+    """Integrals over texels' heights at the middle longitude of each, (longitudes, directions, rows)."""
+    turns = np.cos((np.arange(grid.height + (not grid.offset)) + grid.offset) * grid.texel)
+    nodes, weights = _gauss(np.arange(grid.height + 1) * grid.texel, 1 if grid.is_resolved else 2)
+    nodes, weights = nodes.T.ravel(), (weights * np.sin(nodes)).T.ravel()
+    found = np.empty((len(turns), len(latitudes), grid.height))
+    for number, latitude in enumerate(latitudes):
+        level, tilt = np.cos(latitude) * np.cos(nodes), np.sin(latitude) * np.sin(nodes)
+        for first in range(0, len(turns), LONGITUDES):
+            part = slice(first, first + LONGITUDES)
+            values = lobe(turns[part, None] * tilt + level, grid.alpha)
+            values *= weights
+            np.sum(values.reshape(len(values), -1, grid.height), axis=1, out=found[part, number])
+    return found
+
+
+def _near_lobes(grid: Grid, latitude: float) -> tuple[slice, np.ndarray]:
+    """Rows near a direction's, and integrals over their texels, (longitudes, rows)."""
+    place = latitude / grid.texel
+    first, end = max(0, int(np.ceil(place - NEAR - 0.5))), min(grid.height, int(place + NEAR + 0.5))
+    edges = np.arange(first, end + 1) * grid.texel
+    nodes, weights, rows = _pieces(edges, latitude, grid.scale, np.inf)
+    # The shortest circle of latitude near by has the lobe spread over the most longitudes.
+    sine = np.sin(np.clip(np.pi / 2, edges[0], edges[-1]))
+    turns = np.arange(grid.height + (not grid.offset) + 1) + grid.offset - 0.5
+    reach = 8 * grid.texel / max(np.sin(latitude), grid.texel)
+    longitudes, breadths, columns = _pieces(turns * grid.texel, 0, grid.scale / sine, reach)
+    cosines = np.cos(longitudes)[:, None] * (np.sin(latitude) * np.sin(nodes)) + np.cos(latitude) * np.cos(nodes)
+    values = lobe(cosines, grid.alpha) * (weights * np.sin(nodes)) * breadths[:, None] / grid.texel
+    return slice(first, end), np.add.reduceat(np.add.reduceat(values, columns, axis=0), rows, axis=1)
+
+
+def _pieces(edges: np.ndarray, middle: float, scale: float, reach: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Nodes and weights of integrals between edges, and where each integral's nodes begin.
+
+    The pieces are half of `scale` wide at the lobe's middle and double from there; two nodes do beyond `reach`.
+    """
+    doublings = np.arange(1 + max(0, int(np.ceil(np.log2(2 * (edges[-1] - edges[0]) / scale)))))
+    graded = scale / 2 * 2.0**doublings
+    cuts = np.concatenate([middle - graded[::-1], [middle], middle + graded])
+    cut = np.unique(np.concatenate([edges, cuts[(cuts > edges[0]) & (cuts < edges[-1])]]))
+    last = int(np.searchsorted(cut, min(middle + reach, edges[-1])))
+    (near, of_near), (far, of_far) = _gauss(cut[: last + 1], NODES), _gauss(cut[last:], 2)
+    begins = np.searchsorted(cut, edges[:-1])
+    starts = np.minimum(begins, last) * NODES + np.maximum(begins - last, 0) * 2
+    nodes, weights = np.concatenate([near.ravel(), far.ravel()]), np.concatenate([of_near.ravel(), of_far.ravel()])
+    return nodes, weights, starts
+
+
+def _gauss(edges: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Gauss-Legendre's nodes and weights between neighbouring edges, (intervals, count)."""
+    nodes, weights = _legendre(count)
+    middles, halves = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2
+    return middles[:, None] + halves[:, None] * nodes, halves[:, None] * weights
+
+
+@functools.cache
+def _legendre(count: int) -> tuple[np.ndarray, np.ndarray]:
+    return np.polynomial.legendre.leggauss(count)

@@ -1,0 +1,42 @@
+"""Pictures of all directions by formula, averaged over the area of each texel so that no edge is a step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from .environment import towards
+
+# Texels of the environments that are made, and samples in each along either side.
+HEIGHT = 256
+SAMPLES = 4
+
+# From unit directions, (..., 3), to linear radiance, (..., 3).
+Formula = Callable[[np.ndarray], np.ndarray]
+
+
+def drawn(formula: Formula, height: int = HEIGHT) -> np.ndarray:
+    """A formula's radiance, (height, 2 height, 3), float32, read-only: the mean of 4 x 4 directions in each texel."""
+    radiance = np.concatenate([_row(formula, row, height) for row in range(height)])
+    radiance.setflags(write=False)
+    return radiance
+
+
+def _row(formula: Formula, row: int, height: int) -> np.ndarray:
+    t = ((row + (np.arange(SAMPLES)[:, None] + 0.5) / SAMPLES) * np.pi) / height
+    p = (np.arange(2 * height * SAMPLES) + 0.5) / SAMPLES * np.pi / height - np.pi
+    weight = np.sin(t)[..., None] / np.sin(t).mean()
+    light = (formula(towards(t, p)) * weight).reshape(SAMPLES, 2 * height, SAMPLES, 3)
+    return light.mean((0, 2), dtype=np.float64).astype(np.float32)[None]
+
+
+def rises(value: np.ndarray, start: float, end: float) -> np.ndarray:
+    """0 before `start`, 1 from `end` on, smooth between."""
+    share = np.clip((value - start) / (end - start), 0, 1)
+    return share * share * (3 - 2 * share)
+
+
+def mixed(first: np.ndarray, second: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """The second colour's share of the first."""
+    return first + (second - first) * share[..., None]

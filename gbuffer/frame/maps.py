@@ -1,0 +1,69 @@
+"""Metal/rough materials on the device: their numbers, and the pictures that vary them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import ExitStack
+
+import numpy as np
+
+from ..gl.device import Device
+from ..gl.handles import Program, Texture
+from ..scenes.metal_rough import MAPS, Map, MetalRough
+from ..scenes.scene import Scene
+
+# Pictures lie behind all else that a pass samples; GL has at least this many units and one for each of them.
+FIRST_UNIT = 10
+# Where a material has no map: white changes nothing.
+WHITE = np.full((1, 1, 4), 255, np.uint8)
+
+
+class Maps:
+    """The pictures of a scene's materials, released with `stack`; materials may share them."""
+
+    def __init__(self, device: Device, stack: ExitStack, scene: Scene):
+        def kept(make: Callable[[], Texture]) -> Texture:
+            return device.owned(stack, make())
+
+        white = kept(lambda: device.picture(WHITE, False, (True, True)))
+        made: dict[tuple[object, ...], Texture] = {}
+        for material in scene.materials:
+            for one in material.maps if isinstance(material, MetalRough) else ():
+                if one is not None and _sampled(one) not in made:
+                    made[_sampled(one)] = kept(lambda one=one: device.picture(one.texels, one.is_srgb, _repeats(one)))
+        self._bound = [
+            [white if one is None else made[_sampled(one)] for one in material.maps]
+            for material in scene.materials
+            if isinstance(material, MetalRough)
+        ]
+
+    def bind(self, program: Program, material: int) -> None:
+        """Make a material's pictures those that a program samples; those the compiler dropped are left out."""
+        for unit, (name, texture) in enumerate(zip(MAPS, self._bound[material], strict=True), FIRST_UNIT):
+            if f"{name}_map" in program:
+                program[f"{name}_map"] = unit
+                texture.use(unit)
+
+
+def _sampled(one: Map) -> tuple[object, ...]:
+    """What makes a texture of a map: maps that differ in where they lie alone share one."""
+    return id(one.texels), one.is_srgb, _repeats(one)
+
+
+def _repeats(one: Map) -> tuple[bool, bool]:
+    along_u, along_v = (wrap == "repeat" for wrap in one.wrap)
+    return along_u, along_v
+
+
+def metal_rough_numbers(material: MetalRough) -> list[float]:
+    """What `instance.glsl` declares of a metal/rough material."""
+    numbers = [*material.base, material.alpha, material.metalness, material.roughness, material.reflectance]
+    has_normals = float(material.normal_map is not None)
+    numbers += [material.cutoff, *material.emission, 0.0]
+    numbers += [material.normal_scale, material.occlusion_strength, has_normals, float(any(material.maps))]
+    for one in material.maps:
+        placed = np.eye(3)[:2] if one is None else one.placed
+        uv_set, wrap = (0, ("repeat", "repeat")) if one is None else (one.uv_set, one.wrap)
+        mirrors = sum(bit for bit, way in zip((1, 2), wrap, strict=True) if way == "mirror")
+        numbers += [*map(float, placed[0]), float(uv_set), *map(float, placed[1]), float(mirrors)]
+    return numbers

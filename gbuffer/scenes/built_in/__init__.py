@@ -1,0 +1,1 @@
+"""The scenes that need no file, a module for each."""

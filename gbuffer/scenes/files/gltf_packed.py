@@ -1,0 +1,125 @@
+"""What two extensions of glTF pack: primitives by KHR_draco_mesh_compression, buffer views by EXT_meshopt_compression.
+
+Each is unpacked by its own package, which is imported when a file needs it. What it makes is bounded before it starts.
+"""
+
+from __future__ import annotations
+
+import struct
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .source import MAX_TRIANGLES, MAX_VERTICES, MissingPackageError
+
+if TYPE_CHECKING:
+    from .gltf_data import Gltf, Object
+
+DRACO, MESHOPT = "KHR_draco_mesh_compression", "EXT_meshopt_compression"
+INSTALL = "pip install normalbench[compressed]"
+# Of a Draco file: its version (glTF has 2.2 alone), a mesh, and how its triangles are packed.
+DRACO_HEAD = struct.Struct("<5sBBBBH")
+DRACO_VERSION, DRACO_MESH, SEQUENTIAL, EDGEBREAKER, HAS_METADATA = (2, 2), 1, 0, 1, 0x8000
+# Bytes of an element that each filter takes.
+FILTERS = {"OCTAHEDRAL": ("oct", (4, 8)), "QUATERNION": ("quat", (8,)), "EXPONENTIAL": ("exp", range(4, 257, 4))}
+MODES = {"ATTRIBUTES": range(4, 257, 4), "TRIANGLES": (2, 4), "INDICES": (2, 4)}
+
+
+def _package(gltf: Gltf, name: str, place: str) -> Any:
+    """A package of the extra. Raises MissingPackageError where it is not installed."""
+    try:
+        return import_module(name)
+    except ImportError as error:
+        raise MissingPackageError(f"{gltf.path}: {place} needs {name}; {INSTALL}") from error
+
+
+# EXT_meshopt_compression
+
+
+def unpacked_view(gltf: Gltf, packed: Object, data: memoryview, most: int, place: str) -> bytes:
+    """A buffer view's bytes.
+
+    Args:
+        packed: the extension of the view.
+        data: what it names.
+        most: how many bytes may come of it.
+
+    Raises:
+        SceneFileError: the view is damaged or too large, or its package is missing (MissingPackageError).
+    """
+    mode, sieve = packed.get("mode"), packed.get("filter", "NONE")
+    count, stride = (gltf.whole(packed, key, f"{place}.{MESHOPT}") for key in ("count", "byteStride"))
+    sizes = MODES.get(mode, ()) if isinstance(mode, str) else ()
+    name, filtered = FILTERS.get(sieve, (None, ())) if isinstance(sieve, str) else (None, ())
+    if stride not in sizes or (sieve != "NONE" and (mode != "ATTRIBUTES" or stride not in filtered)):
+        raise gltf.error(place, f"packs elements of {stride} bytes by {mode!r} and {sieve!r}, which is not read")
+    if count * stride > most:
+        raise gltf.error(place, f"unpacks to {count * stride} bytes; {most} are left", "export fewer objects")
+    package = _package(gltf, "meshoptimizer", place)
+    try:
+        if mode == "ATTRIBUTES":
+            found = package.decode_vertex_buffer(count, stride, data, np.dtype((np.void, stride))).view(np.uint8)
+            return (getattr(package, f"decode_filter_{name}")(found, count, stride) if name else found).tobytes()
+        decode = package.decode_index_buffer if mode == "TRIANGLES" else package.decode_index_sequence
+        return decode(count, 4, data).astype(f"<u{stride}").tobytes()
+    except (ValueError, RuntimeError) as error:
+        raise gltf.error(place, f"cannot be unpacked by {MESHOPT}") from error
+
+
+# KHR_draco_mesh_compression
+
+
+def draco_primitive(gltf: Gltf, primitive: Object, place: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """A primitive's triangles, (triangles, 3), and its attributes by name, (vertices, numbers), as they are stored.
+
+    Raises:
+        SceneFileError: what it names is damaged or too large, or its package is missing (MissingPackageError).
+    """
+    extension = gltf.extension(primitive, DRACO, place)
+    data = bytes(gltf.view_bytes(extension.get("bufferView"), f"{place}.{DRACO}"))
+    _check_draco_size(gltf, data, place)
+    package = _package(gltf, "DracoPy", place)
+    try:
+        mesh = package.decode(data)
+        triangles = np.asarray(mesh.faces, np.int64).reshape(-1, 3)
+        known = {attribute["unique_id"]: np.atleast_2d(attribute["data"]) for attribute in mesh.attributes}
+    except Exception as error:  # the package has errors of several kinds
+        raise gltf.error(place, f"cannot be unpacked by {DRACO}") from error
+    found = {}
+    for name, number in gltf.child(extension, "attributes", f"{place}.{DRACO}").items():
+        if type(number) is not int or number not in known:
+            raise gltf.error(f"{place}.{DRACO}", f"has no attribute {number!r}, which {name[:40]} names")
+        found[name] = known[number]
+    return triangles, found
+
+
+def _check_draco_size(gltf: Gltf, data: bytes, place: str) -> None:
+    """Raises SceneFileError where the header says more than is read."""
+    try:
+        magic, major, minor, kind, method, flags = DRACO_HEAD.unpack_from(data)
+        if magic != b"DRACO" or (major, minor) != DRACO_VERSION or kind != DRACO_MESH:
+            raise gltf.error(f"{place}.{DRACO}", f"is not a Draco {DRACO_VERSION[0]}.{DRACO_VERSION[1]} mesh")
+        if flags & HAS_METADATA:
+            raise gltf.error(f"{place}.{DRACO}", "has metadata", "export without it")
+        # Edgebreaker first says which of its ways it goes, and has vertices before triangles.
+        at = DRACO_HEAD.size + (method == EDGEBREAKER)
+        one, at = _varint(data, at)
+        other, _ = _varint(data, at)
+    except (struct.error, IndexError) as error:
+        raise gltf.error(f"{place}.{DRACO}", "is cut off") from error
+    triangles, vertices = (other, one) if method == EDGEBREAKER else (one, other)
+    if triangles > MAX_TRIANGLES or vertices > MAX_VERTICES:
+        raise gltf.error(
+            f"{place}.{DRACO}", f"says {triangles} triangles of {vertices} vertices", "export fewer objects"
+        )
+
+
+def _varint(data: bytes, at: int) -> tuple[int, int]:
+    """A number of seven bits a byte, the least first, and where it ends."""
+    value = shift = 0
+    while True:
+        value |= (data[at] & 127) << shift
+        shift, at = shift + 7, at + 1
+        if data[at - 1] < 128 or shift > 63:
+            return value, at

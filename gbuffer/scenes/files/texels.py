@@ -1,0 +1,116 @@
+"""Pictures of users' scene files as texels: PNG, JPEG and WebP.
+
+A picture's size is taken from its header and refused before anything is unpacked. Pillow reads all pictures. It cuts
+colours of 16 bits to 8, so that OpenImageIO reads PNG files of 16 bits once more.
+"""
+
+from __future__ import annotations
+
+import io
+import struct
+import tempfile
+import warnings
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+FORMATS = ("PNG", "JPEG", "WEBP")
+MAX_SIDE = 8192
+SMALLER = f"at most {MAX_SIDE} pixels a side are read: save it smaller"
+DAMAGED = "is cut off or damaged; save it again"
+PNG = b"\x89PNG\r\n\x1a\n"
+# Chunks of a PNG file that its texels are made of.
+NEEDED = (b"IHDR", b"PLTE", b"tRNS", b"IDAT", b"IEND")
+# Where a PNG file's header has the bits of a channel.
+DEPTH = 24
+
+
+class PictureError(ValueError):
+    """A picture that cannot be read: what is wrong, and the remedy."""
+
+
+def sides(data: bytes) -> tuple[int, int]:
+    """Width and height of a picture, from its header alone. Raises PictureError."""
+    with _opened(_bare(data)) as picture:
+        return picture.size
+
+
+def texels(data: bytes) -> np.ndarray:
+    """A picture's texels, (height, width, 4), uint8, or uint16 for a PNG file of 16 bits; row 0 is the top.
+
+    Grey stands in all three colours. Alpha that the picture does not have is the largest integer. No colour is
+    converted: colour profiles and gamma are passed over.
+
+    Raises:
+        PictureError: it is of no format in FORMATS, too large, cut off or damaged.
+    """
+    data = _bare(data)
+    with _opened(data) as picture:
+        try:
+            found = np.asarray(picture.convert("RGBA"))
+        except Exception as error:  # Pillow has errors of many kinds for damaged files
+            raise PictureError(DAMAGED) from error
+    return _deep_texels(data) if data.startswith(PNG) and data[DEPTH] == 16 else found
+
+
+def _opened(data: bytes) -> Image:
+    from PIL import Image  # start-up goes without it
+
+    with warnings.catch_warnings():
+        # Sizes are checked here, and what else Pillow warns of changes no texel.
+        warnings.simplefilter("ignore")
+        try:
+            picture = Image.open(io.BytesIO(data), formats=FORMATS)
+        except Image.DecompressionBombError as error:
+            raise PictureError(f"is too large; {SMALLER}") from error
+        except Exception as error:
+            raise PictureError("is not a PNG, JPEG or WebP picture; save it as PNG") from error
+    if max(picture.size) > MAX_SIDE:
+        raise PictureError(f"has {picture.width} x {picture.height} pixels; {SMALLER}")
+    return picture
+
+
+def _deep_texels(data: bytes) -> np.ndarray:
+    """A PNG file of 16 bits that Pillow can read; the library reads from files alone."""
+    import OpenImageIO as oiio  # noqa: N813 # as its own documentation has it
+
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "picture.png"
+        path.write_bytes(data)
+        wishes = oiio.ImageSpec()
+        # As it is stored: colours are not multiplied by alpha.
+        wishes.attribute("oiio:UnassociatedAlpha", 1)
+        file = oiio.ImageInput.open(str(path), wishes)
+        found = None if file is None else file.read_image("uint16")
+    if found is None:
+        oiio.geterror()  # else the library prints it at exit
+        raise PictureError(DAMAGED)
+    return _widened(np.asarray(found))
+
+
+def _bare(data: bytes) -> bytes:
+    """A PNG file with nothing but what its texels are made of, others as they are.
+
+    Damaged profiles and texts are no reason to refuse a picture, and libpng prints warnings of them.
+    """
+    if not data.startswith(PNG):
+        return data
+    kept, at = [PNG], len(PNG)
+    while at + 8 <= len(data):
+        length, kind = struct.unpack_from(">I4s", data, at)
+        if kind in NEEDED:
+            kept.append(data[at : at + 12 + length])
+        at += 12 + length
+    return b"".join(kept)
+
+
+def _widened(found: np.ndarray) -> np.ndarray:
+    """Grey, grey and alpha, or colours as colours and alpha."""
+    count = found.shape[2]
+    colours = found[..., :3] if count >= 3 else np.repeat(found[..., :1], 3, axis=2)
+    alpha = found[..., -1:] if count in (2, 4) else np.full_like(found[..., :1], np.iinfo(found.dtype).max)
+    return np.concatenate([colours, alpha], axis=2)

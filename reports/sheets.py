@@ -1,0 +1,122 @@
+"""What rows are shown as: columns with their definitions, sheets to read, and what a page says of a table.
+
+Imports nothing but the standard library: every start of the program does so with this.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+from fnmatch import fnmatchcase
+from typing import Any
+
+Row = dict[str, Any]
+
+
+class Role(StrEnum):
+    """What a column is for."""
+
+    KEY = "key"  # names the row
+    FIGURE = "figure"  # what was measured; gates and comparisons hold these
+    TIME = "time"  # what a clock says, which two runs never agree on
+    HOW = "how"  # under what conditions it was measured
+    RAW = "raw"  # what only a program reads
+    REASON = "reason"  # why there are no figures
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table.
+
+    Attributes:
+        name: what rows call it; `*` stands for a name that is only known when it is measured.
+        says: its definition, in one sentence, for the page, the manual and `normalbench columns`.
+        role: what it is for.
+        unit: of its values; empty for none.
+        better: "more" or "less"; empty where neither is better.
+        drops: in which order a narrow terminal leaves it out, from 1, of the same number the first column first; 0 if
+            it stays, and others go.
+        option: the option without which it is not measured.
+        shown: whether tables for people have it.
+        is_histogram: whether its values are bins, `from:count` and spaces between; CSV leaves it out.
+    """
+
+    name: str
+    says: str
+    role: Role = Role.FIGURE
+    unit: str = ""
+    better: str = ""
+    drops: int = 0
+    option: str = ""
+    shown: bool = True
+    is_histogram: bool = False
+
+    @property
+    def definition(self) -> str:
+        """What it says, with its unit."""
+        return f"{self.says} Unit: {self.unit}." if self.unit else self.says
+
+    def is_called(self, name: str) -> bool:
+        """Whether a row's column is this one."""
+        return fnmatchcase(name, self.name)
+
+
+def column_called(name: str, columns: Iterable[Column]) -> Column | None:
+    """The column that a row or a summary calls so; None where there is none."""
+    found = [column for column in columns if column.is_called(name)]
+    # `ms_frame` is itself and not one of `ms_*`.
+    return max(found, key=lambda column: len(column.name), default=None)
+
+
+def undefined(name: str) -> Column:
+    """A column that no table has."""
+    return Column(name, "")
+
+
+@dataclass(frozen=True)
+class Section:
+    """A table's part of the page.
+
+    Attributes:
+        title: its heading.
+        short: what the navigation calls it.
+        intro: the question that it answers.
+        method: how it is measured, in sentences.
+        parts: a column; rows that differ in it are shown as tables of their own.
+        extras: what the page's template shows beside the tables.
+        leads: whether it is the page's first screen.
+    """
+
+    title: str
+    short: str
+    intro: str
+    method: str
+    parts: str = ""
+    extras: tuple[str, ...] = ()
+    leads: bool = False
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """Rows for people to read, all with the same columns.
+
+    Attributes:
+        title: empty where the rows need none.
+        rows: the lines.
+        drops: the columns that a narrow terminal leaves out, the first first.
+        notes: lines below them, on a terminal and in Markdown.
+        said: paragraphs above them, the first of which is the answer.
+        aside: paragraphs after those that say what is not part of the answer; a page folds them.
+        keys: what the title says of every row, by column.
+        folded: whether a page shows it only when asked for.
+    """
+
+    title: str
+    rows: Sequence[Row]
+    drops: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+    said: tuple[str, ...] = ()
+    aside: tuple[str, ...] = ()
+    keys: Mapping[str, Any] = field(default_factory=dict)
+    folded: bool = False

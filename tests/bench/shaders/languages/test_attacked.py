@@ -1,0 +1,108 @@
+"""What a file may not do, and what stands in the way of a pair: found by those who tried."""
+
+import pytest
+
+from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.shaders.languages.items import heads, items
+from normalbench.bench.shaders.languages.translated import translated
+
+pytestmark = pytest.mark.usefixtures("slang")
+ENCODE = "float2 PackDir(float3 n) { return CODE; }\n"
+DECODE = "float3 UnpackDir(float2 e) { return float3(e, sqrt(saturate(1.0 - dot(e, e)))); }\n"
+ROUGH = "float4 PackDir(float3 n, float r) { return float4(n, r); }\nfloat3 UnpackDir(float4 t) { return t.xyz; }\n"
+PLAIN = ENCODE.replace("CODE", "n.xy") + DECODE
+
+
+@pytest.mark.parametrize("ending", ["hlsl", "slang", "frag"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        'float f(float a) { __target_switch { case cpp: __intrinsic_asm "exit(1)"; case glsl: return a; } }\n',
+        '__target_intrinsic(cpp, "exit(1)") float f(float a);\n',
+        '#define P(a, b) a##b\nfloat f(float a) { P(__intrin, sic_asm) "exit(1)"; }\n',
+        '__intrin\\\nsic_asm "exit(1)";\n',
+        'import "other.slang";\n',
+        '#define I import\nI "other.slang";\n',
+        'imp\\\nort "other.slang";\n',
+        '#define J(x) x "other.slang"\nJ(import);\n',
+        '#define P(a, b) a##b\nP(imp, ort) "other.slang";\n',
+    ],
+)
+def test_a_file_writes_no_program_and_reads_no_other_file(tmp_path, text, ending):
+    """Words of Slang's that put a string into the C++ that is run, or read a module, however they are written."""
+    (tmp_path / "other.slang").write_text("float secret() { return 1.0; }\n")
+    path = tmp_path / f"mine.{ending}"
+    path.write_text(text + PLAIN)
+    with pytest.raises(UsageError, match=r"mine\.\w+: \w+ is not read"):
+        translated(path)
+
+
+@pytest.mark.parametrize(
+    "value", ['0.3+\n#include "/etc/hostname"\n', "{0.5}", "0/0", "gone", "n + 1", '"x"', "system(1)", "wired_n_given"]
+)
+def test_a_wiring_has_numbers_and_names_alone(tmp_path, value):
+    path = tmp_path / "mine.hlsl"
+    path.write_text(
+        "float4 PackDir(float3 n, float r) { return float4(n, r); }\nfloat3 UnpackDir(float4 t) { return t.xyz; }\n"
+    )
+    with pytest.raises(UsageError):
+        translated(f"{path}:PackDir(n=n; r={value})->xyz:UnpackDir(t.xyz=e)")
+
+
+def test_what_a_side_is_not_given_is_said(tmp_path):
+    path = tmp_path / "mine.hlsl"
+    path.write_text(
+        "float4 PackDir(float3 n, float r) { return float4(n, r); }\nfloat3 UnpackDir(float4 t) { return t.xyz; }\n"
+    )
+    with pytest.raises(UsageError, match="it is given e, not n"):
+        translated(f"{path}:PackDir(n=n)->xyz:UnpackDir(t=n)")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "#define SIGN float2 sign(float2 v) { return v * 2.0; }\nSIGN\nfloat unused(Gone a) { return 0; }\n",
+        "#define CALL(x) Helper##x\nfloat HelperOf(float x) { return sign(float2(x, x)).x; }\n"
+        "float2 sign(float2 v) { return v * 2.0; }\n",
+        'string Widget = "slider{";\nfloat2 sign(float2 v) { return v * 2.0; }\n',
+    ],
+)
+def test_what_a_pair_needs_is_kept(tmp_path, text):
+    """What a macro defines before a function that goes; what is reached by pasting alone; braces in quotes."""
+    path = tmp_path / "mine.hlsl"
+    code = "float2(CALL(Of)(n.x), sign(n.xy).y)" if "CALL" in text else "sign(n.xy)"
+    path.write_text(text + ENCODE.replace("CODE", code) + DECODE)
+    assert "* 2.0" in translated(path).texts[0]
+
+
+def test_a_global_that_is_wrong_is_the_reason(tmp_path):
+    """And not that what uses it does not know it."""
+    path = tmp_path / "mine.hlsl"
+    path.write_text("static const float H = Something(3);\n" + ENCODE.replace("CODE", "n.xy * H") + DECODE)
+    with pytest.raises(UsageError, match=r"mine\.hlsl:1:\d+: undefined identifier 'Something'"):
+        translated(path)
+
+
+def test_a_macro_before_a_function_is_an_item_of_its_own():
+    text = "DEFINED\n[numthreads(1, 1, 1)]\nvoid main(uint3 id) { }\n"
+    text += "float3\nf(float3 n) { return n; }\nSIGN(x)\nfloat g() { }\n"
+    assert [item.function for item in items(text)] == ["main", "f", "", "g", ""]
+    assert heads(text).count(";") == 3
+
+
+def test_the_packer_of_the_file_comes_before_the_helper_that_it_includes(tmp_path):
+    """As in Unity's HDRP; in one file, a line names it."""
+    helper = PLAIN.replace("CODE", "n.xy")
+    packer = (
+        "struct Data { float3 normalWS; float roughness; };\n"
+        "void EncodeIntoBuffer(Data d, out float4 o) { o = float4(PackDir(d.normalWS), d.normalWS.z, d.roughness); }\n"
+        "void DecodeFromBuffer(float4 b, out Data d) { d.normalWS = float3(b.xy, b.z); d.roughness = b.w; }\n"
+    )
+    (tmp_path / "helper.hlsl").write_text(helper)
+    (tmp_path / "mine.hlsl").write_text('#include "helper.hlsl"\n' + packer)
+    (tmp_path / "both.hlsl").write_text(helper + packer)
+    with pytest.raises(UsageError, match=r"EncodeIntoBuffer\(d.normalWS=n; d.roughness=0.5\)->o.xy:"):
+        translated(tmp_path / "mine.hlsl")
+    made = translated(tmp_path / "both.hlsl")
+    assert made.named == "PackDir:UnpackDir"
+    assert "EncodeIntoBuffer:DecodeFromBuffer is measured if it is named" in made.notes

@@ -1,0 +1,53 @@
+"""Files of materials: what is common to their programs, and each program by itself."""
+
+import pytest
+
+from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.shaders.languages.blocks import programs_of
+from normalbench.bench.shaders.languages.source import Source
+from normalbench.bench.shaders.languages.translated import translated
+
+COMMON = "HLSLINCLUDE\n#define SCALE 1.0\nENDHLSL\n"
+OTHER = "HLSLPROGRAM\n#define SCALED(x) gone(x)\nfloat4 frag() : SV_Target { return SCALED(2.0); }\nENDHLSL\n"
+PAIR = """HLSLPROGRAM
+#define SCALED(x) ((x) * SCALE)
+float2 PackDir(float3 n) { return SCALED(n.xy); }
+float3 UnpackDir(float2 e) { return float3(e, sqrt(saturate(1.0 - dot(e, e)))); }
+ENDHLSL
+"""
+
+
+def material(folder, *blocks):
+    path = folder / "mine.shader"
+    path.write_text(f'Shader "Mine" {{ SubShader {{ Pass {{\n{"".join(blocks)}}} }} }}\n')
+    return path
+
+
+def test_a_program_has_what_is_common_and_each_line_where_it_stood(tmp_path):
+    path = material(tmp_path, PAIR, OTHER, COMMON)
+    one, other = programs_of(Source(path))
+    assert one.text.count("\n") == other.text.count("\n") == Source(path).text.count("\n")
+    assert "PackDir" in one.text and "SCALE 1.0" in one.text and "frag" not in one.text
+    assert "frag" in other.text and "SCALE 1.0" in other.text and "PackDir" not in other.text
+
+
+def test_a_file_without_blocks_is_a_program(tmp_path):
+    path = tmp_path / "mine.hlsl"
+    path.write_text("float x;")
+    (only,) = programs_of(Source(path))
+    assert only.text == "float x;\n"
+
+
+@pytest.mark.usefixtures("slang")
+@pytest.mark.parametrize("blocks", [(COMMON, OTHER, PAIR), (COMMON, PAIR, OTHER)])
+def test_macros_of_a_program_do_not_reach_another(tmp_path, blocks):
+    found = translated(material(tmp_path, *blocks))
+    assert [name for name, _ in found.functions] == ["PackDir", "UnpackDir"]
+
+
+@pytest.mark.usefixtures("slang")
+def test_what_is_wrong_with_the_pair_is_said(tmp_path):
+    """Whichever program it stands in, at its line."""
+    path = material(tmp_path, OTHER, PAIR.replace("SCALED(n.xy)", "gone(n.xy)"))
+    with pytest.raises(UsageError, match=r"mine\.shader:8:35: .*gone"):
+        translated(path)

@@ -1,0 +1,185 @@
+"""How users' files are read: macros, preludes, folders of includes and languages, as a part of their names."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from normalbench.bench.door.gates.measured import located
+from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.shaders.languages.source import Source
+from normalbench.bench.shaders.languages.translated import translated
+from normalbench.bench.shaders.languages.words import file_of, files_in, functions_of, settings_of, with_settings
+from normalbench.bench.subjects.codecs.layout_names import layouts_named
+from normalbench.bench.tables.quality.table import QualityOptions
+from normalbench.bench.tables.registry import TABLES
+
+PAIR = """float2 PackDir(float3 n) { return n.xy * SCALE; }
+float3 UnpackDir(float2 e) { return float3(e, sqrt(saturate(1.0 - dot(e, e)))); }
+"""
+
+
+OWN_LAYOUT = """
+encoding = "octahedral"
+targets = [{ format = "rg8", holds = "normal.x normal.y" }]
+"""
+
+
+@pytest.fixture
+def mine(tmp_path):
+    path = tmp_path / "own" / "mine.hlsl"
+    path.parent.mkdir()
+    (path.parent / ".git").mkdir()
+    path.write_text(PAIR)
+    return path
+
+
+@pytest.mark.parametrize(
+    "word", ["mine.hlsl", "mine.hlsl:A:B", "a+b/mine.hlsl.h:A::B:C", "my,file.hlsl", "mine.hlsl:Foo", "octahedral"]
+)
+def test_settings_stand_behind_a_files_name(word):
+    more = with_settings(word, define="A=1,B", prelude="pre.hlsl", include="x,Packages=../y", language="slang")
+    if "Foo" in word or word == "octahedral":
+        assert more == word
+        return
+    assert (file_of(more), functions_of(more)) == (file_of(word), functions_of(word))
+    settings = settings_of(more)
+    assert settings.defines == ("A=1", "B") and settings.preludes == ("pre.hlsl",)
+    assert settings.roots == (("", "x"), ("Packages", "../y")) and settings.language == "Slang"
+    assert with_settings(more, define="B,A=1") == more
+
+
+def test_names_of_the_catalogue_are_as_they_were():
+    assert QualityOptions(encoding="octahedral,mine.hlsl", define="A=1").encoding == "octahedral,mine.hlsl:define=A=1"
+    with pytest.raises(UsageError, match="--define is of users' shader files, and none is named"):
+        QualityOptions(define="A=1")
+
+
+@pytest.mark.parametrize(
+    "settings, why",
+    [
+        ({"define": "A=f(1,2)"}, r"-D '2\)': it is NAME or NAME=VALUE"),
+        ({"define": "A=1\r#error"}, "nothing can be called so"),
+        ({"define": "A=b:c"}, "a colon ends a setting"),
+        ({"language": "metal"}, "it is one of hlsl, slang, wgsl, glsl"),
+        ({"prelude": "gone.hlsl"}, "gone.hlsl: there is no such file"),
+        ({"prelude": "\0.hlsl"}, "nothing can be called so"),
+        ({"prelude": "/etc/hostname"}, "does not end as that of a shader"),
+    ],
+)
+def test_what_cannot_be_is_said(mine, settings, why):
+    with pytest.raises(UsageError, match=why):
+        Source(with_settings(str(mine), **settings))
+
+
+@pytest.mark.parametrize(
+    "name, root",
+    [("lib/part.hlsl", ""), ("Packages/lib/part.hlsl", "Packages="), ("/Engine/lib/part.hlsl", "/Engine=")],
+)
+def test_includes_are_read_from_the_folders_that_are_given(tmp_path, mine, name, root):
+    """Angle brackets likewise; and from nowhere else."""
+    library = tmp_path / "library" / "lib"
+    library.mkdir(parents=True)
+    (library / "part.hlsl").write_text('#include "next.hlsl"\n#include "../../secret.hlsl"\n#include "notes.txt"\n')
+    (library / "next.hlsl").write_text("next")
+    (library / "notes.txt").write_text("secret")
+    (tmp_path / "secret.hlsl").write_text("secret")
+    (library / "link.hlsl").symlink_to(tmp_path / "secret.hlsl")
+    for mark in ('"{}"', "<{}>"):
+        mine.write_text(f"#include {mark.format(name)}\n#include {mark.format(name.replace('part', 'link'))}\n" + PAIR)
+        first = name.strip("/").split("/")[0]
+        assert f"name its folder by --include {f'{first}=' * bool(root)}FOLDER" in Source(mine).lines[0].wrong
+        source = Source(with_settings(str(mine), include=f"{root}{library.parent}"))
+        assert "next" in source.text and "secret" not in source.text
+        assert {path.name for path in source.files.values()} == {"mine.hlsl", "part.hlsl", "next.hlsl"}
+        assert len([line for line in source.lines if "lies outside the folder" in line.wrong]) == 3
+
+
+@pytest.mark.usefixtures("slang")
+def test_macros_and_preludes_are_read_first(tmp_path, mine):
+    with pytest.raises(UsageError, match=r"SCALE.*; a macro that is not there is given by -D or --prelude"):
+        translated(mine)
+    (tmp_path / "pre.hlsl").write_text("#define SCALE 1.0\n")
+    by_macro = translated(with_settings(str(mine), define="SCALE=1.0"))
+    by_prelude = translated(with_settings(str(mine), prelude=str(tmp_path / "pre.hlsl")))
+    assert [by_macro.name, by_prelude.name] == ["mine.hlsl:SCALE=1.0", "mine.hlsl"]
+    assert "it is read with -D SCALE=1.0" in by_macro.notes
+    assert f"it is read with {tmp_path / 'pre.hlsl'}" in by_prelude.notes
+    with pytest.raises(UsageError, match=r"--define:1:.*oops.*-D or --prelude"):
+        translated(with_settings(str(mine), define="SCALE=oops"))
+
+
+@pytest.mark.usefixtures("slang")
+def test_a_file_is_read_in_the_language_that_is_said(tmp_path):
+    path = tmp_path / "mine.h"
+    path.write_text("func PackDir(n : float3) -> float2 { return n.xy; }\n" + PAIR.split("\n")[1])
+    assert translated(with_settings(str(path), language="slang")).components == 2
+
+
+def test_files_that_are_named_are_found(tmp_path, mine):
+    (tmp_path / "pre.hlsl").write_text("")
+    word = f"{mine}:prelude={tmp_path / 'pre.hlsl'}:include=X={tmp_path}:define=A"
+    assert files_in(word) == [str(mine), str(tmp_path / "pre.hlsl"), str(tmp_path)]
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("gl", "slang")
+@pytest.mark.parametrize(
+    "command",
+    [("doctor",), ("code", "--to", "glsl", "--storage", "rg8"), ("run", "--tables", "quality,depth", "--encoding")],
+)
+def test_every_command_takes_them(run, mine, tmp_path, monkeypatch, command):
+    monkeypatch.chdir(tmp_path)
+    status, _, err = run(*command, str(mine), "-D", "SCALE=1.0", "-o", "out")
+    assert status == 0, err
+
+
+def test_gates_name_files_and_folders_from_where_they_lie(tmp_path, mine):
+    (mine.parent / "pre.hlsl").touch()
+    options = {"encoding": "mine.hlsl", "prelude": "pre.hlsl", "include": f"Packages=library,{tmp_path}"}
+    found = located(TABLES["quality"], options, mine.parent)
+    assert {
+        name: {Path(one).resolve() for one in value.removeprefix("Packages=").split(",")}
+        for name, value in found.items()
+    } == {
+        "encoding": {mine},
+        "prelude": {mine.parent / "pre.hlsl"},
+        "include": {mine.parent / "library", tmp_path},
+    }
+    assert found["include"].startswith("Packages=")
+
+
+@pytest.mark.usefixtures("gl", "slang")
+def test_a_layout_says_it_behind_the_name(mine):
+    """Its files lie in the layout's folder or below it."""
+    (mine.parent / "pre.hlsl").write_text("#define SCALE 1.0\n")
+    layout, text = mine.parent / "mine.toml", OWN_LAYOUT.replace('"octahedral"', '"mine.hlsl:prelude=pre.hlsl"')
+    layout.write_text(text)
+    (found,) = layouts_named(str(layout))
+    assert found.encoding.name == "mine.hlsl"
+    layout.write_text(text.replace("=pre", "=../pre"))
+    with pytest.raises(UsageError, match="is not in the folder of the layout"):
+        layouts_named(str(layout))
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("gl", "slang")
+def test_rows_say_what_they_were_read_with(run, mine, tmp_path):
+    """Another macro is another row, here and by workers."""
+    library = tmp_path / "library"
+    library.mkdir()
+    (library / "half.hlsl").write_text("#define SCALE (HALF)\n")
+    mine.write_text('#include "Library/half.hlsl"\n' + PAIR)
+    asked = ("quality", "--encoding", str(mine), "--storage", "rg8", "--backend", "glsl", "--count", "4096")
+    asked += ("--normals", "hemisphere", "--include", f"Library={library}", "--format", "json")
+    means = {}
+    for half in ("1.0", "0.5"):
+        status, out, err = run(*asked, "-D", f"HALF={half}")
+        assert status == 0, err
+        (row,) = json.loads(out)
+        assert row["encoding"] == f"mine.hlsl:HALF={half}" and f"{library / 'half.hlsl'}" in err
+        means[half] = row["angle_mean_deg"]
+    assert means["0.5"] > 10 * means["1.0"]
+    status, out, err = run(*asked, "-DHALF=1.0", "--on", "local:1")
+    assert status == 0, err
+    assert json.loads(out)[0]["angle_mean_deg"] == means["1.0"]

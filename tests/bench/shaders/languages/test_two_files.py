@@ -1,0 +1,73 @@
+"""An encoder and its decoder in two files: FILE:ENCODE,FILE:DECODE."""
+
+import json
+
+import pytest
+
+from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.run.measuring import files_of
+from normalbench.bench.shaders.languages.source import Source
+from normalbench.bench.shaders.languages.translated import translated
+from normalbench.bench.shaders.languages.words import files_in, functions_of, settings_of, split_names, with_files
+from normalbench.bench.tables.quality.table import QualityOptions
+
+ENC = '#include "common.hlsl"\nfloat2 PackDir(float3 n) { return scaled(n.xy); }\n'
+DEC = """#include "common.hlsl"
+#define HALF 2.0
+static const float ONE = 1.0;
+float2 PackDir(float2 e) { return scaled(e) * (HALF / 2.0); }
+float3 UnpackDir(float2 e) { e = PackDir(e); return float3(e, sqrt(saturate(ONE - dot(e, e)))); }
+"""
+COMMON = "#ifndef COMMON\n#define COMMON\n#define HALF 1.0\nfloat2 scaled(float2 e) { return e * HALF; }\n#endif\n"
+
+
+@pytest.fixture
+def two(tmp_path):
+    for name, text in (("enc.hlsl", ENC), ("dec.hlsl", DEC), ("common.hlsl", COMMON)):
+        (tmp_path / name).write_text(text)
+    return f"{tmp_path / 'enc.hlsl'}:PackDir,{tmp_path / 'dec.hlsl'}:UnpackDir"
+
+
+def test_two_names_in_a_row_are_one(two):
+    assert split_names(f"octahedral,{two},mine.hlsl:A:B,xyz") == ["octahedral", two, "mine.hlsl:A:B", "xyz"]
+    assert split_names("a.hlsl:A, b.hlsl:B,c.hlsl:C,d.hlsl:D") == ["a.hlsl:A, b.hlsl:B", "c.hlsl:C,d.hlsl:D"]
+    assert split_names("a.hlsl:A:define=X,b.hlsl:B")[0] == "a.hlsl:A:define=X"
+    enc, dec = files_in(two)
+    assert functions_of(two) == ("PackDir", "UnpackDir") and settings_of(f"{two}:define=A").defines == ("A",)
+    assert with_files(two, {enc: "x/enc.hlsl", dec: "y/dec.hlsl"}) == "x/enc.hlsl:PackDir,y/dec.hlsl:UnpackDir"
+
+
+def test_both_files_are_fingerprinted(two, tmp_path):
+    options = QualityOptions(encoding=two)
+    before = files_of(options)
+    (tmp_path / "dec.hlsl").write_text(DEC + "\n")
+    assert list(before["files"]) == [two] and files_of(options) != before
+
+
+@pytest.mark.usefixtures("slang")
+def test_what_both_define_does_not_clash(two):
+    found = translated(two)
+    assert found.name == "enc.hlsl:PackDir:dec.hlsl" and found.components == 2
+    assert [name for name, _ in found.functions] == ["PackDir", "UnpackDir"]
+    places = {line.path.name for line in Source(two).lines}
+    assert places == {"enc.hlsl", "dec.hlsl", "common.hlsl"}
+
+
+def test_one_name_for_both_is_refused(two):
+    with pytest.raises(UsageError, match="both functions are called PackDir; rename one"):
+        Source(two.replace("UnpackDir", "PackDir"))
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("gl", "slang", "two")
+@pytest.mark.parametrize("more", [(), ("--on", "local:1")])
+def test_two_files_have_the_figures_of_xy(run, tmp_path, monkeypatch, more):
+    monkeypatch.chdir(tmp_path)
+    asked = ("--storage", "rg8", "--backend", "glsl", "--count", "65536", "--normals", "hemisphere", "--format", "json")
+    words = "enc.hlsl:PackDir,dec.hlsl:UnpackDir,xy"
+    status, out, err = run("quality", "--encoding", words, *asked, *more)
+    assert status == 0, err
+    mine, xy = (row["angle_mean_deg"] for row in json.loads(out))
+    assert mine == pytest.approx(xy, rel=1e-4)
+    status, out, err = run("doctor", "enc.hlsl:PackDir,dec.hlsl:UnpackDir")
+    assert status == 0, err

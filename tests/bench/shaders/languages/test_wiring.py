@@ -1,0 +1,75 @@
+"""Functions that are given and give more than a normal and its code."""
+
+import json
+
+import pytest
+from manual import ROOT
+
+from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.shaders.languages.pairs import NoPairError
+from normalbench.bench.shaders.languages.translated import translated
+from normalbench.bench.shaders.languages.wiring import Wiring, wiring_of
+
+FORMS = ROOT / "tests" / "inputs" / "encoders"
+MATERIAL = "PackSurface(s.normalWS=n; s.roughness=0.25)->o1.xy:UnpackSurface(o1.xy=e)->normalWS"
+# The mean angle in bytes on the sphere of what each file does, in degrees: the catalogue's xyz_renormalised, xy with a
+# side, octahedral, and the three times ten bits that one packs itself.
+MEANS = {
+    "vec4.hlsl": 0.1696,
+    "rough.hlsl": 0.1696,
+    "rough.glsl": 0.1696,
+    "out.hlsl": 0.4673,
+    "sign_in_w.hlsl": 0.4673,
+    "material.hlsl": 0.3354,
+    f"material.hlsl:{MATERIAL}": 0.3354,
+    "uint_out.hlsl": 0.0423,
+}
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("gl", "slang")
+def test_roughness_structures_and_out_parameters_are_bound(run):
+    """Files untouched: what is bound is found by types and names, tried, and said."""
+    words = ("--storage", "rgba8", "--normals", "sphere", "--count", "65536", "--backend", "glsl", "--format", "json")
+    status, out, err = run("quality", "--encoding", ",".join(str(FORMS / name) for name in MEANS), *words)
+    assert status == 0, err
+    found = sorted(row["angle_mean_deg"] for row in json.loads(out))
+    assert found == pytest.approx(sorted(MEANS.values()), abs=0.0005)
+    assert "what is measured is EncodeNormal(n=n)->(n.xy; face):DecodeNormal(n.xy=e.xy; face=e.z)->n" in err
+    assert "EncodeGBuffer(worldNormal=n; worldPos=view; depth=0.5)->xyw:DecodeGBuffer(gb.xyw=e)->worldNormal" in err
+
+
+@pytest.mark.parametrize(
+    "text", ["Pack", "A::Pack(s.normalWS=n; s.roughness=0.5)->o1.xyz", "f(n.xy=e.xy; face=e.z)->(n.xy; face)", "g->xyz"]
+)
+def test_a_wiring_is_said_as_it_is_read(text):
+    assert str(wiring_of(text)) == text
+    assert wiring_of(text).is_plain == text.isalpha()
+
+
+def test_commas_and_spaces_are_read_as_well():
+    assert wiring_of("f(a=n,b= 1 )->(x, y)") == Wiring("f", (("a", "n"), ("b", "1")), ("x", "y"))
+    for wrong in ("f(a)", "f(=n)", "f(a=)", "->x", "f(a=n"):
+        with pytest.raises(NoPairError, match="is not written as Pack"):
+            wiring_of(wrong)
+
+
+@pytest.mark.usefixtures("slang")
+@pytest.mark.parametrize(
+    "wiring, said",
+    [
+        (
+            MATERIAL.replace("s.normalWS", "s.normal"),
+            "PackSurface is not given s.normal; it is given s.albedo, s.normal",
+        ),
+        (MATERIAL.replace("->o1.xy", "->o2.xy"), "PackSurface does not give o2.xy; it gives o0, o1"),
+        (MATERIAL.replace("->o1.xy", ""), "PackSurface(s.normalWS=n; s.roughness=0.25) gives a code of 8 numbers"),
+        (MATERIAL.replace("->normalWS", "->roughness"), "gives no normal; say where it is"),
+        (MATERIAL.replace("UnpackSurface", "Gone"), "no function is named Gone; there are: "),
+        (MATERIAL.replace("=0.25", "=gone"), "is not written as Pack(s.normal=n; s.roughness=0.5)->o1.xyz"),
+    ],
+)
+def test_what_is_wired_wrongly_is_named(wiring, said):
+    with pytest.raises(UsageError) as error:
+        translated(f"{FORMS / 'material.hlsl'}:{wiring}")
+    assert said in str(error.value) and str(error.value).count("\n") == 0

@@ -1,0 +1,180 @@
+"""Environments by their names and from files; what is no environment is refused in one line."""
+
+import os
+
+import numpy as np
+import pytest
+from damaged import in_this_process
+from written import png_bytes, write_exr, write_image
+
+from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.ground.output.kept_arrays import kept_arrays
+from normalbench.bench.subjects.environments.environment_names import environment_named
+from normalbench.bench.subjects.normals import pixel_files
+from normalbench.gbuffer.environment.averaged import averaged
+from normalbench.gbuffer.environment.catalogue import ENVIRONMENTS
+from normalbench.gbuffer.environment.environment import solid_angles
+from normalbench.gbuffer.environment.prefilter import prefiltered
+
+
+@pytest.fixture
+def in_here(monkeypatch):
+    """Files are read in this process: a process for each takes half a second."""
+    monkeypatch.setattr(pixel_files, "_in_a_process", in_this_process)
+
+
+here = pytest.mark.usefixtures("in_here")
+
+
+def light(height=16, seed=2):
+    return np.exp(2 * np.random.default_rng(seed).normal(size=(height, 2 * height, 3))).astype(np.float32)
+
+
+def exr(path, radiance, **more):
+    return write_exr(path, {name: radiance[..., channel] for channel, name in enumerate("RGB")} | more)
+
+
+def test_a_radiance_file_is_what_is_in_it(tmp_path):
+    """To the precision of RGBE, whose three colours share an exponent; in a process of its own."""
+    found = environment_named(str(write_image(tmp_path / "a.hdr", light())))
+    assert found.name == "a.hdr" and found.changes == () and found.sun is None
+    assert found.radiance.dtype == np.float32 and found.radiance.flags.c_contiguous
+    assert np.abs(found.radiance - light()).max() <= light().max(-1).max() / 128
+    assert (np.abs(found.radiance - light()).max(-1) <= light().max(-1) / 127).all()
+
+
+@here
+@pytest.mark.parametrize("kind", [np.float16, np.float32])
+def test_an_exr_file_is_what_is_in_it_to_the_bit(tmp_path, kind):
+    """Alpha and other layers are not read, nor multiplied."""
+    radiance = light().astype(kind)
+    aside = np.full(radiance.shape[:2], np.nan, kind)
+    path = exr(tmp_path / "A.EXR", radiance, A=np.full_like(aside, 0.5), depth=aside)
+    assert np.array_equal(environment_named(str(path)).radiance, radiance.astype(np.float32))
+
+
+@here
+def test_a_file_of_large_radiance_is_not_clamped(tmp_path):
+    radiance = light()
+    radiance[3, 4] = 72704
+    assert environment_named(str(exr(tmp_path / "a.exr", radiance))).radiance.max() == 72704
+
+
+def test_names_are_those_of_the_catalogue_however_spelled():
+    for name in ENVIRONMENTS:
+        assert environment_named(f" {name.upper()} ").name == name
+
+
+@here
+@pytest.mark.parametrize(("height", "wanted"), [(513, 512), (1024, 512), (10, 8), (30, 28)])
+def test_a_larger_file_is_averaged_and_says_so(tmp_path, height, wanted):
+    """To 1024 x 512, and to a width that 8 divides; no light is lost."""
+    radiance = light(height)
+    found = environment_named(str(exr(tmp_path / "a.exr", radiance)))
+    assert found.radiance.shape == (wanted, 2 * wanted, 3) and found.radiance.dtype == np.float32
+    assert found.changes == (f"averaged from {2 * height} x {height}",)
+    before, after = (
+        (one.astype(np.float64) * solid_angles(len(one))[..., None]).sum((0, 1)) for one in (radiance, found.radiance)
+    )
+    assert after == pytest.approx(before, rel=1e-6)
+
+
+def test_averages_are_over_the_area_of_each_texel():
+    """Of twice as many texels: two rows by their areas, and two columns; of three halves: by shares."""
+    radiance, area = light(8).astype(np.float64), solid_angles(8)[..., None]
+    blocks = (radiance * area).reshape(4, 2, 8, 2, 3).sum((1, 3)) / (2 * area.reshape(4, 2, 1, 1).sum(1))
+    assert averaged(radiance, 4) == pytest.approx(blocks, rel=1e-6)
+    assert averaged(np.ones((24, 48, 3)), 16) == pytest.approx(np.ones((16, 32, 3)))
+    by_column = np.broadcast_to(np.arange(48.0)[:, None], (24, 48, 3))
+    assert averaged(by_column, 16)[3, :2, 0] == pytest.approx([(0 + 0.5) / 1.5, (0.5 + 2) / 1.5])
+
+
+def with_value(value, row=5, column=7, channel=1):
+    radiance = light()
+    radiance[row, column, channel] = value
+    return radiance
+
+
+BAD = {
+    "NaN": (with_value(np.nan), "G is nan at column 7, row 5, counted from 0, as at 1 pixels in all"),
+    "infinite": (with_value(np.inf), "G is inf at column 7, row 5"),
+    "negative": (with_value(-0.25), "G is -0.25 at column 7, row 5"),
+    "square": (np.ones((16, 16, 3), np.float32), "16 x 16 pixels; an equirectangular environment is twice as wide"),
+    "a cube's cross": (np.ones((24, 32, 3), np.float32), "32 x 24 pixels; an equirectangular"),
+    "small": (light(7), "14 x 7 pixels; at least 16 x 8 are needed"),
+}
+
+
+@here
+@pytest.mark.parametrize("what", BAD)
+def test_what_is_no_environment_is_one_line(tmp_path, what):
+    radiance, said = BAD[what]
+    path = exr(tmp_path / "bad.exr", radiance)
+    assert refused(path).startswith(f"{path}: {said}")
+
+
+def refused(path):
+    with pytest.raises(UsageError) as error:
+        environment_named(str(path))
+    said = str(error.value)
+    assert "\n" not in said and str(path) in said and ("; " in said or ": " in said)
+    return said
+
+
+def test_too_wide_a_file_is_refused_by_its_header(tmp_path):
+    """Nothing of it is read: it has no pixels."""
+    path = tmp_path / "wide.hdr"
+    path.write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4100 +X 8200\n" + bytes(8200 * 4))
+    assert "8200 x 4100 pixels; at most 8192 x 4096 are read: scale it down" in refused(path)
+
+
+@here
+def test_grey_and_normals_are_refused_by_their_channels(tmp_path):
+    grey = write_exr(tmp_path / "grey.exr", {"Y": np.ones((8, 16), np.float32)})
+    assert "it has Y; an environment has channels R, G and B" in refused(grey)
+    normals = write_exr(tmp_path / "n.exr", {f"N.{axis}": np.ones((8, 16), np.float32) for axis in "XYZ"})
+    assert "it has N.X, N.Y, N.Z; an environment" in refused(normals)
+
+
+def test_other_files_are_one_line(tmp_path):
+    (tmp_path / "sky.png").write_bytes(png_bytes(np.zeros((8, 16, 3), np.uint8)))
+    (tmp_path / "photo.hdr").write_bytes(b"\xff\xd8\xff\xe0" + bytes(99))
+    (tmp_path / "cut.hdr").write_bytes(write_image(tmp_path / "whole.hdr", light()).read_bytes()[:-900])
+    (tmp_path / "scene.glb").write_bytes(b"glTF")
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "folder.exr").mkdir()
+    os.mkfifo(tmp_path / "pipe.exr")
+    for name, said in (
+        ("sky.png", "its pixels have no light beyond white; save the environment as .hdr or .exr"),
+        ("none.jpg", "its pixels have no light beyond white"),
+        ("photo.hdr", "no HDR file, by its first bytes; save it again"),
+        ("cut.hdr", "it is cut off or damaged; save it again"),
+        ("scene.glb", ".hdr and .exr files are read"),
+        ("folder", "it is a folder; name a file"),
+        ("folder.exr", "it is a folder; name a file"),
+        ("pipe.exr", "it is not a plain file"),
+        ("none.hdr", "there is no such file"),
+    ):
+        assert said in refused(tmp_path / name), name
+
+
+def test_an_unknown_name_lists_those_there_are():
+    with pytest.raises(
+        UsageError, match=r"did you mean studio\? known: studio, sky, strips, lamp; or a file that ends in .hdr, .exr"
+    ):
+        environment_named("studoi")
+
+
+@here
+def test_levels_of_a_file_are_made_once(own_cache, monkeypatch, tmp_path):
+    monkeypatch.delenv("NORMALBENCH_NO_CACHE", raising=False)
+    path = exr(tmp_path / "a.exr", light(8))
+    first = prefiltered(environment_named(str(path)), kept_arrays)
+    (kept,) = (own_cache / "normalbench" / "arrays").glob("*.npz")
+    written = kept.stat().st_mtime_ns
+    second = prefiltered(environment_named(str(path)), kept_arrays)
+    assert np.array_equal(first.fine, second.fine) and np.array_equal(first.coarse, second.coarse)
+    assert kept.stat().st_mtime_ns == written
+    exr(path, light(8, seed=3))
+    prefiltered(environment_named(str(path)), kept_arrays)
+    assert len(list(kept.parent.glob("*.npz"))) == 2, "a file that has changed is another one"

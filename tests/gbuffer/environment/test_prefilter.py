@@ -1,0 +1,221 @@
+"""Levels of roughness against the integral of radiance, D and n.l, by sums of another kind."""
+
+import numpy as np
+import pytest
+
+from normalbench.gbuffer.environment.environment import Environment
+from normalbench.gbuffer.environment.lobe_sums import seen_through_lobe
+from normalbench.gbuffer.environment.prefilter import COARSE, FINE, STEP, key_of, prefiltered
+
+HEIGHT = 32
+ROUGHNESSES = sorted({*FINE, *COARSE} - {0})
+
+
+def picture(height=HEIGHT, seed=5):
+    """Contrasts of an outdoor picture, with a lamp in one texel."""
+    radiance = np.exp(1.5 * np.random.default_rng(seed).normal(size=(height, 2 * height, 3)))
+    radiance[height // 3, height] = 1e4
+    return radiance.astype(np.float32)
+
+
+@pytest.fixture(scope="module")
+def levels():
+    return prefiltered(Environment("picture", picture()))
+
+
+def lobe(cosine, alpha):
+    """As the materials' fact sheet has it, with (n.h)^2 = (1 + r.l) / 2."""
+    n_h_squared = (1 + cosine) / 2
+    return alpha**2 / (np.pi * (n_h_squared * (alpha**2 - 1) + 1) ** 2) * np.maximum(cosine, 0)
+
+
+def direction(t, p):
+    return np.stack(np.broadcast_arrays(np.sin(p) * np.sin(t), np.cos(t), -np.cos(p) * np.sin(t)), -1)
+
+
+def weights_of_pieces(height, r, alpha, side, rows=slice(None), columns=slice(None)):
+    """Of each texel, or of some, in side x side pieces of equal angles."""
+    t = ((np.arange(height)[rows, None] + (np.arange(side) + 0.5) / side) * np.pi / height).reshape(-1, 1)
+    p = ((np.arange(2 * height)[columns, None] + (np.arange(side) + 0.5) / side) * np.pi / height).ravel() - np.pi
+    weight = lobe(direction(t, p) @ r, alpha) * np.sin(t) / side**2
+    return weight.reshape(len(t) // side, side, -1, side).sum((1, 3))
+
+
+def weighted(radiance, weight):
+    return (radiance * weight[..., None]).sum((0, 1)) / weight.sum()
+
+
+def integral(radiance, r, alpha):
+    """Over each texel by pieces, extrapolated to none; those near the lobe's middle by 500 x 500 where it is narrow."""
+    height = len(radiance)
+    coarse, fine = (weights_of_pieces(height, r, alpha, side) for side in (12, 24))
+    weight = (4 * fine - coarse) / 3
+    near = middles(height) @ r > np.cos(2.5 * np.pi / height)
+    for row, column in zip(*np.nonzero(near & (alpha < 0.01)), strict=True):
+        one = slice(row, row + 1), slice(column, column + 1)
+        weight[one] = weights_of_pieces(height, r, alpha, 500, *one)
+    return weighted(radiance, weight)
+
+
+def middles(height):
+    t = (np.arange(height)[:, None] + 0.5) * np.pi / height
+    return direction(t, (np.arange(2 * height) + 0.5) * np.pi / height - np.pi)
+
+
+def by_shares(radiance, r, alpha, shares=3000, turns=600):
+    """Directions around r that stand for equal shares of D, each with the radiance of its texel."""
+    u = ((np.arange(shares) + 0.5) / shares)[:, None]
+    sine_squared = alpha**2 * u / (1 - u * (1 - alpha**2))  # of half the angle between r and l
+    cosine = 1 - 2 * sine_squared
+    turn = (np.arange(turns) + 0.5) / turns * 2 * np.pi
+    across = np.cross(r, (0.3, -0.5, 0.8))
+    across = across / np.linalg.norm(across)
+    ring = np.cos(turn)[:, None] * across + np.sin(turn)[:, None] * np.cross(r, across)
+    light = cosine[..., None] * r + np.sqrt(1 - cosine**2)[..., None] * ring
+    height, width = radiance.shape[:2]
+    row = np.arccos(np.clip(light[..., 1], -1, 1)) / np.pi * height
+    column = (np.arctan2(light[..., 0], -light[..., 2]) / (2 * np.pi) + 0.5) * width
+    found = radiance[np.minimum(row.astype(int), height - 1), column.astype(int) % width]
+    weight = np.broadcast_to(np.maximum(cosine, 0), found.shape[:2])[..., None]
+    return (found * weight).sum((0, 1)) / weight.sum()
+
+
+def centre(level, row, column):
+    return direction((row + 0.5) * np.pi / len(level), (column + 0.5) * np.pi / len(level) - np.pi)
+
+
+# Of a picture of this height the lobe is narrower than three texels, to either side, below this.
+NARROW = 0.38
+
+
+@pytest.mark.parametrize("roughness", [one for one in ROUGHNESSES if one < NARROW])
+def test_a_narrow_lobe_is_integrated_over_each_texel(levels, roughness):
+    """At roughness 0.025 it is a hundredth of a texel wide."""
+    level, rng = levels.fine[FINE.index(roughness)], np.random.default_rng(int(1e4 * roughness))
+    for row, column in zip(rng.integers(3, HEIGHT - 3, 3), rng.integers(0, 2 * HEIGHT, 3), strict=True):
+        expected = integral(picture(), centre(level, row, column), roughness**2)
+        error = np.abs(level[row, column] / expected - 1).max()
+        assert error < 1e-4, f"{error} at row {row}, column {column}: {level[row, column]} for {expected}"
+
+
+@pytest.mark.parametrize("roughness", [0.05, 0.1, 0.2])
+def test_near_the_poles_directions_that_share_the_lobe_see_the_same(roughness):
+    radiance = np.minimum(picture(), 10)
+    level = seen_through_lobe(radiance, roughness**2)
+    for row, column in ((0, 23), (1, 40), (HEIGHT - 1, 5)):
+        expected = by_shares(radiance, centre(level, row, column), roughness**2)
+        assert np.abs(level[row, column] / expected - 1).max() < 2e-3
+
+
+@pytest.mark.parametrize("roughness", [one for one in ROUGHNESSES if one >= NARROW])
+def test_a_wide_lobe_is_summed_to_the_last_digit(levels, roughness):
+    """By the values in the middles of texels: what is left is float32's rounding."""
+    for kept, roughnesses in ((levels.fine, FINE), (levels.coarse, COARSE)):
+        for level in kept[[index for index, one in enumerate(roughnesses) if one == roughness]]:
+            for row, column in ((0, 3), (len(level) // 2, len(level)), (len(level) - 1, 1)):
+                r = centre(level, row, column)
+                expected = weighted(picture(), weights_of_pieces(HEIGHT, r, roughness**2, 1))
+                assert np.abs(level[row, column] / expected - 1).max() < 1e-6
+
+
+@pytest.mark.parametrize("roughness", [0.4, 0.5])
+def test_coarse_levels_of_a_small_picture_are_integrated_over_its_texels(roughness):
+    radiance, alpha = picture(16), roughness**2
+    level = seen_through_lobe(radiance, alpha, STEP)
+    for row, column in ((0, 3), (1, 2), (3, 7)):
+        expected = integral(radiance, centre(level, row, column), alpha)
+        assert np.abs(level[row, column] / expected - 1).max() < 2e-4
+
+
+def test_the_two_sums_agree_where_one_takes_over():
+    """Within 1 %, on a picture of contrasts of a hundred between areas of four texels."""
+    radiance = np.minimum(picture(16), 30).repeat(4, axis=0).repeat(4, axis=1)
+    for roughness in (0.27, 0.275):
+        level = seen_through_lobe(radiance, roughness**2)
+        expected = integral(radiance, centre(level, 20, 9), roughness**2)
+        assert np.abs(level[20, 9] / expected - 1).max() < 1e-2
+
+
+@pytest.mark.parametrize("height", [8, 12, 64])
+def test_a_constant_environment_is_seen_as_that_constant(height):
+    levels = prefiltered(Environment("one", np.full((height, 2 * height, 3), 1, np.float32)))
+    assert levels.fine.shape == (len(FINE), height, 2 * height, 3)
+    assert levels.coarse.shape == (len(COARSE), height // STEP, 2 * height // STEP, 3)
+    assert levels.fine.dtype == levels.coarse.dtype == np.float32
+    for found in (levels.fine, levels.coarse, levels.irradiance):
+        assert np.abs(found - 1).max() < 1e-6
+
+
+def test_a_mirror_sees_the_radiance_itself(levels):
+    assert levels.fine_roughness[0] == 0
+    assert np.array_equal(levels.fine[0], picture())
+
+
+def test_the_two_grids_meet(levels):
+    """Where a direction of the coarse level is the corner of four fine texels, their mean is near it."""
+    assert levels.fine_roughness[-1] == levels.coarse_roughness[0]
+    fine = seen_through_lobe(picture(64), FINE[-1] ** 2)
+    corners = (fine[1::4, 1::4] + fine[2::4, 1::4] + fine[1::4, 2::4] + fine[2::4, 2::4]) / 4
+    error = np.abs(seen_through_lobe(picture(64), FINE[-1] ** 2, STEP) / corners - 1)[2:-2]
+    assert np.median(error) < 2e-3
+
+
+def test_irradiance_is_the_cosine_weighted_integral_over_pi(levels):
+    radiance, found = picture(), levels.irradiance
+    t = (np.arange(HEIGHT)[:, None] + 0.5) * np.pi / HEIGHT
+    area = np.sin(t) * (np.pi / HEIGHT) ** 2
+    for row, column in ((0, 0), (3, 7), (5, 15), (7, 2)):
+        cosine = np.maximum(middles(HEIGHT) @ centre(found, row, column), 0)
+        expected = (radiance * (cosine * area)[..., None]).sum((0, 1)) / np.pi
+        # Middles of texels integrate the cosine itself to 1e-3.
+        assert np.abs(found[row, column] / expected - 1).max() < 2e-3
+
+
+def test_a_gradient_along_y_has_two_thirds_of_its_slope_in_the_irradiance():
+    """The integral of (1 + a l.y) max(n.l, 0) is pi (1 + 2/3 a n.y)."""
+    height = 64
+    y = np.cos((np.arange(height) + 0.5) * np.pi / height)
+    radiance = np.broadcast_to((1 + 0.5 * y)[:, None, None], (height, 2 * height, 3)).astype(np.float32)
+    found = prefiltered(Environment("gradient", radiance)).irradiance
+    n_y = np.cos((np.arange(len(found)) + 0.5) * np.pi / len(found))
+    assert np.abs(found - (1 + n_y / 3)[:, None, None]).max() < 2e-4
+
+
+def test_a_single_bright_texel_is_seen_as_the_lobe():
+    """By the lobe times the texel's area, at a distance; turned and mirrored alike."""
+    height, roughness = 64, 0.3
+    radiance = np.zeros((height, 2 * height, 3), np.float32)
+    radiance[20, 30] = 1
+    found = seen_through_lobe(radiance, roughness**2)
+    source = centre(radiance, 20, 30)
+    t = (20.5) * np.pi / height
+    for row, column in ((24, 40), (20, 33), (50, 100), (1, 90)):
+        cosine = centre(radiance, row, column) @ source
+        whole = 2 * np.pi * np.trapezoid(lobe(np.linspace(0, 1, 200001), roughness**2), np.linspace(0, 1, 200001))
+        expected = lobe(cosine, roughness**2) * np.sin(t) * (np.pi / height) ** 2 / whole
+        assert found[row, column] == pytest.approx(np.full(3, expected), rel=5e-3, abs=1e-15)
+    assert found[23, 25] == pytest.approx(found[23, 35], rel=1e-9)
+    upside_down = seen_through_lobe(radiance[::-1], roughness**2)
+    assert upside_down[::-1] == pytest.approx(found, rel=1e-7, abs=1e-12)
+
+
+def test_what_is_kept_is_not_made_again():
+    environment, store = Environment("kept", picture(8)), {}
+
+    def keep(key, make):
+        if key not in store:
+            store[key] = make()
+        return store[key]
+
+    first = prefiltered(environment, keep)
+    (kept,) = store.values()
+    store[key_of(environment.radiance)] = {"fine": kept["fine"] + 1, "coarse": kept["coarse"]}
+    assert np.array_equal(prefiltered(environment, keep).fine[1:], first.fine[1:] + 1)
+    prefiltered(Environment("kept", picture(8, seed=6)), keep)
+    assert len(store) == 2, "another picture by the same name is another one"
+
+
+@pytest.mark.parametrize("shape", [(10, 20, 3), (8, 15, 3)])
+def test_a_picture_that_is_not_twice_as_wide_as_high_is_refused(shape):
+    with pytest.raises(ValueError, match="width is twice the height, a multiple of 4"):
+        prefiltered(Environment("odd", np.ones(shape, np.float32)))

@@ -1,0 +1,68 @@
+"""A sun becomes a light of equal irradiance; lamps that are no sun stay."""
+
+import numpy as np
+import pytest
+
+from normalbench.gbuffer.environment.environment import Environment, directions, solid_angles
+from normalbench.gbuffer.environment.sun import MOST, found_sun, without_sun
+
+HEIGHT = 128
+
+
+def sky_with(texels, base=0.5):
+    """(row, column, radiance) of bright texels in a grey sky."""
+    radiance = np.full((HEIGHT, 2 * HEIGHT, 3), base, np.float32)
+    for row, column, light in texels:
+        radiance[row, column] = light
+    return Environment("sky", radiance, changes=("cropped",))
+
+
+def irradiance(environment, n):
+    """On a surface across n, by its picture and by its sun."""
+    cosine = np.maximum(directions(HEIGHT) @ n, 0) * solid_angles(HEIGHT)
+    light = (environment.radiance.astype(np.float64) * cosine[..., None]).sum((0, 1))
+    if environment.sun is not None:
+        goes, colour = environment.sun
+        light = light + max(0, -np.dot(goes, n)) * np.array(colour)
+    return light
+
+
+SUN = [(30, 40, (5000, 4000, 2000)), (30, 41, (9000, 8000, 3000)), (31, 41, (2000, 100, 20)), (29, 41, (25, 20, 10))]
+
+
+@pytest.mark.parametrize("n", [(0, 1, 0), (-1, 0, 0), (-0.6, 0.64, 0.48)])
+def test_surfaces_get_the_same_light_without_the_sun(n):
+    """But that its colours differ a little over the sun, and that the light has one direction."""
+    whole = sky_with(SUN)
+    parted = without_sun(whole)
+    n = np.array(n) / np.linalg.norm(n)
+    assert irradiance(parted, n) == pytest.approx(irradiance(whole, n), rel=2e-3)
+
+
+def test_the_light_goes_from_the_middle_of_the_sun():
+    parted = without_sun(sky_with(SUN))
+    assert np.linalg.norm(parted.sun[0]) == pytest.approx(1)
+    assert np.degrees(np.arccos(-directions(HEIGHT)[30, 41] @ parted.sun[0])) < 1
+    assert parted.radiance.max() == MOST and parted.radiance[29, 41].tolist() == [25, 20, 10]
+    assert parted.name == "sky" and parted.changes == ("cropped", "sun above 30 taken out as a light")
+    assert parted.radiance.dtype == np.float32
+
+
+def test_a_sun_across_the_seam_is_one():
+    found = found_sun(sky_with([(40, 0, 900), (40, 2 * HEIGHT - 1, 900)]).radiance)
+    assert found is not None and found.towards[2] > 0.8 and abs(found.towards[0]) < 1e-12
+
+
+@pytest.mark.parametrize(
+    "texels", [[], [(30, 40, 29.9)], [(30, 40, 900), (90, 200, 900)], [(30, column, 900) for column in range(40, 60)]]
+)
+def test_what_is_no_sun_is_left_as_it_is(texels):
+    """Nothing bright, two lamps apart, and a window."""
+    whole = sky_with(texels)
+    assert without_sun(whole) is whole
+
+
+def test_a_sun_is_taken_out_once():
+    """Its light is a light already."""
+    once = without_sun(sky_with(SUN))
+    assert without_sun(once).sun == once.sun and "sun" in once.changes[-1]

@@ -1,0 +1,349 @@
+"""Metal/rough surfaces: against their formulas in float64, in every pipeline, through what a layout keeps of them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from drawing import SIZE, apart, draw
+from halves import WAYS, halves
+from shading import answer, dot, from_lamp, unit
+
+from normalbench.encodings.catalogue import ENCODINGS, LIGHT_BUFFERS
+from normalbench.encodings.vec import CONSTANTS as VEC
+from normalbench.gbuffer.defines.materials import CONSTANTS
+from normalbench.gbuffer.environment.dfg import dfg, dfg_table
+from normalbench.gbuffer.environment.environment import Environment, directions
+from normalbench.gbuffer.environment.sun import without_sun
+from normalbench.gbuffer.frame.plan import LEAST_ROUGHNESS, Plan
+from normalbench.gbuffer.frame.resources import GBUFFER
+from normalbench.gbuffer.gl.device import bind
+from normalbench.gbuffer.layouts.engines import targets_of
+from normalbench.gbuffer.layouts.layout import Layout
+from normalbench.gbuffer.layouts.presets import LAYOUTS
+from normalbench.gbuffer.layouts.words import LayoutError
+from normalbench.gbuffer.pipelines import PIPELINES
+from normalbench.gbuffer.render import rendering
+from normalbench.gbuffer.scenes.files.read import file_scene, read_mesh_file
+from normalbench.gbuffer.scenes.mesh import Mesh, grid_triangles, grid_uv, plane, sphere
+from normalbench.gbuffer.scenes.metal_rough import Map, MetalRough
+from normalbench.gbuffer.scenes.scene import Light, Part, Scene, View, placed
+from normalbench.gbuffer.scenes.setting import Setting
+
+ROUGHNESSES = (0.1, 0.25, 0.5, 0.75, 1.0)
+EYE = View((0.0, 0.0, 6.0), (0.0, 0.0, 0.0), 40.0, 1.0, 20.0)
+# In view space, as the formulas have them.
+LAMPS = (
+    Light("point", (9.0, 6.0, 3.0), (1.5, 1.0, -3.0), 20.0),
+    Light("point", (2.0, 5.0, 9.0), (-2.0, 0.5, -2.5), 20.0),
+)
+UPRIGHT = np.array([(1.0, 0, 0), (0, 0, 1.0), (0, -1.0, 0)])
+
+
+def scene_of(*materials: MetalRough, ambient=(0.0, 0.0, 0.0), lamps=LAMPS, balls: int | None = None) -> Scene:
+    """A ball of each material, or of the first ones, over a plane of the last one, before the eye."""
+    count = balls or len(materials)
+    across = 2.4 * (np.arange(count) - (count - 1) / 2)
+    balls = Part(sphere(1.0, 64, 32), placed(np.stack([across, 0 * across, 0 * across], axis=1), 1.1), np.arange(count))
+    sheet = plane(8.0, 8.0).placed(UPRIGHT, (0.0, 0.0, -1.0))
+    wall = Part(sheet, placed((0, 0, 0)), np.array([len(materials) - 1]), casts=False)
+    matrix = np.linalg.inv(EYE.matrix())
+    lights = tuple(replace(lamp, position=tuple(matrix[:3, :3] @ lamp.position + matrix[:3, 3])) for lamp in lamps)
+    return Scene((balls, wall), materials, lights, ambient, EYE, EYE)
+
+
+def slanted() -> Map:
+    """A normal map of one normal: (0.3, -0.4) and what is left."""
+    normal = np.array([0.3, -0.4, np.sqrt(0.75), 1.0])
+    return Map(np.round((normal * 0.5 + 0.5) * 65535).astype(np.uint16)[None, None])
+
+
+@pytest.mark.parametrize("metalness", [0.0, 1.0], ids=["dielectric", "metal"])
+@pytest.mark.parametrize("roughness", ROUGHNESSES)
+def test_lights_on_surfaces_are_those_of_the_formulas_in_float64(gl, roughness, metalness):
+    """Point lights on a ball and on a normal-mapped plane, forward and hybrid: each pixel within 1e-3."""
+    plain = MetalRough((0.8, 0.5, 0.2), metalness, roughness)
+    scene = scene_of(plain, replace(plain, normal_map=slanted()), balls=1)
+    drawn = draw(gl, "hybrid", scene, antialiased=False)
+    position, direction, *_ = (part.reshape(-1, part.shape[-1]) for part in drawn.gbuffer)
+    seen = position[:, 2] != 0
+    position, n = position[seen, :3].astype(float), unit(direction[seen, :3].astype(float))
+    v, base = unit(-position), np.array(plain.base)
+    right = np.zeros_like(position)
+    for lamp in LAMPS:
+        colour, l = from_lamp(lamp, position)  # noqa: E741
+        f0 = 0.04 + (base - 0.04) * metalness
+        right += colour * answer(n, v, l, np.full((len(n), 1), roughness), base * (1 - metalness), f0)
+    for name in ("hybrid", "forward"):
+        found = (drawn if name == "hybrid" else draw(gl, name, scene, antialiased=False)).image.reshape(-1, 3)[seen]
+        # A pixel that is nearly black is held to a thousandth of what is dim.
+        off = np.abs(found - right) / np.maximum(right, 1e-3 * right.max())
+        # A ball's edge, where the split sum's table is coarse.
+        faces = dot(n, v)[:, 0] > 0.05
+        worst = off[faces].max()
+        assert faces.mean() > 0.98 and worst < 1e-3, f"{name}: {worst:.2e}; {100 * faces.mean():.2f} % face the eye"
+
+
+def test_a_normal_map_tilts_the_normal_in_the_tangent_frame(gl):
+    """x along u, y against v, as glTF has it: a plane whose u goes right and whose v goes up."""
+    scene = scene_of(MetalRough(), MetalRough(normal_map=slanted()))
+    normal = draw(gl, "hybrid", scene).gbuffer[1][4, 4, :3]
+    assert normal == pytest.approx((0.3, 0.4, np.sqrt(0.75)), abs=2e-5)
+
+
+def _answers(gl, light, eye, roughness, albedo, f0) -> tuple[np.ndarray, np.ndarray]:
+    """What GLSL gives for single lights, and for even light, (count,) each."""
+    count = len(light)
+    columns = [np.broadcast_to(np.asarray(x, float), (count,)) for x in (roughness, albedo, f0)]
+    lights = np.concatenate([light, columns[0][:, None]], axis=1)
+    eyes = np.concatenate([np.broadcast_to(eye, (count, 3)), np.zeros((count, 1))], axis=1)
+    colours = np.stack([columns[1], columns[2], columns[0], columns[0]], axis=1)
+    defines = {**CONSTANTS, **VEC, "LEAST_ROUGHNESS": LEAST_ROUGHNESS}
+    shader = gl.compute_pass(Path(__file__).parents[1] / "inputs" / "answered.comp", defines)
+    table = gl.upload(dfg_table())
+    try:
+        bind(shader, {"dfg": table})
+        single, even = gl.computed(shader, [lights, eyes, colours], 2)
+    finally:
+        table.release()
+        shader.release()
+    return single[:, 0].astype(float), even[:, 0].astype(float)
+
+
+@cache
+def _halves(count: int = 96) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes in [0, 1] and [0, 2 pi) and their weights: Gauss-Legendre's by the midpoint rule."""
+    heights, of_heights = np.polynomial.legendre.leggauss(count)
+    turns = (np.arange(2 * count) + 0.5) * np.pi / count
+    u, p = np.meshgrid((heights + 1) / 2, turns, indexing="ij")
+    return np.stack([u.ravel(), p.ravel()]), np.repeat(of_heights / 2, 2 * count) / (2 * count)
+
+
+def _reflected(gl, n_v: float, roughness: float, f0: float) -> float:
+    """The integral of a black surface's answer over all directions, by normals that GGX has."""
+    (u, p), weight = _halves()
+    a2 = roughness**4
+    # D n.h dw is uniform in u where tan^2 of the angle is a^2 u / (1 - u).
+    cosine = np.sqrt((1 - u) / (1 - u + a2 * u))
+    sine = np.sqrt(1 - cosine**2)
+    h, eye = np.stack([sine * np.cos(p), sine * np.sin(p), cosine], axis=1), np.array([np.sqrt(1 - n_v**2), 0, n_v])
+    v_h = dot(h, eye)
+    light = 2 * v_h * h - eye
+    single, _ = _answers(gl, light, eye, roughness, 0.0, f0)
+    density = a2 / (np.pi * (cosine**2 * (a2 - 1) + 1) ** 2) * cosine / np.maximum(4 * v_h[:, 0], 1e-12)
+    counts = (light[:, 2] > 0) & (v_h[:, 0] > 0)
+    # The answer is to an irradiance of pi.
+    return float(np.sum(np.where(counts, single / np.pi / density, 0.0) * weight))
+
+
+def _scattered(gl, n_v: float, roughness: float) -> float:
+    """The integral of what a white dielectric answers beyond a black one, by the cosine."""
+    (u, p), weight = _halves(48)
+    eye = np.array([np.sqrt(1 - n_v**2), 0, n_v])
+    light = np.stack([np.sqrt(u) * np.cos(p), np.sqrt(u) * np.sin(p), np.sqrt(1 - u)], axis=1)
+    white, black = (_answers(gl, light, eye, roughness, albedo, 0.04)[0] for albedo in (1.0, 0.0))
+    return float(np.sum((white - black) / np.maximum(light[:, 2], 1e-12) * weight))
+
+
+@pytest.mark.parametrize("roughness", [0.045, 0.1, 0.3, 0.5, 0.7, 1.0])
+def test_a_white_surface_gives_back_all_light(gl, roughness):
+    """A white furnace of single lights, metal and dielectric: within 1 %, n.v from 0.05."""
+    for n_v in (0.05, 0.2, 0.5, 0.8, 1.0):
+        metal = _reflected(gl, n_v, roughness, 1.0)
+        white = _reflected(gl, n_v, roughness, 0.04) + _scattered(gl, n_v, roughness)
+        assert abs(metal - 1) < 0.01, f"metal at n.v {n_v}: {metal:.4f}"
+        assert abs(white - 1) < 0.01, f"white dielectric at n.v {n_v}: {white:.4f}"
+
+
+def test_even_light_makes_white_surfaces_white(gl):
+    """The furnace of light from everywhere, metal and dielectric, every roughness: within 1 %."""
+    n_v, roughness = (x.ravel() for x in np.meshgrid(np.linspace(0.05, 1, 20), np.linspace(0, 1, 21)))
+    eyes = np.stack([np.sqrt(1 - n_v**2), 0 * n_v, n_v], axis=1)
+    for name, albedo, f0 in (("metal", 0.0, 1.0), ("dielectric", 1.0, 0.04)):
+        _, even = _answers(gl, eyes, eyes, roughness, albedo, f0)
+        assert np.abs(even - 1).max() < 0.01, f"{name}: {even.min():.4f} to {even.max():.4f}"
+
+
+def test_without_what_is_given_back_the_lobe_is_the_split_sum(gl):
+    """Single scattering of a metal is scale + bias: the gain divided out, within 0.002."""
+    for roughness in (0.3, 0.7, 1.0):
+        for n_v in (0.2, 0.5, 1.0):
+            single = sum(float(x) for x in dfg(np.array(n_v), np.array(roughness)))
+            found = _reflected(gl, n_v, roughness, 1.0) * single
+            assert abs(found - single) < 0.002, f"roughness {roughness}, n.v {n_v}: {found:.4f}, not {single:.4f}"
+
+
+VARIED = (
+    MetalRough((0.9, 0.6, 0.3), 1.0, 0.15),
+    MetalRough((0.1, 0.4, 0.7), 0.0, 0.4, emission=(0.2, 0.1, 0.3)),
+    MetalRough((0.6, 0.6, 0.5), 0.5, 0.8, occlusion_strength=1.0, occlusion_map=Map(np.full((1, 1, 4), 140, np.uint8))),
+)
+LIT = scene_of(*VARIED, ambient=(0.5, 0.5, 0.55))
+
+
+def test_pipelines_agree_on_metal_rough_surfaces(gl):
+    """Forward, in passes or not, deferred and hybrid, in 32-bit floats: 70 dB."""
+    right = draw(gl, "forward", LIT).image
+    for name in ("forward_multipass", "deferred", "hybrid"):
+        found = apart(draw(gl, name, LIT).image, right)
+        assert found >= 70, f"{name}: {found:.1f} dB"
+
+
+@pytest.mark.parametrize("name", ["prepass", "inferred"])
+def test_a_light_prepass_says_that_it_cannot_carry_them(gl, name):
+    with pytest.raises(LayoutError, match="forward, forward_multipass, deferred and hybrid can"):
+        draw(gl, name, LIT)
+
+
+NORMAL, BASE, EMISSION = "normal.x normal.y", "albedo.r albedo.g albedo.b", "emission.r emission.g emission.b"
+# What lies in 32-bit floats, and what lies in a bit or two of eight.
+KEPT = {
+    "": (f"{BASE} metalness", "roughness reflectance occlusion kind", EMISSION, ""),
+    "roughness": (f"{BASE} metalness", "reflectance occlusion kind", EMISSION, "roughness:2"),
+    "metalness": (f"{BASE} roughness", "reflectance occlusion kind", EMISSION, "metalness:1"),
+    "occlusion": (f"{BASE} metalness", "roughness reflectance kind", EMISSION, "occlusion:1"),
+    "emission": (
+        f"{BASE} metalness",
+        "roughness reflectance occlusion kind",
+        "",
+        "emission.r:1 emission.g:1 emission.b:1",
+    ),
+    "base colour": ("metalness", "roughness reflectance occlusion kind", EMISSION, "albedo.r:1 albedo.g:1 albedo.b:1"),
+}
+
+
+def kept(name: str) -> Layout:
+    """A layout that keeps one attribute coarsely, and all others in floats."""
+    *exact, coarse = KEPT[name]
+    targets = [f"rgba32f: {words}" for words in (NORMAL, *exact) if words] + ([f"rgba8: {coarse}"] if coarse else [])
+    return Layout("kept", "kept", targets_of("; ".join(targets)), ENCODINGS["octahedral"], "test")
+
+
+@pytest.mark.parametrize("pipeline", ["deferred", "hybrid"])
+def test_a_layout_of_metalness_in_floats_gives_the_same_image(gl, pipeline):
+    """Base colour and metalness, or the two colours that follow from them: 80 dB."""
+    found = apart(draw(gl, pipeline, LIT, kept("")).image, draw(gl, pipeline, LIT).image)
+    assert found >= 80, f"{found:.1f} dB"
+
+
+@pytest.mark.parametrize("pipeline", ["deferred", "hybrid"])
+@pytest.mark.parametrize("name", list(KEPT)[1:])
+def test_each_attribute_in_a_bit_or_two_shows(gl, pipeline, name):
+    """Between 5 and 45 dB of the image in floats."""
+    found = apart(draw(gl, pipeline, LIT, kept(name)).image, draw(gl, pipeline, LIT).image)
+    assert 5 < found < 45, f"{found:.1f} dB"
+
+
+@pytest.mark.parametrize("layout", ["fp32", "metal_rough", "hybrid"])
+def test_the_image_follows_each_target_of_the_gbuffer(gl, layout):
+    """After the geometry pass a target is overwritten by a constant: the image is another."""
+    plan = Plan(SIZE, 1, LAYOUTS[layout], LIGHT_BUFFERS["rgba32f"], 2, False, 1.0)
+    with rendering(gl, PIPELINES["hybrid"], LIT, plan) as made:
+        made.draw()
+        right = made.image().copy()
+        for number, texture in enumerate(made.frame.textures(GBUFFER)):
+            made.frame.advance()
+            for name, run in made.passes.items():
+                run()
+                if name == "geometry":
+                    made.frame.framebuffer([texture]).clear(0.6, 0.6, 0.6, 0.6)
+            assert apart(made.image(), right) < 40, f"target {number}: {LAYOUTS[layout].targets[number].holds}"
+
+
+@pytest.mark.parametrize("layout", ["fp32", "metal_rough"])
+def test_extremes_are_finite(gl, layout):
+    """A stored roughness of exactly 0, metalness of 0 and of 1, a black base colour, under every kind of light."""
+    extremes = [MetalRough((base,) * 3, metalness, 0.0) for base in (0.0, 1.0) for metalness in (0.0, 1.0)]
+    scene = scene_of(*extremes, ambient=(1.0, 1.0, 1.0))
+    spot = Light("spot", (5.0, 5.0, 5.0), (0.0, 0.0, 5.0), 20.0, (0.0, 0.0, -1.0), 20.0, 40.0)
+    scene = replace(scene, lights=(*scene.lights, spot, Light("sun", (1.0, 1.0, 1.0), direction=(0.0, 0.0, -1.0))))
+    for name in ("forward", "deferred", "hybrid"):
+        image = draw(gl, name, scene, LAYOUTS[layout]).image
+        assert np.isfinite(image).all() and image.max() > 0, f"{name}: {np.sum(~np.isfinite(image))} are not finite"
+
+
+def test_a_mirror_shows_what_lies_around_by_hand(gl):
+    """Even light, a mirror of reflectance (0.9, 0.6, 0.3): its colour is that everywhere."""
+    image = draw(gl, "hybrid", scene_of(MetalRough((0.9, 0.6, 0.3), 1.0, 0.0), ambient=(1, 1, 1), lamps=())).image
+    middle = image[SIZE[1] // 2, SIZE[0] // 2]
+    assert middle == pytest.approx((0.9, 0.6, 0.3), rel=2e-3)
+
+
+def test_normals_that_a_pixel_sees_many_of_make_it_rougher(gl):
+    """Of a mirror ball's rim, and hardly of a plane; switched off, not at all."""
+    scene = scene_of(MetalRough(metalness=1.0, roughness=0.0))
+    widened, plain = (draw(gl, "hybrid", scene, antialiased=on).gbuffer[2][..., 3] for on in (True, False))
+    assert plain.max() == 0
+    assert widened[4, 4] < 0.01 < widened.max(), f"{widened[4, 4]} on the plane, at most {widened.max()}"
+
+
+@pytest.mark.parametrize("authored", [False, True], ids=["made tangents", "the file's tangents"])
+@pytest.mark.parametrize("way", range(len(WAYS)), ids=["as it is", "turned", "mirrored", "mirrored and turned"])
+def test_a_dome_of_a_normal_map_is_lit_as_a_modelled_one(gl, tmp_path, way, authored):
+    """From the same side and as bright: each half of the two domes has the same mean colour within 3 %. Both are dull,
+    as the eye sees them from two sides."""
+    material = {"pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 1.0}}
+    file = read_mesh_file(halves(WAYS[way], authored, **material).write(tmp_path / "halves.glb"))
+    sun = Light("sun", (1.0, 1.0, 1.0), direction=(0.6, -0.48, -0.64))
+    scene = replace(file_scene(file, Setting(lights=0)), lights=(sun,), environment=None, ambient=(0.0, 0.0, 0.0))
+    drawn = draw(gl, "hybrid", scene, antialiased=False)
+    right = drawn.gbuffer[0][..., 0]
+
+    def mean(middle: float, low: float, high: float) -> tuple[float, ...]:
+        """Of what lies so far to the right of a square's middle; its rim is not in the picture everywhere."""
+        return tuple(map(float, drawn.image[(right > middle + low) & (right < middle + high)].mean(axis=0)))
+
+    for low, high in ((-0.9, -0.1), (0.1, 0.9)):
+        modelled, mapped = mean(-1.1, low, high), mean(1.1, low, high)
+        assert mapped == pytest.approx(modelled, rel=0.03), f"{low} to {high}: {mapped}, not {modelled}"
+    assert mean(1.1, -0.9, -0.1)[0] > 1.2 * mean(1.1, 0.1, 0.9)[0], "the light comes from the left"
+
+
+def test_a_mirror_shows_the_environment_where_it_points(gl):
+    """A quarter of all directions has a colour of its own: a mirror ball shows the one behind the eye in its middle."""
+    towards = directions(64)
+    light = np.where(towards[..., 2:] > 0, (0.1, 0.8, 0.2), (0.7, 0.1, 0.1)).astype(np.float32)
+    scene = replace(scene_of(MetalRough((1.0, 1.0, 1.0), 1.0, 0.0), lamps=()), environment=Environment("two", light))
+    image = draw(gl, "hybrid", scene, antialiased=False).image
+    assert image[SIZE[1] // 2, SIZE[0] // 2] == pytest.approx((0.1, 0.8, 0.2), abs=2e-3)
+
+
+def test_a_sun_in_an_environment_becomes_the_scenes_sun():
+    """Of the same irradiance: a light of colour c gives pi c."""
+    towards = directions(64)
+    way = np.array((0.6, 0.64, 0.48))
+    light = np.where((towards @ way)[..., None] > np.cos(np.radians(3)), 5000.0, 0.5) * np.ones(3)
+    around = without_sun(Environment("sunny", light.astype(np.float32)))
+    scene = scene_of(MetalRough()).under(around)
+    assert around.sun is not None and scene.sun is not None
+    assert np.dot(scene.sun.direction, -way) > np.cos(np.radians(1))
+    assert np.multiply(scene.sun.colour, np.pi) == pytest.approx(around.sun[1])
+    assert len(scene.lights) == 1 + len(LAMPS)
+
+
+def test_maps_look_the_same_on_many_triangles_as_on_two(gl):
+    """At triangles' edges as well, where a map's footprint is taken from pixels that lie on neither: 70 dB."""
+    texels = np.random.default_rng(5).integers(0, 256, (128, 128, 4), np.uint8)
+    material = MetalRough(roughness=0.4, base_map=Map(texels, is_srgb=True), normal_map=Map(texels | 128))
+    images = []
+    for cells in (1, 24):
+        v, u = np.meshgrid(np.linspace(0, 1, cells + 1), np.linspace(0, 1, cells + 1), indexing="ij")
+        flat = np.stack([8 * u.ravel() - 4, 8 * v.ravel() - 4, 0 * u.ravel()], axis=1)
+        facing = np.tile([0.0, 0.0, 1.0], (len(flat), 1))
+        sheet = Mesh(flat, facing, grid_triangles(cells, cells), grid_uv(cells, cells))
+        scene = replace(scene_of(material), parts=(Part(sheet, placed((0, 0, 0)), np.array([0]), casts=False),))
+        images.append(draw(gl, "hybrid", scene).image)
+    assert apart(*images) >= 70, f"{apart(*images):.1f} dB"
+
+
+def test_a_bump_of_a_normal_map_is_a_hollow_from_behind(gl):
+    """A sheet seen from its back: the front's normal, turned round."""
+    mapped = MetalRough(normal_map=slanted())
+    away = plane(8.0, 8.0).placed(UPRIGHT @ np.diag([1.0, 1.0, -1.0]), (0.0, 0.0, -1.0))
+    sheet = Part(away, placed((0, 0, 0)), np.array([0]), casts=False, two_sided=True)
+    found = draw(gl, "hybrid", replace(scene_of(mapped), parts=(sheet,))).gbuffer[1][4, 4, :3]
+    # The sheet is the one that faces the eye, seen in a mirror along z: (0.3, 0.4, -0.87), turned round.
+    assert found == pytest.approx((-0.3, -0.4, np.sqrt(0.75)), abs=2e-5)

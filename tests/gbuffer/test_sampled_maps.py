@@ -1,0 +1,148 @@
+"""Normal maps as pixels see them, without a GL driver."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from halves import CORNERS, RIM, WAYS, dome, file_tangents, halves, picture, uv_of
+from written import Document, png_bytes
+
+from normalbench.gbuffer.scenes.files.read import read_mesh_file, seen
+from normalbench.gbuffer.scenes.metal_rough import Map
+from normalbench.gbuffer.scenes.sampled import Pyramid
+
+SIDE = 64
+SQUARE = [(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)]
+
+
+def square(data: bytes, uv, away: float = 3.0, info=None, **more) -> Document:
+    """A square of 2 x 2 that faces a camera, wholly in the picture; `more` are attributes."""
+    document = Document()
+    document.texture(data, wrapS=33071, wrapT=33071)
+    document.material(normalTexture={"index": 0, **(info or {})})
+    corners = np.concatenate([CORNERS, np.zeros((4, 1))], axis=1)
+    more = {"TEXCOORD_0": uv} | more
+    document.node(mesh=document.mesh(corners, [(0, 0, 1)] * 4, [(0, 1, 2), (0, 2, 3)], material=0, **more))
+    document.json["cameras"] = [{"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.1}}]
+    document.node(camera=0, translation=[0, 0, away])
+    return document
+
+
+def as_seen(document: Document, tmp_path):
+    """Normals of what is covered, and where it lies on the square."""
+    made = seen(read_mesh_file(document.write(tmp_path / "a.glb")), (SIDE, SIDE))
+    inner = made.covered & (abs(made.positions[..., :2]).max(axis=-1) < 0.97)
+    assert inner.sum() > 100
+    return made.normals[inner], made.positions[inner]
+
+
+@pytest.mark.parametrize("way", range(len(WAYS)))
+@pytest.mark.parametrize("how", ["computed", "authored", "transformed"])
+def test_a_dome_in_a_map_is_a_dome_however_its_picture_lies(tmp_path, how, way):
+    """Turned, mirrored, by the file's tangents or by ones that follow from the uv: the dome bulges towards the eye, and
+    its left faces left."""
+    turn = WAYS[way]
+    more, info = {}, None
+    if how == "authored":
+        more = {"TANGENT": file_tangents(turn)}
+    if how == "transformed":
+        # Back and forth: the picture lies upright, and turned by 90 degrees about its middle.
+        info = {"extensions": {"KHR_texture_transform": {"rotation": np.pi / 2, "offset": [0, 1]}}}
+    document = square(picture(dome), uv_of(turn), info=info, **more)
+    normals, positions = as_seen(document, tmp_path)
+    assert abs(normals[:, :2] - RIM * positions[:, :2]).max() < 2e-3, f"{how}, {turn.tolist()}"
+
+
+@pytest.mark.parametrize("way", range(len(WAYS)))
+@pytest.mark.parametrize("authored", [False, True])
+def test_modelled_and_mapped_normals_are_the_same(tmp_path, way, authored):
+    """Pixel by pixel: the squares are two apart and a tenth each way, which is a whole number of pixels here."""
+    made = seen(read_mesh_file(halves(WAYS[way], authored).write(tmp_path / "a.glb")), (256, 128))
+    columns = np.nonzero(made.covered.any(axis=0))[0]
+    gap = np.flatnonzero(np.diff(columns) > 1)
+    left, right = np.split(columns, gap + 1)
+    assert len(left) == len(right) > 40
+    normals = [made.normals[:, half][made.covered[:, half].all(axis=1)][2:-2, 2:-2] for half in (left, right)]
+    assert abs(normals[0] - normals[1]).max() < 0.02, f"{WAYS[way].tolist()}: {abs(normals[0] - normals[1]).max():.3f}"
+
+
+def test_the_scale_of_a_normal_map_is_of_its_slopes(tmp_path):
+    document = square(picture(dome), uv_of(WAYS[0]), info={"scale": 0.5})
+    normals, positions = as_seen(document, tmp_path)
+    xy = RIM * positions[:, :2]
+    z = np.sqrt(1 - np.sum(xy * xy, axis=1, keepdims=True))
+    expected = np.concatenate([0.5 * xy, z], axis=1)
+    expected /= np.linalg.norm(expected, axis=1, keepdims=True)
+    assert abs(normals - expected).max() < 2e-3
+
+
+def test_slopes_that_are_finer_than_pixels_are_their_mean(tmp_path):
+    """Stripes of a texel, a hundred of them in a pixel: flat, but for what is flat in the map."""
+    stripes = picture(lambda right, up: (0.5 * np.sign(np.sin(right * 64 * np.pi)), np.full_like(up, 0.25)))
+    document = square(stripes, uv_of(WAYS[0]) * 40)
+    document.json["samplers"][0] = {}
+    normals, _ = as_seen(document, tmp_path)
+    n = np.array([0, 0.25, np.sqrt(1 - 0.25 - 0.0625)])
+    assert abs(normals - n / np.linalg.norm(n)).max() < 0.02
+
+
+def test_stripes_seen_at_a_slant_keep_what_runs_along_them():
+    """A footprint of 16 texels by one, along the stripes: an isotropic filter would see their mean."""
+    texels = np.zeros((64, 64, 4), np.uint8)
+    texels[:, ::2] = 255
+    pyramid = Pyramid(Map(texels))
+    uv = np.array([(8.5 / 64, 0.5), (9.5 / 64, 0.5)])
+    one, sixteen = np.array([(1 / 64, 0)] * 2), np.array([(0, 16 / 64)] * 2)
+    for sides in ((one, sixteen), (sixteen, one)):
+        assert np.allclose(pyramid.through(uv, *sides), [[1] * 3, [-1] * 3])
+
+
+@pytest.mark.parametrize("shape", [(7, 5), (1, 9), (8, 3), (1, 1)])
+def test_every_level_has_the_mean_of_the_map(shape):
+    texels = np.random.default_rng(0).integers(0, 256, (*shape, 4), np.uint8)
+    levels = Pyramid(Map(texels)).levels
+    assert levels[-1].shape == (1, 1, 3)
+    mean = levels[0].mean(axis=(0, 1), dtype=np.float64)
+    assert all(np.allclose(level.mean(axis=(0, 1)), mean, atol=1e-6) for level in levels)
+
+
+@pytest.mark.parametrize("wrap, mode", [("repeat", "wrap"), ("mirror", "symmetric"), ("clamp", "edge")])
+def test_beyond_a_picture_lies_what_its_sampler_says(wrap, mode):
+    """Centres of texels up to twice its size outside, against NumPy's own ways of padding."""
+    texels = np.random.default_rng(0).integers(0, 256, (3, 5, 4), np.uint8)
+    padded = np.pad(texels, ((6, 6), (10, 10), (0, 0)), mode)[..., :3] / 255 * 2 - 1
+    row, column = np.indices(padded.shape[:2]).reshape(2, -1)
+    uv = np.stack([(column - 10 + 0.5) / 5, (row - 6 + 0.5) / 3], axis=1)
+    still = np.zeros_like(uv)
+    found = Pyramid(Map(texels, wrap=(wrap, wrap))).through(uv, still, still)
+    assert abs(found - padded[row, column]).max() < 1e-6
+
+
+def test_pixels_say_their_triangle(tmp_path):
+    """Whose corners, weighed, are where the pixel is."""
+    file = read_mesh_file(square(picture(lambda x, y: (0 * x, 0 * y)), uv_of(WAYS[0])).write(tmp_path / "a.glb"))
+    made = seen(file, (SIDE, SIDE))
+    above = made.positions[..., 1] > made.positions[..., 0]
+    assert np.array_equal(made.triangle[made.covered & above] == 1, np.ones((made.covered & above).sum(), bool))
+    assert not made.triangle[made.covered & ~above].all()
+    plain = replace(file, materials=tuple(replace(m, normal_map=None) for m in file.materials))
+    assert np.array_equal(seen(plain, (SIDE, SIDE)).covered, made.covered)
+
+
+@pytest.mark.parametrize("cutoff, share", [(0.0, 1.0), (0.5, 0.75), (1.5, 0.0)])
+def test_what_is_cut_out_shows_what_is_behind(tmp_path, cutoff, share):
+    """A square whose picture is clear in its upper left quarter, before one that fills the view and faces up."""
+    texels = np.full((64, 64, 4), 255, np.uint8)
+    texels[:32, :32, 3] = 0
+    document = square(picture(dome), uv_of(WAYS[0]))
+    pbr = {"baseColorTexture": {"index": document.texture(png_bytes(texels), wrapS=33071, wrapT=33071)}}
+    document.json["materials"][0] = {"alphaMode": "MASK", "alphaCutoff": cutoff, "pbrMetallicRoughness": pbr}
+    behind = document.mesh(np.array(SQUARE) * 40, [(0, 1, 0)] * 4, [(0, 1, 2), (0, 2, 3)])
+    document.node(mesh=behind, translation=[0, 0, -1])
+    made = seen(read_mesh_file(document.write(tmp_path / "a.glb")), (SIDE, SIDE))
+    front = made.normals[..., 2] > 0.5
+    assert made.covered.all()
+    whole = (2 / (2 * 3 * np.tan(0.35)) * SIDE) ** 2
+    assert front.sum() == pytest.approx(share * whole, rel=0.05)
+    quarter = front[: SIDE // 2, : SIDE // 2]
+    assert quarter.any() == (cutoff == 0)

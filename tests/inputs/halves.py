@@ -1,0 +1,67 @@
+"""A dome in normals of vertices next to the same dome in a normal map, as files have them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from written import Document, png_bytes
+
+from normalbench.gbuffer.scenes.mesh import grid_triangles
+
+CORNERS = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+# What turns and mirrors a square about its middle.
+WAYS = [np.array(m) @ n for m in (((1, 0), (0, 1)), ((-1, 0), (0, 1))) for n in ([[1, 0], [0, 1]], [[0, 1], [-1, 0]])]
+# The slope of the dome at its rim.
+RIM = 0.6
+
+
+def picture(slopes) -> bytes:
+    """A normal map of 16 bits; `slopes` gives x and y of its normals at (right, up), each in [-1, 1]."""
+    at = (np.arange(128) + 0.5) / 64 - 1
+    right, up = np.meshgrid(at, -at)
+    x, y = slopes(right, up)
+    n = np.stack([x, y, np.sqrt(1 - x * x - y * y)], axis=-1)
+    return png_bytes(np.round((n * 0.5 + 0.5) * 65535).astype(np.uint16))
+
+
+def dome(right, up):
+    """x and y of a dome's normals: its left faces left."""
+    return RIM * right, RIM * up
+
+
+def uv_of(way: np.ndarray, corners: np.ndarray = CORNERS) -> np.ndarray:
+    """Uv of a square's corners that lay a picture on it by `way`: v grows downwards."""
+    return (corners @ way.T) * (0.5, -0.5) + 0.5
+
+
+def halves(way: np.ndarray, authored: bool = False, **material: Any) -> Document:
+    """Two squares of 2 x 2 that face a camera, in one material but for the map: at the left, vertices have the dome's
+    normals; at the right, a normal map has them, laid by `way`, one of WAYS.
+
+    Args:
+        way: (2, 2), orthogonal; what a determinant of -1 mirrors.
+        authored: whether the file has tangents.
+        material: further fields of both materials.
+    """
+    document = Document()
+    picture_of_dome = {"index": document.texture(picture(dome), wrapS=33071, wrapT=33071)}
+    mapped, modelled = document.material(normalTexture=picture_of_dome, **material), document.material(**material)
+    at = np.linspace(-1, 1, 33)
+    x, y = (a.ravel() for a in np.meshgrid(at, at))
+    n = np.stack([RIM * x, RIM * y, np.sqrt(1 - RIM**2 * (x * x + y * y))], axis=1)
+    grid = np.stack([x, y, 0 * x], axis=1)
+    document.node(mesh=document.mesh(grid, n, grid_triangles(32, 32), material=modelled), translation=[-1.1, 0, 0])
+    more = {"TEXCOORD_0": uv_of(way)} | ({"TANGENT": file_tangents(way)} if authored else {})
+    flat = np.concatenate([CORNERS, np.zeros((4, 1))], axis=1)
+    square = document.mesh(flat, [(0, 0, 1)] * 4, [(0, 1, 2), (0, 2, 3)], material=mapped, **more)
+    document.node(mesh=square, translation=[1.1, 0, 0])
+    document.json["cameras"] = [{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1}}]
+    document.node(camera=0, translation=[0, 0, 6])
+    return document
+
+
+def file_tangents(way: np.ndarray) -> list[tuple[float, ...]]:
+    """Where a picture's right lies on the square, and on which side its up is, as glTF has them."""
+    right, up = way
+    return [(*right, 0, np.sign(right[0] * up[1] - right[1] * up[0]))] * 4

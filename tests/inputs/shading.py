@@ -1,0 +1,42 @@
+"""How a metal/rough surface answers a light, in float64 and from the formulas: what GLSL is compared with."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from normalbench.gbuffer.environment.dfg import dfg
+
+
+def dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return np.sum(a * b, axis=-1, keepdims=True)
+
+
+def unit(v: np.ndarray) -> np.ndarray:
+    return v / np.linalg.norm(v, axis=-1, keepdims=True)
+
+
+def answer(n, v, l, roughness, albedo, f0) -> np.ndarray:  # noqa: E741
+    """Outgoing light for an irradiance of pi seen head on: pi n.l (D V F gain + albedo / pi (1 - what is reflected)).
+
+    Args:
+        n, v, l: unit normals and directions to the eye and to the light, (count, 3).
+        roughness: (count, 1), 0.045 or more.
+        albedo, f0: diffuse albedo and reflectance head on, (count, 3).
+    """
+    a, h = roughness**2, unit(l + v)
+    n_l, n_v, n_h, v_h = np.maximum(dot(n, l), 0), np.clip(dot(n, v), 1e-4, 1), dot(n, h), dot(v, h)
+    distribution = a**2 / (np.pi * (n_h**2 * (a**2 - 1) + 1) ** 2)
+    smith = n_l * np.sqrt(n_v**2 * (1 - a**2) + a**2) + n_v * np.sqrt(n_l**2 * (1 - a**2) + a**2)
+    fresnel = f0 + (1 - f0) * (1 - v_h) ** 5
+    scale, bias = dfg(n_v, roughness)
+    gain = 1 + f0 * (1 / (scale + bias) - 1)
+    lobe = distribution * 0.5 / np.maximum(smith, 1e-300) * fresnel * gain
+    return np.where(n_l > 0, n_l * (np.pi * lobe + albedo * (1 - (f0 * scale + bias) * gain)), 0.0)
+
+
+def from_lamp(light, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The colour that arrives from a point light in view space, and the way to it, (count, 3) each."""
+    way = np.array(light.position) - position
+    away2 = dot(way, way)
+    window = np.maximum(1 - (away2 / light.radius**2) ** 2, 0)
+    return np.array(light.colour) * window**2 / (away2 + 1), unit(way)
