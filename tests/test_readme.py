@@ -15,6 +15,7 @@ from typing import NoReturn
 
 import columns_page
 import devices
+import gpu_page
 import numpy as np
 import pytest
 import typer
@@ -207,7 +208,8 @@ def test_what_pip_installs_exists():
 
 def test_the_columns_it_explains_are_those_of_the_tables():
     """To the letter as the registry has them."""
-    assert PAGES[columns_page.PAGE] == columns_page.text(), "write it: python -m tests.columns_page"
+    for page in (columns_page, gpu_page):
+        assert PAGES[page.PAGE] == page.text(), f"write it: python -m tests.{page.__name__}"
 
 
 @pytest.mark.slow

@@ -75,8 +75,13 @@ class Here:
     """Steps are measured in this process, in their order."""
 
     def measure(self, ask: Asked, steps: Sequence[Step], tick: Tick) -> Iterator[tuple[Step, list[Row]]]:
+        """As every Place. Raises MissingError where the GL device was lost: that step's rows are not given."""
+        # It imports JAX, which tables have imported by now.
+        from ..ground.machine.devices import require_living_device
+
         said = ", ".join(f"{name}={value}" for name, value in settings().items())
         for step, rows in zip(steps, ask.table.work.measure(steps, tick), strict=True):
+            require_living_device()
             yield step, [_with_settings(row, said) for row in rows]
 
     def lacking(self, table: str) -> Sequence[str]:  # noqa: ARG002 # as of every Place

@@ -364,6 +364,14 @@ class Device:
             stack.callback(program.release)
         return thing
 
+    @property
+    def answers(self) -> bool:
+        """Whether it still draws: a texel of a random colour is what was asked for. A driver that lost its GPU goes on
+        without a word, and what it gives back is anything."""
+        texel = np.random.default_rng().integers(0, 256, 4, np.uint8)
+        self.idle.clear(*(texel / np.float32(255)).tolist())
+        return self.idle.read(components=4) == texel.tobytes()
+
     def native_rounding(self, storage: Storage) -> str:
         """How the device's own conversion into the format rounds: "nearest", "truncate" or "other"."""
         if storage.name not in self._native:
@@ -380,7 +388,7 @@ class Device:
         got = self.through(pixels, storage)[0, :, 0]
         for rounding in NATIVE_ROUNDINGS:
             expected = np.asarray(store_texel(jnp.asarray(values), storage, 0, rounding))
-            if np.array_equal(got, expected):
+            if np.array_equal(in_steps(got, storage), in_steps(expected, storage)):
                 return rounding
         return "other"
 
@@ -408,6 +416,18 @@ def explained(source: Source) -> Iterator[None]:
         yield
     except moderngl.Error as error:
         raise ShaderError(source.explain(str(error))) from error
+
+
+def in_steps(texels: np.ndarray, storage: Storage, channel: int = 0) -> np.ndarray:
+    """Texels that a device gave back, as the whole numbers that its format holds; of others as they are.
+
+    A device divides a whole number by the scale, as an H100 does, or takes the scale's reciprocal, as llvmpipe does:
+    what it holds is the same where what comes back is a unit in the last place apart.
+    """
+    # What comes back of the sRGB curve is light, whose steps are uneven.
+    if storage.kind == "float" or storage.curved:
+        return texels
+    return np.rint(texels * storage.scale(channel))
 
 
 def read_pixels(texture: moderngl.Texture) -> np.ndarray:

@@ -50,7 +50,8 @@ def test_both_languages_agree_on_a_chain(gl):
     with CodecPasses(gl, chain) as passes:
         by_gl = passes.round_trip(four, four).normals.reshape(-1, 3)
     apart = angles_deg(by_gl, round_trip(chain, n, n))
-    assert np.mean(apart < 1e-3) > 0.995, f"{np.mean(apart < 1e-3):.3%} the same"
+    # A GPU's quotients are not rounded to nearest: a code in two hundred is the next one.
+    assert np.mean(apart < 1e-3) > (0.995 if gl.is_software else 0.99), f"{np.mean(apart < 1e-3):.3%} the same"
 
 
 def test_a_chain_is_not_rendered():

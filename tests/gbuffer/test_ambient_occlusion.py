@@ -219,14 +219,19 @@ def test_gtao_takes_all_that_is_behind_a_surface_for_solid(gl, x):
 SLANTED = View((0.0, 2.0, 4.0), (0.0, 0.0, 0.0), 40.0, 0.5, 60.0, up=(0.3, 1.0, 0.0))
 
 
+def open_to(gl) -> float:
+    """What is open, to the last digit; a GPU's mean of ones may be two units in the last place less."""
+    return 1.0 if gl.is_software else 1 - 2.0**-22
+
+
 @pytest.mark.parametrize("text", BOTH)
 def test_nothing_occludes_an_open_plane_or_a_convex_body(gl, text):
-    """Exactly 1 at every pixel of a level floor, seen aslant, and of a box that has nothing around it."""
+    """1 at every pixel of a level floor, seen aslant, and of a box that has nothing around it."""
     for name, mesh in (("floor", floor()), ("box", box(1.2, 1.0, 0.8))):
         found, position, _ = drawn_effect(gl, scene_of_meshes(mesh, view=SLANTED), text, SIZE)
         covered = position[..., 2] != 0
         assert covered.sum() > 500
-        assert found[covered].min() == 1.0, f"{name}: {found[covered].min():.6f}"
+        assert found[covered].min() >= open_to(gl), f"{name}: {found[covered].min():.9f}"
         assert not (found[~covered] != 1.0).any(), "the background"
 
 
@@ -352,7 +357,7 @@ def test_settings_out_of_range_are_refused(name, given, said):
 @pytest.mark.parametrize("text", [f"{name}:size=half" for name in METHODS])
 def test_half_of_the_smallest_picture_is_one_pixel(gl, text, size):
     found, *_ = drawn_effect(gl, scene_of_meshes(floor(), view=FROM_ABOVE), text, size)
-    assert (found == 1.0).all()
+    assert (found >= open_to(gl)).all(), found.min()
 
 
 def test_depth_may_be_kept_in_the_layout_or_beside_it(gl):

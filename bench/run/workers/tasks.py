@@ -13,6 +13,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from ...ground.machine.devices import require_living_device
 from ...ground.output.cache import folder_of_this_process
 from ...ground.output.errors import MissingError, UsageError, told
 from ...tables.registry import TABLES
@@ -111,6 +112,7 @@ def _answers(laid: Laid, wanted: Sequence[str]) -> Iterator[StepAnswer]:
     ask, chosen = laid.ask, [laid.steps[name] for name in wanted]
     rows_of = ask.table.work.measure(chosen, lambda _: None)
     for name, step, rows in zip(wanted, chosen, rows_of, strict=True):
+        require_living_device()
         lacks = _lacks(ask, step, rows)
         yield StepAnswer(name, laid.order.as_typed(list(rows)), _taken(laid.folder), lacks)
 

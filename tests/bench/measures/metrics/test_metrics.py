@@ -327,7 +327,8 @@ def test_any_count_is_constant_memory():
 
     Meter(jax.jit(lambda block: block.n)).measure(loads(), CHUNK)
     gc.unfreeze()
-    assert most <= 8
+    # Two for each thread, and those that one hands on.
+    assert most <= 2 * cores() + 4
 
 
 def test_uniform_sets_are_float64_rounded_once():
