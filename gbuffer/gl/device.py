@@ -440,3 +440,8 @@ def read_pixels(texture: moderngl.Texture) -> np.ndarray:
 def device() -> Device:
     """The process's one GL device. Raises NoDeviceError."""
     return Device()
+
+
+def opened() -> Device | None:
+    """The device of this process, if it was opened."""
+    return device() if device.cache_info().currsize else None

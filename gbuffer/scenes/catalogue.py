@@ -26,7 +26,7 @@ class SceneMaker:
         make: it, at a moment.
         frames: over how many moments a figure is averaged.
         exposure: in stops; None to have it measured, of a scene whose light nobody has set.
-        tone_mapping: one of TONE_MAPPINGS.
+        is_metal_rough: whether its materials are metal/rough, which have no specular power.
     """
 
     name: str
@@ -34,7 +34,12 @@ class SceneMaker:
     make: Callable[[Setting], Scene]
     frames: int
     exposure: float | None = 0.0
-    tone_mapping: str = "none"
+    is_metal_rough: bool = False
+
+    @property
+    def tone_mapping(self) -> str:
+        """How its light beyond 1 is shown, one of TONE_MAPPINGS."""
+        return FILMIC if self.is_metal_rough else "none"
 
     def display(self, linear: np.ndarray) -> Display:
         """How its images are shown; an exposure that nobody has set is measured of linear light, (..., 3)."""
@@ -47,7 +52,9 @@ SCENES: Mapping[str, SceneMaker] = MappingProxyType(
         "playground": SceneMaker("playground", playground.TITLE, playground.lit_playground, playground.FRAMES),
         "objects": SceneMaker("objects", objects.TITLE, objects.objects, objects.FRAMES),
         "gloss": SceneMaker("gloss", gloss.TITLE, gloss.gloss, gloss.FRAMES),
-        "studio": SceneMaker("studio", studio.TITLE, studio.studio, studio.FRAMES, studio.EXPOSURE, FILMIC),
+        "studio": SceneMaker(
+            "studio", studio.TITLE, studio.studio, studio.FRAMES, studio.EXPOSURE, is_metal_rough=True
+        ),
         "room": SceneMaker("room", room.TITLE, room.room, room.FRAMES),
         "head": SceneMaker("head", head.TITLE, head.head, head.FRAMES),
         "lake": SceneMaker("lake", lake.TITLE, lake.lake, lake.FRAMES),

@@ -80,8 +80,8 @@ ALL = (
                 for names, storage in ((RG8, "rg8"), (RGB10A2, "rgb10a2"))
             ),
             f"cost --isa --family navi21 --stage fragment --encoding {RG8},{RGB10A2}",
-            f"render --scene gloss --repeats 0 --encoding {RG8} --storage rg8",
-            f"render --scene gloss --repeats 0 --encoding {RGB10A2} --storage rgb10a2",
+            f"render --repeats 0 --encoding {RG8} --storage rg8",
+            f"render --repeats 0 --encoding {RGB10A2} --storage rgb10a2",
         ),
         columns=(
             key("storage", "storage"),
@@ -91,7 +91,7 @@ ALL = (
             Column("worst error", "angle_sup_deg", ON_SPHERE, "{:.2f}°".format, abs=6e-3),
             counted("encode", "encode", "navi21"),
             counted("decode", "decode", "navi21"),
-            Column("image", "psnr_db", {"scene": "gloss"}, "{:.2f} dB".format, abs=0.1),
+            Column("image", "psnr_db", {"scene": "studio"}, "{:.2f} dB".format, abs=0.1),
         ),
         needs=("gl", "radv"),
         gather=measuring.for_every_storage,

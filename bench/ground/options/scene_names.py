@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 
 from ....encodings.codecs.files import called
-from ....gbuffer.scenes.catalogue import FILMIC, SCENES, SceneMaker
+from ....gbuffer.scenes.catalogue import SCENES, SceneMaker
 from ....gbuffer.scenes.files.mesh_file import MeshFile
 from ....gbuffer.scenes.files.read import FRAMES, READERS, file_scene, read_mesh_file
 from ....gbuffer.scenes.files.source import MissingPackageError, SceneFileError
@@ -29,8 +29,8 @@ def scene_makers_named(names: str) -> list[SceneMaker]:
         file = mesh_file(path)
         notes[path] = file.notes
         name = called(path.name)
-        shown = FILMIC if file.is_metal_rough else "none"
-        return SceneMaker(name, f"the meshes of {name}", partial(file_scene, file), FRAMES, None, shown)
+        make = partial(file_scene, file)
+        return SceneMaker(name, f"the meshes of {name}", make, FRAMES, None, file.is_metal_rough)
 
     made = choose_or_read("scene", names, SCENES, READERS, scene_of)
     say_notes(notes)

@@ -79,11 +79,20 @@ def _largest_angle(*angles: float | None) -> float | None:
 
 
 def images(row: Row) -> dict[tuple[str, str], float]:
-    """The PSNR of a row's images by scene and specular power; empty where none was rendered."""
-    figures = (
-        (name.removeprefix(IMAGE).rpartition("_"), value) for name, value in row.items() if name.startswith(IMAGE)
-    )
-    return {(scene, power): value for (scene, _, power), value in figures if value is not None}
+    """The PSNR of a row's images by scene and specular power, which is empty where materials have none; nothing where
+    none was rendered."""
+    figures = {name.removeprefix(IMAGE): value for name, value in row.items() if name.startswith(IMAGE)}
+    return {_scene_and_power(name): value for name, value in figures.items() if value is not None}
+
+
+def image_name(scene: str, power: float | None) -> str:
+    """What an image is called: `gloss_47`, or `studio` whose materials have no specular power."""
+    return scene if power is None else f"{scene}_{power:g}"
+
+
+def _scene_and_power(name: str) -> tuple[str, str]:
+    scene, _, power = name.rpartition("_")
+    return (scene, power) if scene and power.replace(".", "", 1).isdigit() else (name, "")
 
 
 def image_db(row: Row) -> float | None:

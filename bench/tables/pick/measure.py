@@ -35,7 +35,7 @@ from ..mix.patches import in_domain
 from ..mix.verdict import DONE
 from ..quality import measure as quality
 from ..render import measure as render
-from .answer import AFFORDABLE, IMAGE, answered, floor, price, why_left_out
+from .answer import AFFORDABLE, IMAGE, answered, floor, image_name, price, why_left_out
 from .prices import Costs
 from .table import TABLE
 
@@ -72,6 +72,10 @@ class Case:
     def is_beside(self) -> bool:
         """Whether it is of another storage of the same bytes, and is compared by its angles alone."""
         return bool(self.said["beside"])
+
+    def powers_of(self, maker: SceneMaker) -> tuple[float | None, ...]:
+        """The specular powers that a scene is drawn at; None alone where its materials have none."""
+        return (None,) if maker.is_metal_rough else self.powers
 
 
 def rows(asked: Sequence[Sequence[Case]], device: Device | None, tick: Callable[[str], None]) -> Iterator[list[Row]]:
@@ -243,7 +247,7 @@ def _mixing_columns(case: Case) -> Row:
 
 def _case_columns(case: Case) -> Row:
     codec, encoding = case.codec, case.codec.encoding
-    images = (f"{maker.name}_{power:g}" for maker in case.makers for power in case.powers)
+    images = (image_name(maker.name, power) for maker in case.makers for power in case.powers_of(maker))
     return (
         TABLE.empty(images)
         | dict(case.said)
@@ -360,13 +364,14 @@ class Pictures:
     def _image_columns(self, case: Case, maker: SceneMaker) -> Row:
         held = self._reference(case, maker).held_by(case.codec.encoding.domain)
         return {
-            f"{IMAGE}{maker.name}_{power:g}": psnr_db(squared_error(image[held], right[held])[0])
+            f"{IMAGE}{image_name(maker.name, power)}": psnr_db(squared_error(image[held], right[held])[0])
             for power, (image, right) in self.shown(case, maker).items()
             if held.any()
         }
 
-    def shown(self, case: Case, maker: SceneMaker) -> dict[float, tuple[np.ndarray, np.ndarray]]:
-        """At each power the displayed image, and that of exact normals: (height, width, 3), 0 to 1.
+    def shown(self, case: Case, maker: SceneMaker) -> dict[float | None, tuple[np.ndarray, np.ndarray]]:
+        """At each power (None where there is none) the displayed image, and that of exact normals: (height, width, 3),
+        0 to 1.
 
         Raises:
             LayoutError, or one of render.UNMEASURABLE: there is no room for the code.
@@ -376,8 +381,9 @@ class Pictures:
         if case.codec.encoding.is_half and not by_emulation:
             raise LayoutError(f"{case.codec.name}: the renderer computes in 32 bits")
         images = self._relit(case, maker) if by_emulation else self._drawn(case, maker, layout)[0]
-        found: dict[float, tuple[np.ndarray, np.ndarray]] = {}
-        for power, image, right in zip(case.powers, images, self._reference(case, maker).images, strict=True):
+        found: dict[float | None, tuple[np.ndarray, np.ndarray]] = {}
+        exact = self._reference(case, maker).images
+        for power, image, right in zip(case.powers_of(maker), images, exact, strict=True):
             display = maker.display(right)
             found[power] = display.image(image), display.image(right)
         return found
@@ -405,11 +411,13 @@ class Pictures:
         self, case: Case, maker: SceneMaker, layout: Layout, keeps: Keeps | None = None
     ) -> tuple[list[np.ndarray], np.ndarray, np.ndarray]:
         """The image at each power, and the positions and normals of its pixels."""
-        plan = Plan(SIZE, 1, layout, LIGHT_BUFFERS["rgba32f"], 2, True, 1.0)
         scene, shown = maker.make(case.setting), []
+        if scene.is_metal_rough and case.codec.encoding.domain == "sphere":
+            layout = replace(layout, space="world")
+        plan = Plan(SIZE, 1, layout, LIGHT_BUFFERS["rgba32f"], 2, True, 1.0)
         with rendering(self._device, case.pipeline, scene, plan) as made:
-            for power in case.powers:
-                made.draw(scene.with_power(power), keeps)
+            for power in case.powers_of(maker):
+                made.draw(scene if power is None else scene.with_power(power), keeps)
                 shown.append(made.image())
             position, direction, *_ = made.gbuffer()
         return shown, position[..., :3], direction[..., :3]

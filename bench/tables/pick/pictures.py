@@ -23,20 +23,20 @@ PLACES = (BEST, AGAINST, MORE_EXACT, MOST_EXACT, CHEAPER, FEWER_BITS)
 
 
 def write(folder: Path, chosen: Sequence[Case], rows: Sequence[Row], drawing: Pictures) -> None:
-    """The image at each power of every code that has a place, and of the exact normals."""
+    """The images of every code that has a place, and of the exact normals."""
     placed = {(row["storage"], row["encoding"]) for row in rows if set(places_of(row)) & set(PLACES)}
     drawn = (one for one in chosen if (one.codec.storage.name, one.codec.encoding.name) in placed)
     for case, maker in ((one, maker) for one in drawn if not one.is_beside for maker in one.makers):
         # A code that the device has no room for has no image.
         with suppress(LayoutError, *render.UNMEASURABLE):
             for power, (image, exact) in drawing.shown(case, maker).items():
-                scene = _scene_stem(maker.name, power)
+                scene = _scene_stem(maker.name, "" if power is None else f"{power:g}")
                 _write(folder / f"{scene}-reference.png", exact)
                 _write(folder / f"{scene}-{case.codec.encoding.name}-{case.codec.storage.name}-final.png", image)
 
 
-def _scene_stem(name: str, power: float) -> str:
-    return f"pick-{name}-power{power:g}"
+def _scene_stem(name: str, power: str) -> str:
+    return f"pick-{name}-power{power}" if power else f"pick-{name}"
 
 
 def _write(path: Path, image: np.ndarray) -> None:
@@ -52,14 +52,15 @@ def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
     placed = sorted(found, key=lambda row: (storages.index(row["storage"]), _place_index(row)))
     drawn = dict.fromkeys(key for row in placed for key in images(row))
     scenes = list(dict.fromkeys(scene for scene, _ in drawn))
-    for scene, power in sorted(drawn, key=lambda key: (scenes.index(key[0]), -float(key[1]))):
-        stem = _scene_stem(scene, float(power))
+    for scene, power in sorted(drawn, key=lambda key: (scenes.index(key[0]), -float(key[1] or 0))):
+        stem = _scene_stem(scene, power)
         exact = there.get(f"{stem}-reference.png")
         codecs = [CodecKey(str(row["encoding"]), str(row["storage"]), "nearest") for row in placed]
         paths = {key: there.get(f"{stem}-{key.encoding}-{key.storage}-final.png") for key in codecs}
         known = [Pictured(key, key.label, key.label, partial(_pixels, path)) for key, path in paths.items() if path]
         if exact and known:
-            yield Subject(f"the answer on {scene} at power {power}", "image", partial(read_png, exact), known)
+            where = f"{scene} at power {power}" if power else scene
+            yield Subject(f"the answer on {where}", "image", partial(read_png, exact), known)
 
 
 def _place_index(row: Row) -> int:

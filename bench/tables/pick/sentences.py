@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shlex
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -182,7 +183,14 @@ def _seen_sentences(row: Row) -> str:
     far = " and ".join(_length_text(100 * FAR * math.tan(math.radians(min(value, 89.0)))) for value in moved)
     said = f"A mirror's reflection moves by {degrees(moved[0])} in the mean and at most {degrees(moved[1])}: "
     said += f"{texels} texels of {MAP}, {far} cm at {FAR:g} m."
-    return f"{said} That is enough." if is_enough(row) else said
+    if is_enough(row):
+        return f"{said} That is enough."
+    return f"{said} `{_roughness_command(row)}` says on which roughness that no longer shows."
+
+
+def _roughness_command(row: Row) -> str:
+    """What measures from which roughness on a code carries reflections."""
+    return shlex.join(["normalbench", "roughness", "--encoding", row["encoding"], "--storage", row["storage"]])
 
 
 def _length_text(value: float) -> str:
@@ -231,7 +239,10 @@ def _images_text(row: Row) -> str:
     beyond = f" Images leave out the normals that it does not hold, up to {lost:.2g} %." if lost else ""
     if worst > INDISTINGUISHABLE_DB:
         return f"Images of {scenes}{effects} show no difference: the worst has {decibels(worst)}.{beyond}"
-    return f"Of images of {scenes}{effects} the worst is {scene} at power {power}: {decibels(worst)}.{beyond}"
+    where = f"{scene} at power {power}" if power else scene
+    if scenes == where:
+        return f"The image of {scenes}{effects} has {decibels(worst)}.{beyond}"
+    return f"Of images of {scenes}{effects} the worst is {where}: {decibels(worst)}.{beyond}"
 
 
 def _mixing_text(row: Row) -> str:

@@ -55,7 +55,7 @@ class PickOptions(Reading, SourceOptions):
         str | None,
         Option("--normals", f"Normal sets or files, {Names}. Default: those of --domain.", files=True, in_run=True),
     ] = None
-    scene: Scenes = "gloss,room"
+    scene: Scenes = "studio,room"
     power: Annotated[
         str, Option("--power", "Specular powers that the scenes are rendered with, comma-separated.", in_run=True)
     ] = "47,1024"
@@ -151,8 +151,9 @@ COLUMNS = (
     Column("worst_normal", "The normal that came back farthest off: x, y and z.", Role.RAW, shown=False),
     Column(
         "image_db_*",
-        "PSNR of the displayed image of that scene at that specular power, against 32-bit normals, over covered "
-        "pixels whose normals the encoding is made for. Of codes with a place; with --aim image of all that qualify.",
+        "PSNR of the displayed image of that scene, at that specular power if its materials have one, against 32-bit "
+        "normals, over covered pixels whose normals the encoding is made for. Of codes with a place; with --aim image "
+        "of all that qualify.",
         unit="dB",
         better="more",
         drops=6,
@@ -247,7 +248,7 @@ TABLE = Table(
     help="Which code to take for each storage, at what price, and what to take instead.\n\n"
     "Codes that do not meet the constraints are left out, with the reason. Of the others a code may cost twice as much "
     "if it is --worth decibels better. The exit status is 1 where no code meets the constraints.",
-    example="normalbench pick --storage rg8 --most-instructions 40 --scene gloss --power 256",
+    example="normalbench pick --storage rg8 --most-instructions 40 --scene room --power 256",
     options=PickOptions,
     outputs=PickOutputs,
     columns=COLUMNS,

@@ -51,7 +51,7 @@ class RenderOptions(SourceOptions):
     ] = None
     light_buffer: LightBuffers = "rgba32f"
     light_targets: LightTargets = "2"
-    scene: Scenes = "gloss"
+    scene: Scenes = "studio"
     power: Powers = None
     effects: Effects = None
     shadow: Shadow = "on"

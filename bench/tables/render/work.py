@@ -22,7 +22,7 @@ from ...ground.options.effect_names import effects_named, lacking, name_of, pipe
 from ...ground.options.light_names import light_buffers_named
 from ...ground.options.scene_names import powers_named, scene_makers_named
 from ...ground.options.targets import SHADOWS, TARGETS, check_scale, checked_setting, checked_target, what_is_left
-from ...ground.output.errors import UsageError
+from ...ground.output.errors import UsageError, tell
 from ...ground.output.writing import check_folder, without
 from ...measures.metrics.images import require_flip
 from ...subjects.codecs.layout_names import layouts_named
@@ -98,7 +98,9 @@ def cases(options: RenderOptions, device: Device) -> list[Case]:
             asked = [_as_engines_keep(plan) for plan in plans] if scene.is_metal_rough else plans
             for plan in suited(device, pipeline, asked, complaints, scene.is_metal_rough):
                 case = Case(pipeline, plan, maker, setting, options.frames or maker.frames, options.samples, **told)
-                made += [replace(case, power=power) for power in powers]
+                made += [replace(case, power=power) for power in ([None] if scene.is_metal_rough else powers)]
+        if scene.is_metal_rough and options.power is not None:
+            tell(f"{maker.name}: --power is not used: metal/rough materials have a roughness of their own")
     return what_is_left(made, complaints)
 
 

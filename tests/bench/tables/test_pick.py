@@ -45,7 +45,7 @@ def rows(gl, radv, tmp_path_factory):  # noqa: ARG001 # they skip where this mac
     return json.loads(output.read_text())
 
 
-SCENES_OF_IMAGES = ("gloss_47", "gloss_1024", "room_47", "room_1024")
+SCENES_OF_IMAGES = ("studio", "room_47", "room_1024")
 
 
 def loss(row: dict, aim: str) -> float:
@@ -275,11 +275,17 @@ def test_what_was_measured_is_kept_and_only_for_the_same_codes(run, monkeypatch,
     assert len(measured) == once + 4 and cache.folder().is_relative_to(tmp_path)
 
 
-@pytest.mark.parametrize("name", ["octahedral/rg8", "per_pixel_view/rg8", "octahedral_precise/rgb10a2", "xyz/rgb10a2"])
-def test_images_lit_by_emulated_codes_are_those_of_the_g_buffer(gl, name):
+@pytest.mark.parametrize(
+    "scene, name",
+    [
+        *(("gloss", name) for name in ("per_pixel_view/rg8", "octahedral_precise/rgb10a2", "xyz/rgb10a2")),
+        *(("studio", name) for name in ("octahedral/rg8", "hemi_octahedral/rg8")),
+    ],
+)
+def test_images_lit_by_emulated_codes_are_those_of_the_g_buffer(gl, scene, name):
     """Against the code in a target, encoded and decoded in shaders: to 0.02 dB, at a specular power of 1024."""
     (codec,) = codecs_named(*name.split("/"), "nearest")
-    maker = SCENES["gloss"]
+    maker = SCENES[scene]
     question = (NORMAL_SETS["sphere"](64, 0), (maker,), Setting(lights=8), (1024.0,), {"beside": False})
     case, drawing = measure.Case(codec, *question), measure.Pictures(gl)
     right, relit, drawn = (
@@ -291,7 +297,7 @@ def test_images_lit_by_emulated_codes_are_those_of_the_g_buffer(gl, name):
         )
     )
     found, expected = (psnr_db(squared_error(displayed(image), displayed(right))[0]) for image in (relit, drawn))
-    assert found == pytest.approx(expected, abs=0.02) and 25 < expected < 80
+    assert found == pytest.approx(expected, abs=0.02) and 20 < expected < 80
 
 
 def test_a_run_measures_the_codes_that_the_default_answer_names():

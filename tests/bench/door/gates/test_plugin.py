@@ -210,7 +210,7 @@ def test_an_image_may_be_held_to_limits(inside):
     )
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(
-        ["E*hybrid fp32 octahedral rgba8 nearest rgba32f 2 gloss *: psnr_db is *, not at least 90"]
+        ["E*hybrid fp32 octahedral rgba8 nearest rgba32f 2 studio *: psnr_db is *, not at least 90"]
     )
     result.stdout.fnmatch_lines(["E*worst normal: (*) comes back as (*), 0.* degrees off"])
 
