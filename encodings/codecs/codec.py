@@ -10,6 +10,7 @@ from functools import reduce
 
 import numpy as np
 
+from ..storages.dither import Dither
 from ..storages.rounding import numbers_around, store_number
 from ..storages.storage import BITS_32, LARGEST, Storage, of_unit
 from ..vec import Vec3, dot, jnp, select
@@ -89,6 +90,23 @@ class Codec:
         numbers = [value for value in self.encoding.constants.values() if isinstance(value, float)]
         is_large = self.encoding.has_tables or max(numbers, default=0.0) > LARGEST[16]
         return "it counts in numbers too large" if is_large else ""
+
+    @property
+    def undithered(self) -> str | None:
+        """Why no noise is added to its numbers before they are rounded; None where it can be."""
+        encoding = self.encoding
+        if encoding.is_packed or (encoding.levels and all(encoding.levels)):
+            return "its code is chosen among whole numbers, as an index is, and noise would choose another one"
+        if encoding.is_precise or self.rounding != "nearest":
+            return "noise is for numbers that are rounded to the nearest"
+        if self.storage.kind == "float":
+            return f"{self.storage.title} is of floats, whose steps are not even"
+        return None
+
+    def dither(self, frame: int) -> Dither:
+        """The noise of a whole step for its numbers; of moving noise that of a frame, else of frame 0."""
+        numbers = range(self.encoding.components)
+        return Dither(tuple(0.0 if self.encoding.levels_of(i) else self.storage.step(i) for i in numbers), frame)
 
     @property
     def fits(self) -> bool:

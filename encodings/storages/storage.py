@@ -89,6 +89,10 @@ class Storage:
             return self.scale(channel) * (1 + (not self.is_biased)) + 1
         return 2 ** (MANTISSA[self.bits[channel]] + 1 - self.is_biased)
 
+    def step(self, channel: int) -> float:
+        """How far apart the numbers in [-1, 1] are that a fixed-point channel tells apart."""
+        return 2.0 / (self.levels(channel) - 1)
+
     def count(self, channel: int) -> int:
         """How many numbers in [-1, 1] a channel tells apart, however spread."""
         if self.kind != "float":

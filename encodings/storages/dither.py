@@ -1,0 +1,43 @@
+"""Noise that is added to a code before a fixed-point format rounds it: a whole step from end to end, so that the mean
+of what is stored is the code itself. Each number of a code has its own part of a tile of blue noise.
+
+Moving noise is the tile from another pixel on in each frame. The pixels are spread over the tile by the golden ratio of
+two dimensions: M. Roberts, The Unreasonable Effectiveness of Quasirandom Sequences, 2018.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .blue_noise import SIZE, blue_noise
+
+# The numbers of a code that noise is added to, at most; and the golden ratio of two dimensions, x^3 = x + 1.
+NUMBERS, RATIO = 3, 1.3247179572447460
+
+
+@dataclass(frozen=True)
+class Dither:
+    """Noise of one frame.
+
+    Attributes:
+        steps: how far apart the values of each number are that a storage has; 0 for a number that is left as it is.
+        frame: which frame of moving noise; 0 for all frames of still noise.
+    """
+
+    steps: tuple[float, ...]
+    frame: int = 0
+
+    @property
+    def added(self) -> np.ndarray:
+        """What is added to the numbers of a code, by pixel, float32 of shape (SIZE, SIZE, 4); it repeats."""
+        noise = np.zeros((SIZE, SIZE, 4), np.float32)
+        for number, step in enumerate(self.steps):
+            noise[..., number] = (_tile_from(self.frame * NUMBERS + number) - 0.5) * step
+        return noise
+
+
+def _tile_from(place: int) -> np.ndarray:
+    """The tile from a pixel on, the first one for place 0."""
+    return np.roll(blue_noise(), [-int(SIZE * (place / RATIO**axis % 1.0)) for axis in (1, 2)], axis=(0, 1))

@@ -1,0 +1,98 @@
+"""Noise before rounding: the tile is blue noise, the noise a step wide, and the mean of what is stored the code."""
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.blue_noise import SIZE, blue_noise
+from normalbench.encodings.storages.dither import NUMBERS
+from normalbench.encodings.storages.storage import STORAGES
+from normalbench.encodings.vec import Vec2
+
+FIXED = [name for name, storage in STORAGES.items() if storage.kind != "float"]
+CODEC = Codec(ENCODINGS["octahedral"], STORAGES["rg8"])
+
+
+def low_share(tile: np.ndarray) -> float:
+    """Energy at frequencies below a tenth of a pixel's, of that of white noise."""
+    energy = abs(np.fft.fft2(tile - tile.mean())) ** 2 / tile.size / tile.var()
+    frequency = np.hypot(*np.meshgrid(np.fft.fftfreq(SIZE), np.fft.fftfreq(SIZE)))
+    return float(energy[(frequency > 0) & (frequency < 0.1)].mean())
+
+
+def test_every_number_is_in_the_tile_once():
+    ranks = np.sort(blue_noise().ravel()) * SIZE**2 - 0.5
+    assert np.allclose(ranks, np.arange(SIZE**2), atol=1e-9)
+
+
+def test_the_tile_has_little_energy_at_low_frequencies():
+    """Its own numbers in another order have a thousand times as much."""
+    found = low_share(blue_noise())
+    white = low_share(np.random.default_rng(0).permutation(blue_noise().ravel()).reshape(SIZE, SIZE))
+    assert found < 1e-3, found
+    assert 0.5 < white < 2, white
+
+
+@pytest.mark.parametrize("name", FIXED)
+def test_noise_is_a_step_wide(name):
+    """A step is what lies between two numbers that a channel tells apart."""
+    codec = Codec(ENCODINGS["octahedral"], STORAGES[name])
+    added = codec.dither(0).added.astype(np.float64)
+    for number in range(2):
+        step = float(np.diff(codec.numbers(number)).min())
+        ends = added[..., number].min(), added[..., number].max()
+        assert ends == pytest.approx((-step / 2, step / 2), rel=1 / SIZE**2 + 1e-6), f"{ends} of a step of {step}"
+        assert abs(added[..., number].mean()) < 1e-6 * step
+    assert not added[..., 2:].any()
+
+
+def test_numbers_and_frames_have_noise_of_their_own():
+    """No part of the tile comes twice, and none is like another."""
+    parts = [Codec(ENCODINGS["xyz"], STORAGES["rgb10a2"]).dither(frame).added[..., :NUMBERS] for frame in range(8)]
+    several = np.concatenate([part.reshape(-1, NUMBERS) for part in parts], axis=1).T
+    alike = np.corrcoef(several) - np.eye(len(several))
+    assert abs(alike).max() < 0.1, abs(alike).max()
+
+
+def test_the_mean_of_moving_noise_nears_the_code():
+    """Without noise, and with still noise, more frames change nothing."""
+    codes = np.random.default_rng(1).uniform(-0.95, 0.95, (2, SIZE, SIZE)).astype(np.float32)
+    step = STORAGES["rg8"].step(0)
+
+    def off(frames: range) -> float:
+        """The error of the mean, root mean square, in steps."""
+        noise = (np.moveaxis(CODEC.dither(frame).added[..., :2], -1, 0) for frame in frames)
+        stored = [np.array(CODEC.store(Vec2(*map(jnp.asarray, codes + one)))) for one in noise]
+        return float(np.sqrt(np.mean((np.mean(stored, axis=0) - codes) ** 2)) / step)
+
+    # A number that is rounded up for a share p of frames is off by sqrt(p (1 - p)): a step / sqrt(6) over all p.
+    errors = {count: off(range(count)) for count in (1, 8, 64)}
+    assert errors[1] == pytest.approx(6**-0.5, rel=0.03), errors
+    assert errors[8] < 0.4 * errors[1] and errors[64] < 0.15 * errors[1], errors
+    assert off(range(1)) == pytest.approx(errors[1])
+
+
+@pytest.mark.parametrize(
+    "encoding, storage, rounding, said",
+    [
+        ("spherical_fibonacci", "rg8", "nearest", "an index"),
+        ("optimised_rings", "rg8", "nearest", "an index"),
+        ("best_fit_searched", "rgba8", "nearest", "an index"),
+        ("octahedral", "rg16f", "nearest", "floats"),
+        ("octahedral", "rg8", "truncate", "rounded to the nearest"),
+        ("octahedral_precise", "rg8", "nearest", "rounded to the nearest"),
+    ],
+)
+def test_what_is_not_dithered_says_why(encoding, storage, rounding, said):
+    reason = Codec(ENCODINGS[encoding], STORAGES[storage], rounding).undithered
+    assert reason and said in reason and "\n" not in reason
+
+
+def test_a_number_of_few_values_is_left_as_it_is():
+    """Of a cube's code the third number is one of six faces."""
+    codec = Codec(ENCODINGS["cube"], STORAGES["rgb8_10_10_3"])
+    added = codec.dither(0).added
+    assert codec.undithered is None and CODEC.undithered is None
+    assert added[..., :2].any(axis=(0, 1)).all() and not added[..., 2].any()
