@@ -60,6 +60,7 @@ class Frame:
             self.tables: dict[str, Any] = {
                 **{name: device.owned(self.stack, device.upload(table)) for name, table in tables},
                 **self._material_tables(),
+                **self._dither_tables(),
             }
         except BaseException:
             self.stack.close()
@@ -147,6 +148,7 @@ class Frame:
             "LIGHT_TARGETS": plan.light_targets,
             **light_defines(plan.light_buffer),
             "SHADOWS": int(plan.shadows),
+            "DITHERED": int(plan.dither is not None),
         }
 
     def _material_defines(self) -> dict[str, object]:
@@ -169,6 +171,10 @@ class Frame:
             return {"dfg": sums}
         fine, coarse = device.lasting(around, lambda: _levels_uploaded(device, kept_prefiltered(around)))
         return {"dfg": sums, "environment_fine": fine, "environment_coarse": coarse}
+
+    def _dither_tables(self) -> dict[str, Any]:
+        noise = self.plan.dither
+        return {"dither": self.device.owned(self.stack, self.device.upload(noise.added))} if noise else {}
 
     def program(self, vertex: str | Path, fragment: str | Path, **defines: object) -> Program:
         """A compiled pair of shaders that knows the frame's layout. Raises ShaderError."""

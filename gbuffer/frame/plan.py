@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ...encodings.codecs.light_codec import LightCodec
+from ...encodings.storages.dither import Dither
 from ..layouts.layout import Layout
 
 # In 32-bit floats (Filament's clamp for them): what lights make of less is narrower than pixels tell.
@@ -37,6 +38,7 @@ class Plan:
     apart: bool = False
     antialiased: bool = True
     least_roughness: float = LEAST_ROUGHNESS
+    dither: Dither | None = None
 
     @property
     def surface_scale(self) -> float:
