@@ -57,6 +57,15 @@ def fifteen_times(lines: list[Line]) -> None:
     assert all(line[5] is None or line[5] > 15 * line[1] for line in lines)
 
 
+def noise_helps(lines: list[Line]) -> None:
+    """By a quarter at least, and more in the mean of frames; without it more frames move nothing."""
+    for storage in ("rg8", "rgb10a2"):
+        found = {(dither, frames): figures for name, dither, frames, *figures in lines if name == storage}
+        assert found["none", 8] == pytest.approx(found["none", 1], abs=0.011)
+        for none, one, mean in zip(found["none", 1], found["moving", 1], found["moving", 8], strict=True):
+            assert mean <= one <= 0.75 * none
+
+
 def tangent_space_means(lines: list[Line]) -> None:
     """The means on bumps in BC5, which docs/maps.md names."""
     (line,) = [line for line in lines if line[0] == "bc5"]
@@ -317,6 +326,22 @@ ALL = (
         needs=("gl",),
         takes=lambda row: row["threshold"] is not None,
         lines="rg8,rgb10a2,rgb8_12_12,rg16",
+    ),
+    Table(
+        marker="normalbench roughness dither",
+        rows=("roughness --storage rg8,rgb10a2 --object panel20,panel4 --environment studio --dither moving",),
+        columns=(
+            key("storage", "storage"),
+            key("noise", "dither", str),
+            key("frames", "frames", str),
+            Column("acceptable from", "roughness", {"threshold": 0.1, "decides": True}, "{:.2f}".format, abs=0.011),
+            Column("invisible from", "roughness", {"threshold": 0.05, "decides": True}, "{:.2f}".format, abs=0.011),
+        ),
+        needs=("gl",),
+        takes=lambda row: row["threshold"] is not None,
+        lines="rg8 none 1,rg8 none 8,rg8 moving 1,rg8 moving 8,"
+        "rgb10a2 none 1,rgb10a2 none 8,rgb10a2 moving 1,rgb10a2 moving 8",
+        holds=noise_helps,
     ),
     Table(
         marker="normalbench effects",

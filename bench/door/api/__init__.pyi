@@ -244,6 +244,8 @@ def roughness(
     environment: Names = ...,
     threshold: Names = ...,
     size: Names = ...,
+    dither: Names = ...,
+    frames: Names | None = ...,
     define: Names | None = ...,
     prelude: Names | None = ...,
     include: Names | None = ...,
@@ -263,6 +265,8 @@ def roughness(
         environment: studio, strips, lamp, sky, or .hdr and .exr files; comma-separated.
         threshold: FLIP's 99th percentile that a code may have, comma-separated.
         size: WIDTHxHEIGHT of the image.
+        dither: Noise before rounding, besides none: still, moving; comma-separated, or all.
+        frames: Frames whose mean a picture is, comma-separated. Default: 1; with --dither 1,8.
         define: Shader files: macros, NAME or NAME=VALUE.
         prelude: Shader files: files that are put in front.
         include: Shader files: where includes lie: FOLDER, or NAME=FOLDER of NAME/file.

@@ -8,6 +8,7 @@ from ....reports.charts.chart import MUTED, Axis, Chart, Kind, Mark, Names, Scal
 from ....reports.page.codec_key import CodecKey
 from ..charts import having
 from ..table import Row
+from .frames import NONE
 
 # What FLIP cannot be below, so that it has a place on an axis of logarithms.
 LEAST = 1e-4
@@ -29,7 +30,7 @@ def roughness_chart(rows: Sequence[Row], thresholds: Sequence[float]) -> Chart:
     """
     worst: dict[tuple[str, float], Row] = {}
     for row in rows:
-        at = CodecKey.of(row).label, row["roughness"]
+        at = _called(row), row["roughness"]
         if at not in worst or row["flip_p99"] > worst[at]["flip_p99"]:
             worst[at] = row
     points = tuple(
@@ -39,7 +40,7 @@ def roughness_chart(rows: Sequence[Row], thresholds: Sequence[float]) -> Chart:
     )
     ends = (min(point["x"] for point in points), max(point["x"] for point in points))
     lines = tuple({"line": f"{threshold:g}", "x": x, "y": threshold} for threshold in thresholds for x in ends)
-    codecs = tuple(dict.fromkeys(CodecKey.of(row).label for row in rows))
+    codecs = tuple(dict.fromkeys(map(_called, rows)))
     tips = (("codec", "codec"), ("x", "roughness"), ("y", "FLIP, 99th percentile"), ("what", "worst on"))
     return Chart(
         name="roughness",
@@ -60,3 +61,9 @@ def roughness_chart(rows: Sequence[Row], thresholds: Sequence[float]) -> Chart:
             Mark(kind=Kind.ENDS, by=("codec",), colour="codec", text="codec"),
         ),
     )
+
+
+def _called(row: Row) -> str:
+    """The code, and how it was drawn where that is not the usual."""
+    noise = "" if row["dither"] == NONE else f", {row['dither']} noise"
+    return CodecKey.of(row).label + noise + ("" if row["frames"] == 1 else f", {row['frames']} frames")

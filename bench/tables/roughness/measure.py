@@ -2,29 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
 
-from ....encodings.catalogue import LIGHT_BUFFERS
 from ....encodings.codecs.codec import Codec
 from ....gbuffer.display import Display, measured_exposure
 from ....gbuffer.environment.environment import Environment
-from ....gbuffer.frame.plan import Plan
-from ....gbuffer.frame.resources import GBUFFER
 from ....gbuffer.gl.device import Device, FormatError
 from ....gbuffer.gl.shader import ShaderError
-from ....gbuffer.layouts.layout import Layout
-from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.layouts.words import LayoutError
-from ....gbuffer.pipelines import PIPELINES
-from ....gbuffer.render import Rendering, rendering
 from ...measures.metrics.images import flip
 from ...measures.metrics.totals import psnr_db
-from .objects import METAL, shown
+from .frames import NONE, Frames, Seen
+from .objects import shown
 from .table import TABLE
 
 ROUGHNESSES = (
@@ -34,9 +29,7 @@ ROUGHNESSES = (
 # Where FLIP is measured, which takes longer than the picture; and how exact the least roughness is.
 WITH_FLIP = (0.0, 0.1, 0.2, 0.3, 0.5, 1.0)
 STEP = 0.01
-PIPELINE, TONE_MAPPING, PERCENTILE = "deferred", "aces", 99.0
-# The pass that reads the G-buffer: there is no light but what lies around.
-SHADES = "screen"
+TONE_MAPPING, PERCENTILE = "aces", 99.0
 # The roughness at which an object's exposure is measured.
 EXPOSED_AT = 0.3
 UNMEASURABLE = (ShaderError, FormatError, LayoutError)
@@ -45,23 +38,18 @@ Row = dict[str, Any]
 
 @dataclass(frozen=True)
 class Case:
-    """An object under an environment, and the codes whose reflections are looked at."""
+    """An object under an environment, the codes whose reflections are looked at, and how."""
 
     codecs: tuple[Codec, ...]
     object: str
     environment: Environment
     thresholds: tuple[float, ...]
     size: tuple[int, int]
+    seen: tuple[Seen, ...] = (Seen(),)
 
     @property
     def name(self) -> str:
         return f"{self.object} in {self.environment.name}"
-
-
-def layout_of(codec: Codec) -> Layout:
-    """All else in floats; the normal in world space, as engines keep it, where the code is made for that."""
-    space = "world" if codec.encoding.domain == "sphere" else "view"
-    return replace(LAYOUTS["fp32"], space=space).with_codec(codec)
 
 
 class Pictures:
@@ -70,48 +58,41 @@ class Pictures:
     def __init__(self, device: Device, stack: ExitStack, case: Case):
         self._device, self._stack, self._case = device, stack, case
         self.what = shown(case.object, case.environment)
-        self._exact, self._right = self.opened(LAYOUTS["fp32"]), dict[float, np.ndarray]()
-        self.covered = self._exact.gbuffer()[0][..., 2] != 0
-        self.display = Display(measured_exposure(self._exact.image()[self.covered]), TONE_MAPPING)
+        self._exact, self._right = dict[int, Frames](), dict[tuple[int, float], np.ndarray]()
+        exact = self.exact(1)
+        self.display = Display(measured_exposure(exact.light(EXPOSED_AT)[exact.covered]), TONE_MAPPING)
 
-    def opened(self, layout: Layout) -> Rendering:
-        """The object by a layout, drawn once and kept open with the stack. Raises what UNMEASURABLE lists."""
-        plan = Plan(self._case.size, 1, layout, LIGHT_BUFFERS["rgba32f"], 1, False, 1.0, antialiased=False)
-        scene = self.what.scene(EXPOSED_AT)
-        made = self._stack.enter_context(rendering(self._device, PIPELINES[PIPELINE], scene, plan))
-        made.draw()
-        return made
+    def opened(self, stack: ExitStack, codec: Codec | None, seen: Seen) -> Frames:
+        """The object by a code, or by exact normals, kept open with a stack. Raises what UNMEASURABLE lists."""
+        return Frames(self._device, stack, self.what, self._case.size, codec, seen)
 
-    def image(self, made: Rendering, roughness: float) -> np.ndarray:
+    def exact(self, frames: int) -> Frames:
+        """The object by exact normals in so many frames, kept open."""
+        if frames not in self._exact:
+            self._exact[frames] = self.opened(self._stack, None, Seen(frames=frames))
+        return self._exact[frames]
+
+    def image(self, made: Frames, roughness: float) -> np.ndarray:
         """A picture in [0, 1], float32 of shape (height, width, 3); black around the object."""
-        _draw_again(made, roughness)
-        return np.where(self.covered[..., None], self.display.image(made.image()), 0.0).astype(np.float32)
+        return self.display.image(made.light(roughness)).astype(np.float32)
 
-    def right(self, roughness: float) -> np.ndarray:
+    def right(self, frames: int, roughness: float) -> np.ndarray:
         """The picture by exact normals."""
-        if roughness not in self._right:
-            self._right[roughness] = self.image(self._exact, roughness)
-        return self._right[roughness]
+        if (frames, roughness) not in self._right:
+            self._right[frames, roughness] = self.image(self.exact(frames), roughness)
+        return self._right[frames, roughness]
 
-    def figures(self, made: Rendering, roughness: float, with_flip: bool) -> Row:
+    def figures(self, made: Frames, roughness: float, with_flip: bool) -> Row:
         """What a row says of one picture."""
-        image, exact = self.image(made, roughness), self.right(roughness)
-        pixels, right = (one[self.covered].astype(np.float64) for one in (image, exact))
+        image, exact = self.image(made, roughness), self.right(len(made.made), roughness)
+        pixels, right = (one[made.covered].astype(np.float64) for one in (image, exact))
         bytes_off = np.abs(np.round(255 * pixels) - np.round(255 * right)).max(axis=-1)
         found: Row = {"roughness": roughness, "psnr_db": psnr_db(float(np.mean((pixels - right) ** 2)))}
         found |= {"off_percent": 100 * float(np.mean(bytes_off > 1)), "largest": float(bytes_off.max())}
         if with_flip:
-            apart = flip(image, exact)[self.covered]
+            apart = flip(image, exact)[made.covered]
             found |= {"flip": float(apart.mean()), "flip_p99": float(np.percentile(apart, PERCENTILE))}
         return found
-
-
-def _draw_again(made: Rendering, roughness: float) -> None:
-    """The picture of another roughness, in a fifth of the time: of the G-buffer one target changes, to a constant."""
-    number = next(w.target for w in made.frame.plan.layout.words if w.component == "power")
-    # Reflectance head on, and the roughness, which a metal/rough surface has in place of a power.
-    made.frame.framebuffer([made.frame.textures(GBUFFER)[number]]).clear(*METAL, roughness)
-    made.passes[SHADES]()
 
 
 def measure(device: Device, case: Case) -> list[Row]:
@@ -122,19 +103,28 @@ def measure(device: Device, case: Case) -> list[Row]:
         about |= {"exposure": pictures.display.exposure, "size": "x".join(map(str, case.size))}
         about |= {"environment_size": ", ".join((size_of(case.environment), *case.environment.changes))}
         empty = TABLE.empty() | about | {"device": device.renderer}
-        return [empty | row for codec in case.codecs for row in _rows_of(pictures, codec, case.thresholds)]
+        looked = [(codec, seen) for codec in case.codecs for seen in case.seen]
+        return [empty | row for codec, seen in looked for row in _rows_of(pictures, codec, seen, case.thresholds)]
 
 
-def _rows_of(pictures: Pictures, codec: Codec, thresholds: Sequence[float]) -> list[Row]:
+def _rows_of(pictures: Pictures, codec: Codec, seen: Seen, thresholds: Sequence[float]) -> list[Row]:
     said: Row = {"encoding": codec.encoding.name, "storage": codec.storage.name, "rounding": codec.rounding}
-    said["bits"] = codec.bits
-    try:
-        made = pictures.opened(layout_of(codec))
-    except UNMEASURABLE as error:
-        return [said | {"skipped": str(error)}]
-    singles = [pictures.figures(made, roughness, roughness in WITH_FLIP) for roughness in ROUGHNESSES]
-    crossings = [_crossing(pictures, made, singles, threshold) for threshold in thresholds]
-    return [said | row for row in (*crossings, *singles)]
+    said |= {"dither": seen.dither, "frames": seen.frames, "bits": codec.bits}
+    if seen.dither != NONE and codec.undithered:
+        return [said | {"skipped": f"{codec.name} is not dithered: {codec.undithered}"}]
+    with ExitStack() as stack:
+        try:
+            made = pictures.opened(stack, codec, seen)
+        except UNMEASURABLE as error:
+            return [said | {"skipped": str(error)}]
+        return [said | row for row in _curve(pictures, made, thresholds)]
+
+
+def _curve(pictures: Pictures, made: Frames, thresholds: Sequence[float]) -> list[Row]:
+    """A row for each threshold, then one for each roughness; no picture's FLIP is measured twice."""
+    with_flip = cache(lambda roughness: pictures.figures(made, roughness, True))
+    singles = [with_flip(r) if r in WITH_FLIP else pictures.figures(made, r, False) for r in ROUGHNESSES]
+    return [*(_crossing(with_flip, singles, threshold) for threshold in thresholds), *singles]
 
 
 def size_of(environment: Environment) -> str:
@@ -143,7 +133,7 @@ def size_of(environment: Environment) -> str:
     return f"{width}x{height}"
 
 
-def _crossing(pictures: Pictures, made: Rendering, rows: Sequence[Row], threshold: float) -> Row:
+def _crossing(with_flip: Callable[[float], Row], rows: Sequence[Row], threshold: float) -> Row:
     """The picture at the least roughness from which on a code keeps a threshold; at 1, without one, where none does.
 
     Between two roughnesses with FLIP it is taken to cross once.
@@ -154,9 +144,9 @@ def _crossing(pictures: Pictures, made: Rendering, rows: Sequence[Row], threshol
     steps = [round(low / STEP), round(high / STEP)]
     while steps[1] - steps[0] > 1:
         middle = sum(steps) // 2
-        is_kept = pictures.figures(made, round(middle * STEP, 2), True)["flip_p99"] <= threshold
+        is_kept = with_flip(round(middle * STEP, 2))["flip_p99"] <= threshold
         steps[1 if is_kept else 0] = middle
-    found = pictures.figures(made, round(steps[1] * STEP, 2), True) | {"threshold": threshold}
+    found = with_flip(round(steps[1] * STEP, 2)) | {"threshold": threshold}
     return found if low < 1 else found | {"roughness": None}
 
 
@@ -170,11 +160,12 @@ def in_order(rows: Sequence[Row]) -> list[Row]:
 
 
 def _place(row: Row) -> tuple[Any, ...]:
-    return -row["threshold"], row["bits"], row["encoding"], row["storage"], -_least(row)
+    about = (row[name] for name in ("bits", "encoding", "storage", "rounding", "dither", "frames"))
+    return -row["threshold"], *about, -_least(row)
 
 
 def _code(row: Row) -> tuple[Any, ...]:
-    return row["encoding"], row["storage"], row["rounding"], row["threshold"]
+    return tuple(row[name] for name in ("encoding", "storage", "rounding", "dither", "frames", "threshold"))
 
 
 def _least(row: Row) -> float:

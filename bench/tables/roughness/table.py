@@ -28,6 +28,13 @@ class RoughnessOptions(SourceOptions):
         str, Option("--threshold", "FLIP's 99th percentile that a code may have, comma-separated.")
     ] = "0.1,0.05"
     size: Size = "256x256"
+    dither: Annotated[
+        str, Option("--dither", "Noise before rounding, besides none: still, moving; comma-separated, or all.")
+    ] = "none"
+    frames: Annotated[
+        str | None,
+        Option("--frames", "Frames whose mean a picture is, comma-separated. Default: 1; with --dither 1,8."),
+    ] = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,6 +48,19 @@ COLUMNS = (
     shared.ENCODING,
     shared.STORAGE,
     Column("rounding", "How the storage rounds.", KEY, drops=5),
+    Column(
+        "dither",
+        "Noise of a whole step that is added to a code before it is rounded: none; still, the same in each frame; "
+        "moving, another one in each.",
+        KEY,
+        drops=5,
+    ),
+    Column(
+        "frames",
+        "How many frames a picture is the mean of, each seen from its own place within a pixel; 1: from the middle.",
+        KEY,
+        drops=5,
+    ),
     Column(
         "threshold",
         "In a row of a least roughness: FLIP's 99th percentile that is kept from there on. Empty in the rows of single "

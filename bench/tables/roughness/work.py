@@ -16,9 +16,14 @@ from ...subjects.codecs.names import codecs_named, fitting
 from ...subjects.environments.environment_names import environment_named
 from ..table import Measured, Row, Sheet, Step, Work, each
 from .charts import charts
+from .frames import DITHERS, NONE, Seen
 from .measure import Case, answers, in_order, measure
 from .objects import OBJECTS
 from .table import RoughnessOptions, RoughnessOutputs
+
+# Frames that temporal antialiasing keeps, more or less; and the most that are held.
+TEMPORAL, MOST_FRAMES = 8, 64
+CODE, USUAL = ("encoding", "storage", "rounding"), {"dither": NONE, "frames": 1}
 
 
 def _steps(options: RoughnessOptions, _: RoughnessOutputs) -> list[Step]:
@@ -26,13 +31,23 @@ def _steps(options: RoughnessOptions, _: RoughnessOutputs) -> list[Step]:
     require_jax()
     device = require_device()
     require_flip("roughness")
-    size, _samples = checked_target(options.size, 1, 1, device)
+    seen = _seen(options)
+    # The frames of a code and those of exact normals are held at once.
+    size, _samples = checked_target(options.size, 1, 2 * max(one.frames for one in seen), device)
     thresholds = tuple(checked_numbers("--threshold", options.threshold, float, 0.001, 1.0))
     objects = tuple(choose("object", options.object, {name: name for name in OBJECTS}))
     around = _environments(options.environment)
     codecs, _left_out = fitting(codecs_named(options.encoding, options.storage, options.rounding))
-    made = [Case(tuple(codecs), name, one, thresholds, size) for one in around for name in objects]
+    made = [Case(tuple(codecs), name, one, thresholds, size, seen) for one in around for name in objects]
     return [Step(_key(case), case, case.name) for case in made]
+
+
+def _seen(options: RoughnessOptions) -> tuple[Seen, ...]:
+    """Without noise always; one frame, and what temporal antialiasing sees, unless others are asked for."""
+    dithers = dict.fromkeys((NONE, *choose("dither", options.dither, {name: name for name in DITHERS})))
+    usual = "1" if tuple(dithers) == (NONE,) else f"1,{TEMPORAL}"
+    frames = checked_numbers("--frames", options.frames or usual, int, 1, MOST_FRAMES)
+    return tuple(Seen(dither, count) for dither in dithers for count in frames)
 
 
 def _environments(words: str) -> tuple[Environment, ...]:
@@ -48,32 +63,28 @@ def _environments(words: str) -> tuple[Environment, ...]:
 
 def _key(case: Case) -> Row:
     key: Row = {"codecs": [codec.name for codec in case.codecs], "object": case.object, "size": list(case.size)}
+    key |= {"seen": [[one.dither, one.frames] for one in case.seen]}
     return key | {"environment": key_of(case.environment.radiance), "thresholds": list(case.thresholds)}
 
 
 def _shown(done: Measured) -> Iterator[Sheet]:
     yield from _summary(done.rows)
-    names = (
-        "encoding",
-        "storage",
-        "rounding",
-        "object",
-        "environment",
-        "roughness",
-        "psnr_db",
-        "flip_p99",
-        "off_percent",
-    )
+    names = (*_said(done.rows), "object", "environment", "roughness", "psnr_db", "flip_p99", "off_percent")
     kept = [row for row in done.rows if row["threshold"] is None and row["flip_p99"] is not None]
     if kept:
         yield Sheet("each picture in which FLIP was measured", [{name: row[name] for name in names} for row in kept])
+
+
+def _said(rows: Sequence[Row]) -> tuple[str, ...]:
+    """The columns that name a code, and how it was drawn where that is not the usual."""
+    return *CODE, *(name for name, usual in USUAL.items() if any(row[name] != usual for row in rows))
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     """From which roughness on each code keeps each threshold."""
     lines: dict[tuple[object, ...], Row] = {}
     for row in answers(rows):
-        about = {name: row[name] for name in ("encoding", "storage", "rounding", "bits")}
+        about = {name: row[name] for name in (*_said(rows), "bits")}
         line = lines.setdefault(tuple(about.values()), about)
         at = f"{row['threshold']:g}"
         line[f"from, at {at}"] = "none" if row["roughness"] is None else f"{row['roughness']:.2f}"

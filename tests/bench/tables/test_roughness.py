@@ -2,17 +2,20 @@
 
 import json
 from contextlib import ExitStack
+from dataclasses import replace
+from itertools import pairwise, product
 
 import numpy as np
 import pytest
 
-from normalbench.bench.tables.roughness.measure import Case, Pictures, in_order, layout_of
+from normalbench.bench.tables.roughness.frames import MOVING, NONE, STILL, Seen, draw_again, halton, moved
+from normalbench.bench.tables.roughness.measure import Case, Pictures, in_order
 from normalbench.bench.tables.roughness.objects import OBJECTS, busiest
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
+from normalbench.encodings.vec import from_array
 from normalbench.gbuffer.environment.environment import Environment, directions
-from normalbench.gbuffer.layouts.presets import LAYOUTS
 
 pytestmark = pytest.mark.usefixtures("gl")
 CODEC = Codec(ENCODINGS["octahedral"], STORAGES["rg8"])
@@ -25,20 +28,107 @@ def half_lit() -> Environment:
     return Environment("half lit", light.astype(np.float32))
 
 
-@pytest.mark.parametrize("layout", [LAYOUTS["fp32"], layout_of(CODEC)], ids=["exact", "octahedral rg8"])
+@pytest.mark.parametrize("codec", [None, CODEC], ids=["exact", "octahedral rg8"])
 @pytest.mark.parametrize("name", OBJECTS)
-def test_pictures_that_are_drawn_again_are_those_of_whole_frames(gl, name, layout):
+def test_pictures_that_are_drawn_again_are_those_of_whole_frames(gl, name, codec):
     """One target is overwritten in place of all passes: every pixel is the same to the bit."""
     case = Case((CODEC,), name, half_lit(), (0.1,), (64, 64))
     with ExitStack() as stack:
         pictures = Pictures(gl, stack, case)
-        made = pictures.opened(layout)
+        made = pictures.opened(stack, codec, Seen())
         for roughness in (0.0, 0.37, 1.0):
             again = pictures.image(made, roughness)
-            made.draw(pictures.what.scene(roughness))
-            whole = np.where(pictures.covered[..., None], pictures.display.image(made.image()), 0).astype(np.float32)
+            made.made[0].draw(pictures.what.scene(roughness))
+            whole = pictures.display.image(made.made[0].image())
+            whole = np.where(made.covered[..., None], whole, 0).astype(np.float32)
             assert np.array_equal(again, whole), f"{np.abs(again - whole).max()} at roughness {roughness}"
-        assert pictures.covered.mean() > (0.75 if name == "sphere" else 0.98), f"{pictures.covered.mean()} is covered"
+        assert made.covered.mean() > (0.75 if name == "sphere" else 0.98), f"{made.covered.mean()} is covered"
+
+
+def test_a_picture_of_several_frames_is_their_mean(gl):
+    """Each is seen from its own place, and has its own noise; the mean is of light, before it is displayed."""
+    case = Case((CODEC,), "sphere", half_lit(), (0.1,), (48, 48))
+    with ExitStack() as stack:
+        pictures = Pictures(gl, stack, case)
+        made = pictures.opened(stack, CODEC, Seen(MOVING, 3))
+        frames = []
+        for one in made.made:
+            draw_again(one, 0.3)
+            frames.append(np.where((one.gbuffer()[0][..., 2] != 0)[..., None], one.image(), 0.0))
+        assert np.allclose(made.light(0.3), np.mean(frames, axis=0), atol=1e-6)
+        apart = [np.abs(a - b).max() for a, b in pairwise(frames)]
+        assert min(apart) > 0.01, apart
+
+
+def test_a_picture_moves_by_as_many_pixels_as_its_view(gl):
+    """Two to the right and one up, but for the border: what was there before is there again."""
+    case = Case((CODEC,), "panel20", half_lit(), (0.1,), (64, 64))
+    with ExitStack() as stack:
+        pictures = Pictures(gl, stack, case)
+        what, light = pictures.what, pictures.exact(1).light(0.3)
+        there = replace(what, view=moved(what.view, case.size, 2.0, 1.0)).scene(0.3)
+        one = pictures.opened(stack, None, Seen()).made[0]
+        one.draw(there)
+        # Row 0 is on top: through points above its own middles a row sees what the row before it saw.
+        expected, found = light[4:-5, 6:-4], one.image()[5:-4, 4:-6]
+        assert np.abs(found - expected).max() < 2e-4 * expected.max(), np.abs(found - expected).max()
+        unmoved = np.abs(light[5:-4, 4:-6] - expected).max()
+        assert unmoved > 2e-3 * expected.max(), unmoved
+
+
+def test_the_points_within_a_pixel_are_haltons():
+    assert [halton(index, 2) for index in range(1, 5)] == [1 / 2, 1 / 4, 3 / 4, 1 / 8]
+    assert [halton(index, 3) for index in range(1, 5)] == pytest.approx([1 / 3, 2 / 3, 1 / 9, 4 / 9])
+
+
+@pytest.mark.parametrize(
+    "encoding, storage",
+    [("octahedral", "rg8"), ("octahedral", "rg8_snorm"), ("octahedral", "rgb8_12_12"), ("cube", "rgb8_10_10_3")],
+)
+def test_the_shaders_noise_is_that_of_the_emulation(gl, encoding, storage):
+    """Exact normals, encoded, moved by the same noise and stored by JAX, are what the G-buffer gives back."""
+    codec = Codec(ENCODINGS[encoding], STORAGES[storage])
+    case = Case((codec,), "panel20", half_lit(), (0.1,), (80, 80))
+    with ExitStack() as stack:
+        pictures = Pictures(gl, stack, case)
+        axes = pictures.what.view.matrix()[:3, :3]
+        exact = from_array(pictures.exact(1).made[0].gbuffer()[1][..., :3] @ axes)
+        code = codec.encoding.encode(exact, exact)
+        for seen, frame in ((Seen(), None), (Seen(STILL), 0)):
+            noise = np.zeros((80, 80, 4), np.float32)
+            if frame is not None:
+                # GL's rows begin at the bottom; the tile repeats after 64 pixels.
+                noise = np.pad(codec.dither(frame).added, ((0, 16), (0, 16), (0, 0)), mode="wrap")[::-1]
+            stored = codec.store(type(code)(*(c + noise[..., i] for i, c in enumerate(code))))
+            expected = np.stack([np.asarray(c) for c in codec.encoding.decode(stored, exact)], axis=-1) @ axes.T
+            found = pictures.opened(stack, codec, seen).made[0].gbuffer()[1][..., :3]
+            # Near a tie the two languages may round apart: a step of 8 bits is 0.008.
+            is_same = np.abs(found - expected).max(axis=-1) < 1e-5
+            assert is_same.mean() > 0.995, f"{1 - is_same.mean()} of pixels differ with {seen}"
+
+
+def test_noise_lowers_what_is_seen_of_steps(gl):
+    """On a panel, by FLIP: one frame, and more so the mean of eight. Without noise eight frames change little."""
+    case = Case((CODEC,), "panel4", half_lit(), (0.1,), (64, 64))
+    with ExitStack() as stack:
+        pictures = Pictures(gl, stack, case)
+        opened = {one: pictures.opened(stack, CODEC, Seen(*one)) for one in product((NONE, MOVING), (1, 8))}
+        worst = {one: pictures.figures(made, 0.3, True)["flip_p99"] for one, made in opened.items()}
+    assert worst[MOVING, 8] < 0.6 * worst[MOVING, 1] and worst[MOVING, 1] < 0.6 * worst[NONE, 1], worst
+    assert worst[NONE, 8] == pytest.approx(worst[NONE, 1], rel=0.1), worst
+
+
+def test_an_index_is_not_dithered_and_says_so_in_a_line(run):
+    """Its rows without noise are measured."""
+    status, out, err = run(
+        "roughness", "--object", "panel4", *SMALL, "--encoding", "spherical_fibonacci", "--dither", "still",
+        "--threshold", "0.1", "--frames", "1,2", "--format", "json",
+    )  # fmt: skip
+    rows = json.loads(out)
+    assert status == 0, err
+    assert len(err.splitlines()) == 1 and "spherical_fibonacci/rg8 is not dithered" in err and "an index" in err, err
+    skipped = [(row["dither"], row["frames"]) for row in rows if row["skipped"]]
+    assert skipped == [("still", 1), ("still", 2)] and len(rows) == 2 + 2 * 25
 
 
 def test_objects_are_turned_to_where_an_environment_is_busiest():
@@ -71,6 +161,7 @@ def test_the_least_roughness_keeps_its_threshold_and_a_step_less_does_not(run):
 def test_the_object_and_environment_that_need_most_decide():
     """Of each code and threshold one; a row where no roughness is enough needs more than all others."""
     keys = {"encoding": "octahedral", "rounding": "nearest", "bits": 16, "object": "sphere", "environment": "sky"}
+    keys |= {"dither": "none", "frames": 1}
     rows = [
         keys | {"storage": storage, "threshold": threshold, "roughness": roughness}
         for storage, threshold, roughness in (
@@ -91,6 +182,9 @@ def test_the_object_and_environment_that_need_most_decide():
         (["--environment", "missing.hdr"], "missing.hdr"),
         (["--threshold", "0"], "--threshold 0"),
         (["--size", "0x0"], "--size"),
+        (["--dither", "blue"], "unknown dither 'blue'; known: all, none, still, moving"),
+        (["--frames", "0"], "--frames 0"),
+        (["--frames", "8,65"], "--frames 8,65"),
     ],
 )
 def test_bad_input_is_one_line(run, arguments, said):

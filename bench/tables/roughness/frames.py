@@ -1,0 +1,118 @@
+"""What an object shows by a layout: one frame, or the mean of several, each seen from its own place within a pixel."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ....encodings.catalogue import LIGHT_BUFFERS
+from ....encodings.codecs.codec import Codec
+from ....gbuffer.frame.plan import Plan
+from ....gbuffer.frame.resources import GBUFFER
+from ....gbuffer.gl.device import Device
+from ....gbuffer.layouts.layout import Layout
+from ....gbuffer.layouts.presets import LAYOUTS
+from ....gbuffer.pipelines import PIPELINES
+from ....gbuffer.render import Rendering, rendering
+from ....gbuffer.scenes.scene import View
+from .objects import METAL, Shown
+
+PIPELINE = "deferred"
+# The pass that reads the G-buffer: there is no light but what lies around.
+SHADES = "screen"
+# The noise that is added to a code before it is rounded: none; one for all frames; one for each.
+NONE, STILL, MOVING = DITHERS = ("none", "still", "moving")
+
+
+@dataclass(frozen=True)
+class Seen:
+    """How often an object is drawn for a picture, and what noise is added to the code of its normals.
+
+    Attributes:
+        dither: one of DITHERS.
+        frames: how many are drawn; the picture is their mean.
+    """
+
+    dither: str = NONE
+    frames: int = 1
+
+
+class Frames:
+    """Frames of an object by one layout, drawn once and kept open with the stack.
+
+    Attributes:
+        made: one for each frame.
+        covered: where at least one of them has the object, (height, width).
+
+    Raises:
+        ShaderError, FormatError, LayoutError: they cannot be drawn.
+    """
+
+    def __init__(
+        self, device: Device, stack: ExitStack, what: Shown, size: tuple[int, int], codec: Codec | None, seen: Seen
+    ):
+        layout = layout_of(codec) if codec else LAYOUTS["fp32"]
+        plan = Plan(size, 1, layout, LIGHT_BUFFERS["rgba32f"], 1, False, 1.0, antialiased=False)
+        self.made: list[Rendering] = []
+        for frame, view in enumerate(views(what.view, size, seen.frames)):
+            if codec and seen.dither != NONE:
+                plan = replace(plan, dither=codec.dither(frame if seen.dither == MOVING else 0))
+            # Each picture has a roughness of its own.
+            scene = replace(what, view=view).scene(0.0)
+            self.made.append(stack.enter_context(rendering(device, PIPELINES[PIPELINE], scene, plan)))
+            self.made[-1].draw()
+        self._covered = [one.gbuffer()[0][..., 2] != 0 for one in self.made]
+        self.covered = np.any(self._covered, axis=0)
+
+    def light(self, roughness: float) -> np.ndarray:
+        """The mean of all frames at a roughness: linear light, float64 of shape (height, width, 3), black around."""
+        total = np.zeros((*self.covered.shape, 3))
+        for one, covered in zip(self.made, self._covered, strict=True):
+            draw_again(one, roughness)
+            total += np.where(covered[..., None], one.image(), 0.0)
+        return total / len(self.made)
+
+
+def layout_of(codec: Codec) -> Layout:
+    """All else in floats; the normal in world space, as engines keep it, where the code is made for that."""
+    space = "world" if codec.encoding.domain == "sphere" else "view"
+    return replace(LAYOUTS["fp32"], space=space).with_codec(codec)
+
+
+def draw_again(made: Rendering, roughness: float) -> None:
+    """The picture of another roughness, in a fifth of the time: of the G-buffer one target changes, to a constant."""
+    number = next(w.target for w in made.frame.plan.layout.words if w.component == "power")
+    # Reflectance head on, and the roughness, which a metal/rough surface has in place of a power.
+    made.frame.framebuffer([made.frame.textures(GBUFFER)[number]]).clear(*METAL, roughness)
+    made.passes[SHADES]()
+
+
+def views(view: View, size: tuple[int, int], frames: int) -> Sequence[View]:
+    """From where each frame is seen: through the middle of pixels, or of several through points spread over them.
+
+    The points are those of J. Halton, On the efficiency of certain quasi-random sequences, 1960, in the bases 2 and 3.
+    """
+    if frames == 1:
+        return [view]
+    places = [(halton(frame, 2) - 0.5, halton(frame, 3) - 0.5) for frame in range(1, frames + 1)]
+    return [moved(view, size, x, y) for x, y in places]
+
+
+def moved(view: View, size: tuple[int, int], x: float, y: float) -> View:
+    """The view of a picture of this size through points x pixels to the right and y pixels above the middles of its
+    own. The camera turns, which at so small an angle is the same to 1e-4 of a pixel."""
+    pixel = float(np.degrees(np.arctan(2 * np.tan(np.radians(view.fov) / 2) / size[1])))
+    return view.turned("yaw", -x * pixel).turned("pitch", y * pixel)
+
+
+def halton(index: int, base: int) -> float:
+    """Element `index`, from 1 on, of van der Corput's sequence: its digits mirrored at the point, in (0, 1)."""
+    found, share = 0.0, 1.0
+    while index:
+        index, digit = divmod(index, base)
+        share /= base
+        found += digit * share
+    return found
