@@ -18,7 +18,7 @@ from ....gbuffer.gl.shader import ShaderError
 from ....gbuffer.layouts.words import LayoutError
 from ...measures.metrics.images import flip
 from ...measures.metrics.totals import psnr_db
-from .frames import NONE, Frames, Seen
+from .frames import DITHERS, NONE, Frames, Seen
 from .objects import shown
 from .table import TABLE
 
@@ -160,8 +160,8 @@ def in_order(rows: Sequence[Row]) -> list[Row]:
 
 
 def _place(row: Row) -> tuple[Any, ...]:
-    about = (row[name] for name in ("bits", "encoding", "storage", "rounding", "dither", "frames"))
-    return -row["threshold"], *about, -_least(row)
+    code = (row[name] for name in ("bits", "encoding", "storage", "rounding"))
+    return -row["threshold"], *code, DITHERS.index(row["dither"]), row["frames"], -_least(row)
 
 
 def _code(row: Row) -> tuple[Any, ...]:

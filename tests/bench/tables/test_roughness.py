@@ -172,6 +172,15 @@ def test_the_object_and_environment_that_need_most_decide():
     assert sorted(decides, key=str) == [("rg16", 0.1, 0.0), ("rg8", 0.05, None), ("rg8", 0.1, 0.3)]
 
 
+def test_a_code_without_noise_comes_before_it_with_noise():
+    """And one frame before several; each decides for itself."""
+    row = {"encoding": "octahedral", "storage": "rg8", "rounding": "nearest", "bits": 16, "threshold": 0.1}
+    ways = [(MOVING, 1), (NONE, 8), (STILL, 1), (NONE, 1)]
+    rows = in_order([row | {"dither": dither, "frames": frames, "roughness": 0.2} for dither, frames in ways])
+    assert [(r["dither"], r["frames"]) for r in rows] == [(NONE, 1), (NONE, 8), (STILL, 1), (MOVING, 1)]
+    assert all(r["decides"] for r in rows)
+
+
 @pytest.mark.parametrize(
     "arguments, said",
     [
