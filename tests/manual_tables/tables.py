@@ -76,10 +76,11 @@ def tangent_space_means(lines: list[Line]) -> None:
 
 
 class Texels(Column):
-    """How many texels differ. Ties depend on the device a little, and not all languages are run again."""
+    """How many texels differ. Ties depend on the device and the processor a little, and not all languages are run
+    again."""
 
     def is_near(self, shown: float, measured: float) -> bool:
-        return (shown == 0) == (measured == 0) and measured <= 2 + 1.2 * shown
+        return measured <= 2 + 1.2 * shown
 
 
 ALL = (
@@ -427,8 +428,8 @@ ALL = (
             ),
             Column("highlight", "highlight_px", AT_A_QUARTER, writing.or_zero, abs=6e-4, rel=0.05),
             Column("peak", "peak_percent", AT_A_QUARTER, writing.percent, abs=6e-3, rel=0.05),
-            # JSON has no infinity.
-            Column("reprojected", "reprojected_psnr_db", AT_A_QUARTER, "{:.1f}".format, "infinite", rel=0.01),
+            # JSON has no infinity. Above 100 dB it is rounding of float32, which processors do otherwise.
+            Column("reprojected", "reprojected_psnr_db", AT_A_QUARTER, "{:.1f}".format, "infinite", rel=0.05),
         ),
         needs=("gl",),
         lines="octahedral view yaw,octahedral view roll,spheremap view yaw,spheremap view roll,per_pixel_view view yaw,"
