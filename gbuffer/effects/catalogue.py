@@ -25,6 +25,7 @@ NAMES: tuple[str, ...] = (
     "lpv",
     "subsurface",
     "water",
+    "ssr",
 )
 
 EFFECTS: Mapping[str, Effect] = MappingProxyType(

@@ -71,6 +71,8 @@ class Effect:
         settings: what can be chosen, by name.
         lacks: why a scene has nothing for it, such as "nothing here is skin"; None where it has.
         scene: the scene that shows it, where nobody asks for another.
+        hits: where rays of its pixels meet something: x and y in pixels, and in w 1, or 0 where one meets nothing; None
+            of an effect without rays.
     """
 
     name: str
@@ -81,6 +83,7 @@ class Effect:
     settings: Mapping[str, Number | Choice] = field(default_factory=dict)
     lacks: Callable[[Scene], str | None] = lambda _: None
     scene: str = "room"
+    hits: Resource | None = None
 
 
 @dataclass(frozen=True)

@@ -9,15 +9,20 @@ uniform sampler2D visibility;
 uniform sampler2D indirect;
 #endif
 
-// What a surface at a pixel of the G-buffer shows without lights.
-vec3 unlit_at(Surface s, ivec2 pixel) {
-    float arriving = 1.0;
-    vec3 added = vec3(0.0);
+// The share of light from afar that arrives at a pixel of the G-buffer.
+float arriving_at(ivec2 pixel) {
 #ifdef HAS_VISIBILITY
-    arriving = texelFetch(visibility, pixel, 0).x;
+    return texelFetch(visibility, pixel, 0).x;
+#else
+    return 1.0;
 #endif
+}
+
+// What a surface there shows without lights.
+vec3 unlit_at(Surface s, ivec2 pixel) {
+    vec3 added = vec3(0.0);
 #ifdef HAS_INDIRECT
     added = texelFetch(indirect, pixel, 0).rgb;
 #endif
-    return unlit(s, arriving, added);
+    return unlit(s, arriving_at(pixel), added);
 }

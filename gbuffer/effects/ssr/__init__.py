@@ -1,0 +1,44 @@
+"""Screen-space reflections: mirrored rays that meet what the screen shows, glossy by roughness.
+
+A ray marches over the depths of the screen (McGuire and Mara, Efficient GPU Screen-Space Ray Tracing, 2014), and the
+step in which it goes behind a surface is halved. What it brings takes the place of what the surface mirrors of the
+environment. What lies outside the picture or behind something is not there for it.
+"""
+
+from __future__ import annotations
+
+from ...frame.contract import Pass
+from ...scenes.scene import Scene
+from ..effect import Choice, Effect, Number
+from ..noise import SEED
+from .passes import HITS, REFLECTED, passes
+
+AROUND = ("environment", "nothing")
+SETTINGS = {
+    "steps": Number(64, 1, 4096, "Steps of a ray at most; none is shorter than a pixel."),
+    "rays": Number(2, 1, 1024, "Rays of a pixel, by the lobe of its roughness; a mirror needs one."),
+    "thickness": Number(0.1, 0.001, 100.0, "Metres behind a surface in which a ray is stopped."),
+    "misses": Choice(AROUND, "What a ray that meets nothing on the screen brings."),
+    "seed": SEED,
+}
+
+
+def _passes(steps: int, rays: int, thickness: float, misses: str, seed: int) -> tuple[Pass, ...]:
+    return passes(steps, rays, thickness, misses == AROUND[0], seed)
+
+
+def _lack_text(scene: Scene) -> str | None:
+    return None if scene.is_metal_rough else "its materials have no roughness; studio and glTF files have one"
+
+
+EFFECT = Effect(
+    "ssr",
+    "screen-space reflections, glossy by roughness",
+    "McGuire and Mara 2014; Dupuy and Benyoub 2023",
+    REFLECTED,
+    _passes,
+    SETTINGS,
+    _lack_text,
+    scene="studio",
+    hits=HITS,
+)
