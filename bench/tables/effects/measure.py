@@ -70,6 +70,8 @@ class Drawn:
         own: the effect's own image, (height, width, channels).
         normals: what the G-buffer gives back, (height, width, 3).
         covered: where the effect is; bool of shape (height, width).
+        hits: where the first ray of each pixel meets something, (height, width, 4), as `Effect.hits` says; None of an
+            effect without rays.
         display: how the image is shown.
         times: milliseconds by pass, and the clock.
     """
@@ -78,6 +80,7 @@ class Drawn:
     own: np.ndarray
     normals: np.ndarray
     covered: np.ndarray
+    hits: np.ndarray | None
     display: Display
     times: Row
 
@@ -135,10 +138,11 @@ class Bench:
         with rendering(self._device, case.pipeline, scene, case.plan) as made:
             made.draw()
             position, direction, *_ = made.gbuffer()
-            own = made.read(case.effect.effect.result)[0]
+            effect = case.effect.effect
+            own, hits = made.read(effect.result)[0], made.read(effect.hits)[0] if effect.hits else None
             covered = drawn_at(own, position[..., 2] != 0)
             times = self._time_columns(case, made) if self._repeats else {}
-            return Drawn(made.image(), own[..., :3], direction[..., :3], covered, Display(0.0), times)
+            return Drawn(made.image(), own[..., :3], direction[..., :3], covered, hits, Display(0.0), times)
 
     def _time_columns(self, case: Case, made: Rendering) -> Row:
         timings, clock = made.timings(self._repeats)
@@ -183,10 +187,26 @@ def _distance_columns(drawn: Drawn, exact: Drawn) -> Row:
     mse, angles = float(np.mean(apart**2)), _angles(drawn, exact)
     row: Row = {"effect_rms": mse**0.5, "effect_mean": float(np.mean(apart)), "effect_max": float(np.max(apart))}
     row["effect_psnr_db"] = psnr_db(mse)
+    if drawn.hits is not None and exact.hits is not None:
+        row["moved_percent"] = moved_percent(drawn.hits, exact.hits)
     row |= {"normal_mean_deg": float(np.mean(angles)), "normal_max_deg": float(np.max(angles))}
     if row["normal_mean_deg"] > 0:
         row["slope"] = row["effect_mean"] / row["normal_mean_deg"]
     return row | {"exact": mse == 0}
+
+
+def moved_percent(hits: np.ndarray, exact: np.ndarray) -> float | None:
+    """Of the pixels whose ray meets something in the exact frame, the share whose ray meets nothing, or something more
+    than a pixel away; None where no ray meets anything.
+
+    Args:
+        hits, exact: (height, width, 4), as `Effect.hits` says.
+    """
+    there = exact[..., 3] > 0
+    if not np.any(there):
+        return None
+    is_near = np.linalg.norm(hits[..., :2] - exact[..., :2], axis=-1) <= 1
+    return 100 * float(np.mean(~(is_near & (hits[..., 3] > 0))[there]))
 
 
 def _angles(drawn: Drawn, exact: Drawn) -> np.ndarray:

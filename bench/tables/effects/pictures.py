@@ -18,6 +18,8 @@ from .measure import Drawn, in_order
 
 REFERENCE = "reference"
 OWN, IMAGE = "effect", "final"
+# The share of an effect's own image that is shown no brighter than white.
+WHITE = 0.99
 
 
 def _file_stem(row: Row, of_reference: bool = False) -> str:
@@ -29,7 +31,8 @@ def _file_stem(row: Row, of_reference: bool = False) -> str:
 
 def write(folder: Path, row: Row, drawn: Drawn, exact: Drawn) -> None:
     """The effect's own image and the final one, and those of the reference, which rows of one effect share."""
-    peak = float(np.max(exact.own)) or 1.0
+    # What few pixels mirror of a lamp would leave all others black.
+    peak = float(np.quantile(exact.own, WHITE)) or float(np.max(exact.own)) or 1.0
     for stem, frame in ((_file_stem(row), drawn), (f"{_file_stem(row, True)}-{REFERENCE}", exact)):
         for name, shown in ((OWN, own_picture(frame.own, peak)), (IMAGE, pictures.picture(frame.shown))):
             with whole_file(folder / f"{stem}-{name}.png") as partial_file:
@@ -37,7 +40,7 @@ def write(folder: Path, row: Row, drawn: Drawn, exact: Drawn) -> None:
 
 
 def own_picture(own: np.ndarray, peak: float) -> np.ndarray:
-    """An effect's own image as people look at it, uint8 of shape (height, width, 3): sRGB, the peak white.
+    """An effect's own image as people look at it, uint8 of shape (height, width, 3): sRGB, from the peak on white.
 
     Visibility is shown as it is.
     """

@@ -89,13 +89,22 @@ COLUMNS = (
     Column(
         "effect_psnr_db",
         "The effect's own image against that from a G-buffer in 32-bit floats, with the same noise and the same taps; "
-        "where the effect is (skin, water, else every surface). Peak 1: full visibility, or the display's white.",
+        "where the effect is (skin, water, pixels whose rays meet something, else every surface). Peak 1: full "
+        "visibility, or the display's white.",
         unit="dB",
         better="more",
     ),
     Column("effect_rms", "Root of the mean squared difference of the two, in the effect's own unit.", better="less"),
     Column("effect_mean", "Their mean absolute difference.", better="less", drops=6),
     Column("effect_max", "Their largest difference, of any channel.", better="less"),
+    Column(
+        "moved_percent",
+        "Of the pixels whose ray meets something where the G-buffer is exact, the share whose ray meets nothing, or "
+        "something more than a pixel away. Each pixel's first ray counts. Empty for effects without rays.",
+        unit="%",
+        better="less",
+        drops=5,
+    ),
     Column(
         "method_rms",
         "How far the effect is from ray casting where the G-buffer is exact, RMS. A code whose effect_rms is far below "
@@ -144,8 +153,8 @@ TABLE = Table(
     section=Section(
         title="What reads the G-buffer",
         short="Effects",
-        intro="Ambient occlusion, indirect light, skin and water read normals and depths as lights do. How much of a "
-        "code's error arrives in them?",
+        intro="Ambient occlusion, indirect light, reflections, skin and water read normals and depths as lights do. "
+        "How much of a code's error arrives in them?",
         method="Each effect's own image from a G-buffer with one code against the same effect from a G-buffer in "
         "32-bit floats, with the same noise and the same taps. The method's own error is measured against rays "
         "through the scene, where there is an oracle.",

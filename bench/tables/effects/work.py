@@ -157,7 +157,7 @@ def _warnings(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
-    names = ("encoding", "storage", "depth", "effect_psnr_db", "effect_rms", "method_rms", "psnr_db")
+    names = ("encoding", "storage", "depth", "effect_psnr_db", "effect_rms", "moved_percent", "method_rms", "psnr_db")
     for effect, pipeline, scene in dict.fromkeys(group_of(row) for row in rows):
         part = [row for row in rows if group_of(row) == (effect, pipeline, scene)]
         shown = [{name: row[name] for name in names} for row in part if row["effect_rms"] is not None]

@@ -14,7 +14,7 @@ from normalbench.bench.measures.metrics.totals import psnr_db
 from normalbench.bench.run.measuring import Nothing, asked, measured
 from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.bench.tables.effects import work as effects_work
-from normalbench.bench.tables.effects.measure import Bench, drawn_at, in_order
+from normalbench.bench.tables.effects.measure import Bench, drawn_at, in_order, moved_percent
 from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.catalogue import LIGHT_BUFFERS
 from normalbench.gbuffer.frame.plan import Plan
@@ -28,6 +28,7 @@ pytestmark = pytest.mark.usefixtures("gl")
 EFFECT = "lpv:iterations=2:cascades=1:cells=8:texels=32"
 SIZE = (96, 72)
 SMALL = ("--effect", EFFECT, "--size", "96x72", "--lights", "2")
+JSON = ("--format", "json")
 QUICK = ("effects", *SMALL, "--format", "json")
 
 
@@ -87,6 +88,27 @@ def test_an_exact_layout_loses_nothing_and_more_bits_lose_less(rows):
     depth = by["linear/packed16"]
     assert depth["normal_max_deg"] == 0 and 0 < depth["effect_rms"] < by["rg8"]["effect_rms"]
     assert (depth["encoding"], depth["storage"], depth["normal_bits"]) == (None, None, None)
+
+
+def test_a_hit_moved_if_it_is_lost_or_more_than_a_pixel_away():
+    """Four hits: in place, a pixel away, two pixels away, lost. A NaN is away; without hits there is no share."""
+    exact = np.array([[[5, 5, 0, 1]] * 4 + [[0, 0, 0, 0]]], np.float32)
+    hits = np.array([[[5, 5, 0, 1], [6, 5, 0, 1], [5, 7, 0, 1], [0, 0, 0, 0], [9, 9, 0, 1]]], np.float32)
+    assert moved_percent(hits, exact) == 50
+    hits[0, 0, 0] = np.nan
+    assert moved_percent(hits, exact) == 75
+    assert moved_percent(hits, 0 * exact) is None
+
+
+def test_reflections_say_how_many_hits_moved(run):
+    """Two more bits a number move fewer than half as many."""
+    words = ("effects", "--effect", "ssr:rays=1,gtao", "--size", "96x72", "--lights", "2", "--rays", "0")
+    status, out, _ = run(*words, "--encoding", "octahedral", "--storage", "rg8,rgb10a2", "--depth", "none", *JSON)
+    coarse, fine, *other = json.loads(out)
+    assert status == 0 and (coarse["scene"], coarse["storage"], fine["storage"]) == ("studio", "rg8", "rgb10a2")
+    assert 2 < coarse["moved_percent"] < 50 and 0 < fine["moved_percent"] < coarse["moved_percent"] / 2
+    assert fine["effect_rms"] < coarse["effect_rms"] and fine["psnr_db"] > coarse["psnr_db"] + 5
+    assert {row["moved_percent"] for row in other} == {None} and len(other) == 2
 
 
 def test_a_scene_is_made_once_for_all_rows_of_it(gl):
@@ -176,6 +198,18 @@ def test_an_effect_lights_the_image_of_other_tables(run):
             ("--effect", "subsurface", "--pipeline", "deferred"),
             "subsurface does not go into pipeline deferred, but into prepass, inferred, hybrid",
         ),
+        (
+            ("--effect", "ssr", "--scene", "room"),
+            "ssr on room: its materials have no roughness; studio and glTF files have one",
+        ),
+        (("--effect", "ssr:steps=0"), "effect ssr: steps=0 is not a whole number from 1 to 4096"),
+        (("--effect", "ssr:rays=some"), "effect ssr: rays=some is not a whole number from 1 to 1024"),
+        (("--effect", "ssr:misses=black"), "effect ssr: misses=black is not environment or nothing"),
+        (
+            ("--effect", "ssr", "--pipeline", "prepass"),
+            "ssr does not go into pipeline prepass, but into deferred, hybrid",
+        ),
+        (("--effect", "ssr", "--layout", "normal_depth", "--depth", "none"), "hybrid needs albedo.b"),
         (("--rays", "-1"), "--rays -1: from 0"),
         (("--repeats", "-1"), "--repeats -1: from 0"),
         (("--size", "0x5"), "WIDTHxHEIGHT"),
