@@ -108,6 +108,11 @@ def in_thousandths(rows: list[Row]) -> list[Row]:
     return [row | {name: row[name] and 1e3 * row[name] for name in ("effect_rms", "method_rms")} for row in rows]
 
 
+def exact_named(rows: list[Row]) -> list[Row]:
+    """Rows of effects that say of what is exact that it is."""
+    return [row | {name: row[name] or "exact" for name in ("storage", "depth")} for row in rows]
+
+
 def most_differing(rows: list[Row]) -> list[Row]:
     """A row for each encoding: by storage the most texels that differ in a language."""
     ran = sorted((row for row in rows if "differing" in row), key=lambda row: row["differing"])

@@ -69,6 +69,13 @@ def noise_helps(lines: list[Line]) -> None:
             assert mean <= one <= 0.75 * none
 
 
+def a_sixth_moves(lines: list[Line]) -> None:
+    """Of the hits with octahedral 8:8, with 10:10 a fiftieth, and by depths of 16 bits hardly any."""
+    moved = {(normals, depths): share for normals, depths, share, *_ in lines}
+    assert 14 < moved["rg8", "exact"] < 20 and 1.5 < moved["rgb10a2", "exact"] < 2.5
+    assert moved["exact", "linear/packed16"] < 0.2
+
+
 def tangent_space_means(lines: list[Line]) -> None:
     """The means on bumps in BC5, which docs/maps.md names."""
     (line,) = [line for line in lines if line[0] == "bc5"]
@@ -375,6 +382,23 @@ ALL = (
         gather=measuring.in_thousandths,
         lines=EFFECTS,
         holds=fifteen_times,
+    ),
+    Table(
+        marker="normalbench effects ssr",
+        rows=(
+            "effects --effect ssr --encoding octahedral --storage rg8,rgb10a2,rg16 "
+            "--depth linear/packed16,window/depth24",
+        ),
+        columns=(
+            key("normals", "storage"),
+            key("depths", "depth"),
+            Column("hits that moved", "moved_percent", form="{:.1f} %".format, rel=0.05, abs=0.1),
+            Column("RMS of the light", "effect_rms", form=writing.two_digits, rel=0.1, abs=0.01),
+            Column("image, dB", "psnr_db", form="{:.1f}".format, abs=0.5),
+        ),
+        needs=("gl",),
+        gather=measuring.exact_named,
+        holds=a_sixth_moves,
     ),
     Table(
         marker="normalbench half",
