@@ -1,5 +1,6 @@
 """Noise that is added to a code before a fixed-point format rounds it: a whole step from end to end, so that the mean
-of what is stored is the code itself. Each number of a code has its own part of a tile of blue noise.
+of what is stored is the code itself, but at the ends of a format, which clip. Each number of a code has its own part of
+a tile of blue noise.
 
 Moving noise is the tile from another pixel on in each frame. The pixels are spread over the tile by the golden ratio of
 two dimensions: M. Roberts, The Unreasonable Effectiveness of Quasirandom Sequences, 2018.

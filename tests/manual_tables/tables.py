@@ -394,7 +394,6 @@ ALL = (
             key("depths", "depth"),
             Column("hits that moved", "moved_percent", form="{:.1f} %".format, rel=0.05, abs=0.1),
             Column("RMS of the light", "effect_rms", form=writing.two_digits, rel=0.1, abs=0.01),
-            Column("image, dB", "psnr_db", form="{:.1f}".format, abs=0.5),
         ),
         needs=("gl",),
         gather=measuring.exact_named,

@@ -183,9 +183,8 @@ def _seen_sentences(row: Row) -> str:
     far = " and ".join(_length_text(100 * FAR * math.tan(math.radians(min(value, 89.0)))) for value in moved)
     said = f"A mirror's reflection moves by {degrees(moved[0])} in the mean and at most {degrees(moved[1])}: "
     said += f"{texels} texels of {MAP}, {far} cm at {FAR:g} m."
-    if is_enough(row):
-        return f"{said} That is enough."
-    return f"{said} `{_roughness_command(row)}` says on which roughness that no longer shows."
+    enough = " That is enough for such a map." if is_enough(row) else ""
+    return f"{said}{enough} `{_roughness_command(row)}` says from which roughness on no step shows."
 
 
 def _roughness_command(row: Row) -> str:
