@@ -35,7 +35,7 @@ def test_a_float_of_whole_numbers_has_the_bits_of_these(run):
 def test_render_has_an_integer_target_beside_the_layout(run):
     (row,), _ = rows(run, "render", "--encoding", FILE, "--storage", "rg8", "--size", "160x120")
     assert row["storage"] == "bits32" and row["invalid"] == 0
-    assert 47 < row["normal_psnr_db"] < 51 and row["psnr_db"] > 40
+    assert 47 < row["normal_psnr_db"] < 51 and 22 < row["psnr_db"] < 32
 
 
 def test_a_layout_has_its_own_target_for_an_integer(run, tmp_path):
