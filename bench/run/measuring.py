@@ -12,6 +12,7 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import Any, Protocol
 
+from ..ground.machine.lost import require_living_device
 from ..ground.machine.settings import settings
 from ..ground.options.option import Reading, fields_of
 from ..ground.output.errors import UsageError
@@ -76,9 +77,6 @@ class Here:
 
     def measure(self, ask: Asked, steps: Sequence[Step], tick: Tick) -> Iterator[tuple[Step, list[Row]]]:
         """As every Place. Raises MissingError where the GL device was lost: that step's rows are not given."""
-        # It imports JAX, which tables have imported by now.
-        from ..ground.machine.devices import require_living_device
-
         said = ", ".join(f"{name}={value}" for name, value in settings().items())
         for step, rows in zip(steps, ask.table.work.measure(steps, tick), strict=True):
             require_living_device()

@@ -15,6 +15,7 @@ import numpy as np
 from ...encodings.storages.rounding import store_texel
 from ...encodings.storages.storage import STORAGES, Storage
 from ...encodings.vec import jnp
+from .opened import OPENED
 from .raw import DepthBuffer, attach_slice, samples_of
 from .shader import ShaderError, Source
 
@@ -439,9 +440,6 @@ def read_pixels(texture: moderngl.Texture) -> np.ndarray:
 @cache
 def device() -> Device:
     """The process's one GL device. Raises NoDeviceError."""
-    return Device()
-
-
-def opened() -> Device | None:
-    """The device of this process, if it was opened."""
-    return device() if device.cache_info().currsize else None
+    made = Device()
+    OPENED.append(made)
+    return made

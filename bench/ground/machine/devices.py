@@ -10,7 +10,7 @@ from typing import Any
 import jax
 
 from ....gbuffer.environment.prefilter import keep_levels_by
-from ....gbuffer.gl.device import Device, NoDeviceError, device, opened
+from ....gbuffer.gl.device import Device, NoDeviceError, device
 from ..output import cache
 from ..output.errors import MissingError
 from ..output.kept_arrays import kept_arrays
@@ -73,10 +73,3 @@ def require_device() -> Device:
         raise MissingError(missing)
     keep_levels_by(kept_arrays)
     return gl
-
-
-def require_living_device() -> None:
-    """Raises MissingError where a GL device that was opened draws no longer: what it gave last is no figure."""
-    gl = opened()
-    if gl and not gl.answers:
-        raise MissingError(f"{gl.renderer} was lost by its driver: it draws no longer; run the same command again")

@@ -13,7 +13,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from ...ground.machine.devices import require_living_device
+from ...ground.machine.lost import require_living_device
 from ...ground.output.cache import folder_of_this_process
 from ...ground.output.errors import MissingError, UsageError, told
 from ...tables.registry import TABLES

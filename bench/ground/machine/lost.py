@@ -1,0 +1,13 @@
+"""Whether the GL device of this process was lost. Imports nothing heavy: a table that draws nothing opens none."""
+
+from __future__ import annotations
+
+from ....gbuffer.gl.opened import OPENED
+from ..output.errors import MissingError
+
+
+def require_living_device() -> None:
+    """Raises MissingError where a GL device that was opened answers no longer: what it gave last is no figure."""
+    for gl in OPENED:
+        if not gl.answers:
+            raise MissingError(f"{gl.renderer} was lost by its driver: it draws no longer; run the same command again")

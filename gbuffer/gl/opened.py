@@ -1,0 +1,19 @@
+"""The GL device that this process opened. Imports nothing: who asks need not open one."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+
+class Opened(Protocol):
+    """What can be asked of it."""
+
+    renderer: str
+
+    @property
+    def answers(self) -> bool:
+        """Whether it still does what it is asked."""
+        ...
+
+
+OPENED: list[Opened] = []
