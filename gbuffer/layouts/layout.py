@@ -22,8 +22,13 @@ from ...encodings.codecs.variants import MARK, settings_in, variant
 from ...encodings.storages.storage import BITS_32, FORMATS, ROUNDINGS, Storage
 from .words import FREE, LEAST_BITS, PACKINGS, SIGNED, LayoutError, Target, Word, place_of, placed, without_normal
 
-SPACES = ("view", "world")
+SPACES = VIEW, WORLD = ("view", "world")
 DEPTH_STENCIL_BYTES = 5
+
+
+def engines_space(encoding: Encoding) -> str:
+    """The space in which engines keep normals by an encoding: the world's where it is made for all directions."""
+    return WORLD if encoding.domain == "sphere" else VIEW
 
 
 @dataclass(frozen=True)

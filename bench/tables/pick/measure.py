@@ -16,7 +16,7 @@ from ....encodings.catalogue import LIGHT_BUFFERS, is_in_catalogue
 from ....encodings.codecs.codec import Codec
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device
-from ....gbuffer.layouts.layout import Layout
+from ....gbuffer.layouts.layout import Layout, engines_space
 from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.layouts.words import LayoutError
 from ....gbuffer.pipelines import PIPELINES, Pipeline
@@ -412,8 +412,8 @@ class Pictures:
     ) -> tuple[list[np.ndarray], np.ndarray, np.ndarray]:
         """The image at each power, and the positions and normals of its pixels."""
         scene, shown = maker.make(case.setting), []
-        if scene.is_metal_rough and case.codec.encoding.domain == "sphere":
-            layout = replace(layout, space="world")
+        if scene.is_metal_rough:
+            layout = replace(layout, space=engines_space(case.codec.encoding))
         plan = Plan(SIZE, 1, layout, LIGHT_BUFFERS["rgba32f"], 2, True, 1.0)
         with rendering(self._device, case.pipeline, scene, plan) as made:
             for power in case.powers_of(maker):

@@ -10,7 +10,7 @@ from ....gbuffer.display import MAX_EXPOSURE, TONE_MAPPINGS
 from ....gbuffer.environment.prefilter import key_of
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device
-from ....gbuffer.layouts.layout import Layout
+from ....gbuffer.layouts.layout import Layout, engines_space
 from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.pipelines import PIPELINES
 from ....gbuffer.scenes.catalogue import SceneMaker
@@ -107,9 +107,9 @@ def cases(options: RenderOptions, device: Device) -> list[Case]:
 def _as_engines_keep(plan: Plan) -> Plan:
     """A plan whose code alone is measured, with its normal in world space where the code is made for that."""
     layout, exact = plan.layout, LAYOUTS["fp32"]
-    if layout.name != exact.name or layout == exact or layout.encoding.domain != "sphere":
+    if layout.name != exact.name or layout == exact:
         return plan
-    return replace(plan, layout=replace(layout, space="world"))
+    return replace(plan, layout=replace(layout, space=engines_space(layout.encoding)))
 
 
 def _around(scene: Scene) -> str | None:

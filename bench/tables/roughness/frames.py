@@ -13,7 +13,7 @@ from ....encodings.codecs.codec import Codec
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.frame.resources import GBUFFER
 from ....gbuffer.gl.device import Device
-from ....gbuffer.layouts.layout import Layout
+from ....gbuffer.layouts.layout import Layout, engines_space
 from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.pipelines import PIPELINES
 from ....gbuffer.render import Rendering, rendering
@@ -78,8 +78,7 @@ class Frames:
 
 def layout_of(codec: Codec) -> Layout:
     """All else in floats; the normal in world space, as engines keep it, where the code is made for that."""
-    space = "world" if codec.encoding.domain == "sphere" else "view"
-    return replace(LAYOUTS["fp32"], space=space).with_codec(codec)
+    return replace(LAYOUTS["fp32"], space=engines_space(codec.encoding)).with_codec(codec)
 
 
 def draw_again(made: Rendering, roughness: float) -> None:
