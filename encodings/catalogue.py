@@ -11,11 +11,12 @@ from importlib import import_module
 from types import MappingProxyType
 from typing import Any
 
-from .codecs.depth_encoding import DepthEncoding
+from .codecs.curve_codec import CurveEncoding
+from .codecs.depth_codec import DepthEncoding
 from .codecs.encoding import Encoding
 from .codecs.files import CatalogueError
 from .codecs.frame_encoding import FrameEncoding
-from .codecs.kind import DEPTH, FRAME, LIGHT, MOTION, NORMAL, AnyEncoding, Kind
+from .codecs.kind import CURVE, DEPTH, FRAME, LIGHT, MOTION, NORMAL, AnyEncoding, Kind
 from .codecs.light_codec import LightCodec
 from .codecs.light_encoding import LightEncoding
 from .codecs.motion_codec import MotionEncoding
@@ -57,6 +58,9 @@ DEPTH_NAMES = ("linear", "linear_sign", "logarithmic", "window", "reversed_windo
 
 MOTION_NAMES = ("linear", "sqrt", "log")
 
+# Of roughness, metalness, reflectance, occlusion, and the channels of colours and of emission.
+CURVE_NAMES = ("linear", "squared", "square_root", "inverted", "gamma_2_2", "srgb", "fast_srgb", "log")
+
 FRAME_NAMES = ("smallest_three", "octahedral_angle", "hexadecachoral", "qtangent")
 
 
@@ -91,6 +95,7 @@ LIGHT_ENCODINGS: Mapping[str, LightEncoding] = _load(LIGHT, LIGHT_NAMES)
 DEPTH_ENCODINGS: Mapping[str, DepthEncoding] = _load(DEPTH, DEPTH_NAMES)
 FRAME_ENCODINGS: Mapping[str, FrameEncoding] = _load(FRAME, FRAME_NAMES)
 MOTION_ENCODINGS: Mapping[str, MotionEncoding] = _load(MOTION, MOTION_NAMES)
+CURVE_ENCODINGS: Mapping[str, CurveEncoding] = _load(CURVE, CURVE_NAMES)
 BY_KIND: Mapping[Kind, Mapping[str, AnyEncoding]] = MappingProxyType(
     {
         NORMAL: ENCODINGS,
@@ -98,6 +103,7 @@ BY_KIND: Mapping[Kind, Mapping[str, AnyEncoding]] = MappingProxyType(
         FRAME: FRAME_ENCODINGS,
         LIGHT: LIGHT_ENCODINGS,
         MOTION: MOTION_ENCODINGS,
+        CURVE: CURVE_ENCODINGS,
     }
 )
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..encodings.position import position_from_linear_depth
+from ..encodings.shared.position import position_from_linear_depth
 from ..encodings.vec import Vec2
 from .frame.canvas import built
 from .frame.contract import Pass, Pipeline, Run

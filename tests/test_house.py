@@ -17,6 +17,7 @@ from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.tangent_frames import sets as frame_sets
 from normalbench.encodings.catalogue import (
+    CURVE_ENCODINGS,
     DEPTH_ENCODINGS,
     DEPTH_NAMES,
     ENCODINGS,
@@ -27,7 +28,14 @@ from normalbench.encodings.catalogue import (
     NAMES,
 )
 from normalbench.encodings.storages.depth_storage import DEPTH_STORAGES
-from normalbench.encodings.storages.storage import FORMATS, FRAME_STORAGES, LIGHT_STORAGES, MOTION_STORAGES, STORAGES
+from normalbench.encodings.storages.storage import (
+    CURVE_STORAGES,
+    FORMATS,
+    FRAME_STORAGES,
+    LIGHT_STORAGES,
+    MOTION_STORAGES,
+    STORAGES,
+)
 from normalbench.gbuffer.defines.packings import PACKINGS
 from normalbench.gbuffer.effects.catalogue import EFFECTS
 from normalbench.gbuffer.environment.catalogue import ENVIRONMENTS
@@ -141,6 +149,8 @@ CATALOGUES = {
     "LIGHT_ENCODINGS": LIGHT_ENCODINGS,
     "LIGHT_STORAGES": LIGHT_STORAGES,
     "MOTION_ENCODINGS": MOTION_ENCODINGS,
+    "CURVE_ENCODINGS": CURVE_ENCODINGS,
+    "CURVE_STORAGES": CURVE_STORAGES,
     "MOTION_STORAGES": MOTION_STORAGES,
     "STORAGES": STORAGES,
     "DEPTH_STORAGES": DEPTH_STORAGES,
@@ -172,7 +182,7 @@ def test_an_encoding_of_normals_is_complete(name):
     assert not encoding.levels or len(encoding.levels) == encoding.components
 
 
-@pytest.mark.parametrize("path", [ROOT / f"encodings/{name}.glsl" for name in ("position", "rotation")])
+@pytest.mark.parametrize("path", [ROOT / f"encodings/{name}.glsl" for name in ("shared/position", "rotation")])
 def test_shared_twins_carry_the_same_formula(path):
     python = set(re.findall(r"^    # (.+)$", path.with_suffix(".py").read_text(), re.M))
     assert python == set(re.findall(r"^    // (.+)$", path.read_text(), re.M)) and python
@@ -201,7 +211,7 @@ def test_the_list_command_knows_everything_there_is():
         *LIGHT_BUFFERS,
     }
     there |= {*FRAME_ENCODINGS, *FRAME_STORAGES, *frame_sets.FRAME_SETS, *EFFECTS}
-    there |= {*MOTION_ENCODINGS, *MOTION_STORAGES}
+    there |= {*MOTION_ENCODINGS, *MOTION_STORAGES, *CURVE_ENCODINGS}
     assert listed == there | {*DEPTH_ENCODINGS, *DEPTH_STORAGES}
     assert set(listing.FRAME_SETS) == set(frame_sets.FRAME_SETS)
 
@@ -216,11 +226,11 @@ def test_rows_have_the_columns_of_the_table():
 def test_no_runner_asks_for_a_variants_name():
     """A variant's special need is a field on it."""
     depths = (*DEPTH_NAMES, *DEPTH_STORAGES, *FRAME_ENCODINGS, *FRAME_STORAGES)
-    variants = (*NAMES, *depths, *MOTION_ENCODINGS, *MOTION_STORAGES, *STORAGES, *PIPELINES, *LAYOUTS)
+    variants = (*NAMES, *depths, *MOTION_ENCODINGS, *MOTION_STORAGES, *STORAGES, *PIPELINES, *LAYOUTS, *CURVE_ENCODINGS)
     names = "|".join(map(re.escape, {*variants, *LIGHT_BUFFERS, *LIGHT_ENCODINGS, *SCENES}))
     asks = re.compile(rf"[=!]= ([\"'])({names})\1")
     for path in SOURCES:
-        if path.parts[-2] not in ("normals", "light", "depth", "frame", "motion"):
+        if path.parts[-2] not in ("normals", "light", "depth", "frame", "motion", "curve"):
             assert not (asked := asks.search(path.read_text())), f"{path.name} asks for {asked and asked[2]}"
 
 

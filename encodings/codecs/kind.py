@@ -1,4 +1,4 @@
-"""The kinds of encodings: of normals, of depth, of tangent frames, of light and of motion."""
+"""The kinds of encodings: of normals, depth, tangent frames, light and motion, and curves of what materials are."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from .depth_encoding import DepthEncoding
+from .curve_codec import CurveEncoding
+from .depth_codec import DepthEncoding
 from .encoding import Encoding
 from .frame_encoding import FrameEncoding
 from .light_encoding import LightEncoding
@@ -52,4 +53,5 @@ DEPTH = Kind("depth", "depth", DepthEncoding)
 FRAME = Kind("tangent frame", "frame", FrameEncoding)
 LIGHT = Kind("light", "light", LightEncoding)
 MOTION = Kind("motion", "motion", MotionEncoding)
-KINDS = (NORMAL, DEPTH, FRAME, LIGHT, MOTION)
+CURVE = Kind("curve", "curve", CurveEncoding)
+KINDS = (NORMAL, DEPTH, FRAME, LIGHT, MOTION, CURVE)

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ..codecs.depth_encoding import DepthEncoding
+from ..codecs.depth_codec import DepthEncoding
 from ..vec import with_sign_of
 
 

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ..codecs.depth_encoding import DepthEncoding
+from ..codecs.depth_codec import DepthEncoding
 from ..elementary import CONSTANTS, exp2_of, log2_of
 from ..vec import maximum
 

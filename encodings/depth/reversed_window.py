@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from ..codecs.depth_encoding import DepthEncoding
-from ..position import Projection
+from ..codecs.depth_codec import DepthEncoding
+from ..shared.position import Projection
 from ..vec import maximum
 
 

@@ -241,3 +241,11 @@ FORMATS: Mapping[str, Storage] = MappingProxyType(
         "srgb8_a8": SRGB8_A8,
     }
 )
+
+# What holds a number of a material, such as a roughness: one channel.
+CURVE_STORAGES: Mapping[str, Storage] = MappingProxyType(
+    {
+        name: FORMATS[name]
+        for name in ("r8", "rgba8", "rgb10a2", "r16", "rgba8_snorm", "rgba16_snorm", "r11g11b10f", "r16f", "r32f")
+    }
+)

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+from ...encodings.codecs.light_encoding import LightEncoding
 from ..codecs.codec_passes import levels_of, storage_kind
+from ..codecs.curve.curve_passes import curve_constants
+from ..gl.shader import glsl_value
 from ..layouts.layout import Layout
 from ..layouts.words import COMPONENTS, PACKINGS, SIGNED, least_carried
 
@@ -51,6 +56,38 @@ def layout_defines(layout: Layout, rounds: tuple[int, ...], is_metal_rough: bool
         "HAS_KIND": int("kind" in layout.components),
         "HAS_INSTANCE": int("instance" in layout.components),
         "WORLD_SPACE": int(layout.space == "world"),
+    }
+
+
+def curve_files(layout: Layout) -> tuple[Path, ...]:
+    """The GLSL files of a layout's curves and codes of light."""
+    return tuple(dict.fromkeys(kept.encoding.glsl for kept in layout.kept.values()))
+
+
+def curve_defines(layout: Layout) -> dict[str, object]:
+    """The macros that put `numbers`, an array, on a layout's curves and take them back, and what their files need.
+
+    Raises:
+        ShaderError: a curve's GLSL file cannot be read or lacks one of its functions.
+    """
+    found: dict[str, object] = {}
+    lines: dict[str, list[str]] = {"encode": [], "decode": []}
+    for component, kept in layout.kept.items():
+        if isinstance(kept.encoding, LightEncoding):
+            found |= kept.encoding.constants
+            continue
+        found |= curve_constants(kept.encoding)
+        place = f"numbers[{COMPONENTS.index(component)}]"
+        for way, made in lines.items():
+            made.append(f"{place} = {kept.encoding.name}_{way}_curve({place}, {glsl_value(kept.range)});")
+    codes = {k.encoding.prefix for k in layout.kept.values() if isinstance(k.encoding, LightEncoding)}
+    prefix = next(iter(codes), "")
+    return found | {
+        "TO_CURVES": " ".join(lines["encode"]),
+        "FROM_CURVES": " ".join(lines["decode"]),
+        "EMISSION_CODED": int(bool(prefix)),
+        "EMISSION_ENCODE": f"{prefix}_encode",
+        "EMISSION_DECODE": f"{prefix}_decode",
     }
 
 

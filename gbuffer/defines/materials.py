@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
-from ...encodings import chromaticity
+from ...encodings.shared import chromaticity
 from ..scenes.metal_rough import DIELECTRIC
 from ..scenes.scene import KINDS, LIGHT_KINDS
 

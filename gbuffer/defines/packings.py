@@ -12,7 +12,7 @@ from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.codec import Codec
 from ...encodings.storages.storage import STORAGES, Storage
 from ..codecs.codec_passes import storage_defines
-from ..codecs.depth_passes import depth_defines
+from ..codecs.depth.depth_passes import depth_defines
 from ..layouts.layout import Layout
 from ..layouts.words import COMPONENTS, Target
 from .kernels import Operation

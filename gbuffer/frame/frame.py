@@ -13,16 +13,17 @@ import numpy as np
 
 from ...encodings.storages.storage import ROUNDINGS, Storage
 from ..codecs.codec_passes import encoding_defines
-from ..codecs.depth_passes import depth_defines
-from ..codecs.light_passes import light_defines
+from ..codecs.depth.depth_passes import depth_defines
+from ..codecs.light.light_passes import light_defines
 from ..defines import materials
-from ..defines.layouts import layout_defines
+from ..defines.layouts import curve_defines, curve_files, layout_defines
 from ..environment.dfg import dfg_table
 from ..environment.prefilter import COARSE, FINE, Prefiltered, kept_prefiltered
 from ..gl import raw
 from ..gl.device import Device, bind
 from ..gl.handles import Buffer, Framebuffer, Program, Texture3D, VertexArray
 from ..layouts.layout import Layout
+from ..layouts.words import LayoutError
 from ..scenes.metal_rough import MAPS
 from ..scenes.scene import Scene
 from .contract import Pipeline
@@ -146,10 +147,20 @@ class Frame:
             **self._material_defines(),
             "SAMPLES": plan.surface_samples,
             "LIGHT_TARGETS": plan.light_targets,
-            **light_defines(plan.light_buffer),
+            **self._light_defines(),
             "SHADOWS": int(plan.shadows),
             "DITHERED": int(plan.dither is not None),
         }
+
+    def _light_defines(self) -> dict[str, object]:
+        """The macros of the light buffer, and of what the layout keeps on curves and as codes of light."""
+        light, kept = light_defines(self.plan.light_buffer), curve_defines(self.plan.layout)
+        if any(light[name] != kept[name] for name in light.keys() & kept.keys()):
+            buffer = self.plan.light_buffer.name
+            raise LayoutError(
+                f"layout {self.plan.layout.name}: its emission and the light buffer {buffer} have two ranges"
+            )
+        return {**light, **kept}
 
     def _material_defines(self) -> dict[str, object]:
         """The macros of metal/rough materials and of what lies around."""
@@ -179,10 +190,11 @@ class Frame:
     def program(self, vertex: str | Path, fragment: str | Path, **defines: object) -> Program:
         """A compiled pair of shaders that knows the frame's layout. Raises ShaderError."""
         plan = self.plan
-        names: Mapping[str, Path] = {
+        names: Mapping[str, Path | tuple[Path, ...]] = {
             "ENCODING": plan.layout.codec.encoding.glsl,
             "DEPTH_ENCODING": plan.layout.depth_encoding.glsl,
             "LIGHT_ENCODING": plan.light_buffer.glsl,
+            "CURVES": curve_files(plan.layout),
         }
         return self.device.shared_program(vertex, fragment, {**self._defines, **defines}, names)
 

@@ -13,7 +13,7 @@ from ...encodings.codecs.files import file_text
 ROOM = Path(__file__).resolve().parents[1]
 SUFFIXES = (".glsl", ".vert", ".frag", ".comp")
 # Of the encodings: not the pairs, which may have the name of another kind's.
-SHARED = ("*.glsl", "storages/*.glsl")
+SHARED = ("*.glsl", "shared/*.glsl", "storages/*.glsl")
 _INCLUDE = re.compile(r'\s*#include\s+(?:"(?P<file>[^"]+)"|(?P<name>\w+))\s*$')
 # "0:12(5): error" is Mesa's way to say line 12; "0(12) : error" is NVIDIA's; "stdin:12:" or "0:12:" glslang's.
 _PLACE = re.compile(r"\b0(?::(\d+)\(\d+\)|\((\d+)\))|\b(?:stdin|0):(\d+)(?=:)")
@@ -51,13 +51,13 @@ class Source:
         path: the shader: a name of `shaders`, or a path.
         defines: macros set at its head; those that nothing mentions are left out, so that what is the same program has
             the same text.
-        names: files that stand behind `#include NAME`.
+        names: the file or the files that stand behind `#include NAME`.
     """
 
     def __init__(self, path: str | Path, defines: Mapping[str, object] | None = None, names=None):
         self.place = main = _resolved_path(Path(shaders().get(str(path), path)))
-        stand_for = tuple(sorted((name, Path(target)) for name, target in (names or {}).items()))
-        is_own = all(map(_is_own, (main, *(target for _, target in stand_for))))
+        stand_for = tuple(sorted((name, _as_files(target)) for name, target in (names or {}).items()))
+        is_own = all(map(_is_own, (main, *(file for _, files in stand_for for file in files))))
         (version, *rest), body = (_expanded_of_own if is_own else _expanded)(main, stand_for)
         macros = {name: glsl_value(value) for name, value in (defines or {}).items()}
         mentioned = _words(body) | _words(" ".join(macros.values()))
@@ -81,6 +81,10 @@ class Source:
             return f"{path}:{number}"
 
         return _PLACE.sub(place, log.strip())
+
+
+def _as_files(target: str | Path | Sequence[Path]) -> tuple[Path, ...]:
+    return (Path(target),) if isinstance(target, str | Path) else tuple(map(Path, target))
 
 
 @lru_cache(maxsize=256)
@@ -115,7 +119,7 @@ def _joined_text(lines: Iterable[Line]) -> str:
     return "".join(f"{line}\n" for line, _, _ in lines)
 
 
-def _expanded(main: Path, names: Sequence[tuple[str, Path]]) -> tuple[list[Line], str]:
+def _expanded(main: Path, names: Sequence[tuple[str, tuple[Path, ...]]]) -> tuple[list[Line], str]:
     """The lines of a shader and of what it includes, each file once, and the text of all but the first line."""
     stand_for, seen = dict(names), set()
 
@@ -131,8 +135,8 @@ def _expanded(main: Path, names: Sequence[tuple[str, Path]]) -> tuple[list[Line]
         named = match["name"]
         if named and named not in stand_for:
             raise ShaderError(f"{path}:{number}: nothing is named {named}")
-        target = _resolved_path(stand_for[named]) if named else _beside(path, match["file"])
-        return [] if target in seen else expand(target)
+        targets = map(_resolved_path, stand_for[named]) if named else (_beside(path, match["file"]),)
+        return [made for target in targets if target not in seen for made in expand(target)]
 
     lines = expand(main)
     return lines, _joined_text(lines[1:])

@@ -1,9 +1,11 @@
-// Surfaces to the texels of a layout (`words.glsl`) and back.
+// Surfaces to the texels of a layout (`words.glsl`) and back. TO_CURVES and FROM_CURVES are what layouts.py makes of the
+// curves that its numbers lie on; EMISSION_CODED is 1 where EMISSION_ENCODE makes one code of all of the emission.
 #define DEPTH_RANGE eye_ray.zw
 #include "sample.glsl"
 #include "code.glsl"
 #include "words.glsl"
 #include "surface.glsl"
+#include CURVES
 #if METAL_ROUGH
 #include "metal_rough.glsl"
 #endif
@@ -39,6 +41,11 @@ void write_gbuffer(Surface s) {
     numbers[INSTANCE] = float(s.instance);
     numbers[MOTION] = s.motion.x;
     numbers[MOTION + 1] = s.motion.y;
+    TO_CURVES
+#if EMISSION_CODED
+    vec4 light = EMISSION_ENCODE(light_or_none(vec4(s.emissive, 0.0)));
+    for (int i = 0; i < 4; ++i) numbers[EMISSION + i] = light[i];
+#endif
     texels = to_texels(numbers);
 }
 #else
@@ -55,6 +62,11 @@ Surface read_gbuffer(ivec2 pixel) {
     numbers[REFLECTANCE] = DIELECTRIC;
     numbers[OCCLUSION] = 1.0;
     from_texels(texels, numbers);
+    FROM_CURVES
+#if EMISSION_CODED
+    vec4 light = EMISSION_DECODE(vec4(numbers[EMISSION], numbers[EMISSION + 1], numbers[EMISSION + 2], numbers[EMISSION + 3]));
+    for (int i = 0; i < 3; ++i) numbers[EMISSION + i] = light[i];
+#endif
     Surface s;
     float depth = HAS_DEPTH != 0 ? abs(numbers[DEPTH]) : texelFetch(linear_depth, pixel, SAMPLE).x;
     s.position = position_from_linear_depth(screen_place(pixel), depth, eye_ray.xy);

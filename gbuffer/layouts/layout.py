@@ -14,12 +14,12 @@ from typing import Any
 
 from ...encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS
 from ...encodings.codecs.codec import Codec
-from ...encodings.codecs.depth_codec import DepthCodec
-from ...encodings.codecs.depth_encoding import DepthEncoding
+from ...encodings.codecs.depth_codec import DepthCodec, DepthEncoding
 from ...encodings.codecs.encoding import Encoding
 from ...encodings.codecs.files import called, file_toml
 from ...encodings.codecs.variants import MARK, settings_in, variant
 from ...encodings.storages.storage import BITS_32, FORMATS, ROUNDINGS, Storage
+from .kept import COLOURS, LIGHT, Kept
 from .words import FREE, LEAST_BITS, PACKINGS, SIGNED, LayoutError, Target, Word, place_of, placed, without_normal
 
 SPACES = VIEW, WORLD = ("view", "world")
@@ -71,6 +71,7 @@ class Layout:
             if found.count(component) > 1:
                 raise LayoutError(f"layout {self.name}: {component} lies in two places")
         self._check_normal_words(found)
+        self._check_colours()
         if self.depth_encoding.signed != self.has_signed_depth:
             known = ", ".join(depth.name for depth in self._suitable_depths)
             said = f"{self.depth_encoding.name} does not suit {self.encoding.name}, whose depth is {known}"
@@ -87,6 +88,21 @@ class Layout:
             raise LayoutError(f"layout {self.name}: {carried} of {name} is no sign, which a quantity could carry")
         if encoding.sign_bits and "depth" not in found:
             raise LayoutError(f"layout {self.name}: {name} keeps a sign in the depth's, but the layout keeps no depth")
+
+    def _check_colours(self) -> None:
+        """Raises LayoutError where the channels of a colour are not kept alike."""
+        for colour in COLOURS:
+            found = [word for word in self.words if word.component.startswith(f"{colour}.")]
+            if len({word.kept for word in found}) > 1:
+                raise LayoutError(f"layout {self.name}: all channels of {colour} lie on one curve")
+            is_whole = bool(found and found[0].kept and found[0].kept.is_whole)
+            if is_whole != any(word.component == f"{colour}.a" for word in found) or (is_whole and len(found) < 4):
+                raise LayoutError(f"layout {self.name}: a code of light has four numbers, as in rgb9e5({LIGHT})")
+
+    @property
+    def kept(self) -> dict[str, Kept]:
+        """The curves and codes that its words lie in, by component; none of those that are kept as they are."""
+        return {word.component: word.kept for word in self.words if word.kept}
 
     @property
     def carrier(self) -> Word | None:

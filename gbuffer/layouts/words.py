@@ -4,7 +4,10 @@ A target is a format and a line of words that fill its bits in order, the most s
 (`albedo.r`) takes one whole channel and is converted as the format converts. A word with a number of bits (`depth:16`)
 is an unsigned integer laid across channels of 8 bits. `-` leaves a channel free.
 
-A quantity may carry a number of the normal's code that is 1 or -1 as its own sign: `roughness*normal.z`.
+A quantity may carry a number of the normal's code that is 1 or -1 as its own sign: `roughness*normal.z`. It may lie on
+a curve of the catalogue, over a range of its own: `squared(roughness)`, `linear:0.08(reflectance)`. A colour without a
+channel stands for all of its channels: `square_root(albedo)`. A light may be kept by a code of four numbers, which fill
+a texel: `rgb9e5(emission)`.
 """
 
 from __future__ import annotations
@@ -14,19 +17,19 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ...encodings.storages.storage import FORMATS, MANTISSA, Storage
+from .kept import COLOURS, LIGHT, WHOLE, Kept, kept_as
 
 # The order is the G-buffer shaders' (gbuffer.glsl).
 COMPONENTS = (
     *("normal.x", "normal.y", "normal.z", "depth", "albedo.r", "albedo.g", "albedo.b"),
     *("specular.r", "specular.g", "specular.b", "power", "roughness", "metalness", "reflectance", "occlusion"),
-    *("emission.r", "emission.g", "emission.b", "kind", "instance", "motion.x", "motion.y"),
+    *("emission.r", "emission.g", "emission.b", "emission.a", "kind", "instance", "motion.x", "motion.y"),
 )
 FREE = "-"
 # What engines keep and this renderer does not use: it takes its bits. There may be several.
 OTHER = "other"
 # What may carry a sign: quantities that are not negative.
 CARRIERS = ("depth", "power", "roughness")
-COLOURS = ("albedo", "specular", "emission")
 # How a number x in [0, 1] of the normal becomes one of 2^n codes: floor(x (2^n - 1 + widen) + bias). As `signed` it is
 # the integer nearest c (2^(n-1) - 1) for c in [-1, 1], as SNORM has it, plus 2^(n-1) - 1.
 SIGNED = "signed"
@@ -36,7 +39,10 @@ MAX_PACKED_BITS = 24
 LEAST_BITS = {"kind": 2, "instance": 8}
 # How far from 0 a carried sign keeps its number, in steps: NRD.hlsli has 1.5 / 512 of 10 bits.
 SIGN_STEPS = 1.5
-WORD = re.compile(r"([a-z.]+|-)(?:\*(normal\.[xyz]))?(?::(\d{1,2}))?")
+WORD = re.compile(
+    r"(?:(?P<curve>\w+)(?::(?P<range>[\d.e+-]+))?\((?P<curved>[a-z.]+)\)|(?P<name>[a-z.]+|-))"
+    r"(?:\*(?P<sign>normal\.[xyz]))?(?::(?P<bits>\d{1,2}))?"
+)
 
 
 class LayoutError(Exception):
@@ -46,13 +52,14 @@ class LayoutError(Exception):
 @dataclass(frozen=True)
 class Word:
     """One component in a target. `first` counts channels if `bits` is 0, and bits otherwise. `sign` is the number of
-    the normal's code that it carries as its sign, or empty."""
+    the normal's code that it carries as its sign, or empty; `kept` the curve or the code that it lies in, or None."""
 
     component: str
     target: int
     first: int
     bits: int
     sign: str = ""
+    kept: Kept | None = None
 
 
 @dataclass(frozen=True)
@@ -78,8 +85,8 @@ def placed(layout: str, index: int, target: Target) -> Iterator[Word]:
         LayoutError: an unknown word, or one that does not fit.
     """
     place, storage, bit = place_of(layout, index, target), target.storage, 0
-    for text in target.holds.split():
-        name, sign, bits = _word_parts(place, text)
+    for text in _spelt_out(place, target):
+        name, sign, bits, kept = _word_parts(place, text)
         if bits and name != OTHER:
             _check_packed(place, text, storage, bits)
         channel = len([end for end in _ends(storage) if end <= bit])
@@ -90,8 +97,10 @@ def placed(layout: str, index: int, target: Target) -> Iterator[Word]:
             raise LayoutError(f"{place}: {target.holds!r} takes more than its {sum(storage.bits)} bits")
         if channel < storage.curved and name.partition(".")[0] not in (*COLOURS, OTHER, FREE):
             raise LayoutError(f"{place}: {text}: the first three channels of {storage.title} hold colours")
+        if channel < storage.curved and kept:
+            raise LayoutError(f"{place}: {text}: {storage.title} keeps colours by a curve of its own")
         if name not in (FREE, OTHER):
-            yield Word(name, index, bit if bits else channel, bits, sign)
+            yield Word(name, index, bit if bits else channel, bits, sign, kept)
         bit += taken
 
 
@@ -100,17 +109,41 @@ def place_of(layout: str, index: int, target: Target) -> str:
     return f"layout {layout}, target {index} ({target.format})"
 
 
-def _word_parts(place: str, text: str) -> tuple[str, str, int]:
-    """The component of a word, the sign that it carries, and its bits."""
-    match = WORD.fullmatch(text)
-    if not match or match[1] not in (*COMPONENTS, OTHER, FREE):
+def _spelt_out(place: str, target: Target) -> Iterator[str]:
+    """The words of a target, a colour without a channel as its channels."""
+    for text in target.holds.split():
+        found = WORD.fullmatch(text)
+        name = (found["curved"] or found["name"]) if found else ""
+        if not found or name not in COLOURS:
+            yield text
+            continue
+        is_whole = found["curve"] in WHOLE and name == LIGHT
+        if is_whole and (target.holds.split()[0] != text or target.format not in WHOLE[found["curve"]].storages):
+            known = ", ".join(WHOLE[found["curve"]].storages)
+            raise LayoutError(f"{place}: {text} fills a texel, of {known}")
+        for channel in "rgba" if is_whole else "rgb":
+            yield f"{name}.{channel}".join(text.rsplit(name, 1))
+
+
+def _word_parts(place: str, text: str) -> tuple[str, str, int, Kept | None]:
+    """The component of a word, the sign that it carries, its bits, and the curve that it lies on."""
+    found = WORD.fullmatch(text)
+    name = (found["curved"] or found["name"]) if found else ""
+    if not found or name not in (*COMPONENTS, OTHER, FREE):
         known = ", ".join((*COMPONENTS, OTHER, FREE))
-        raise LayoutError(f"{place}: unknown component {text!r}; known: {known}")
-    if match[3] and not int(match[3]):
+        raise LayoutError(f"{place}: unknown component {name or text!r}; known: {known}")
+    sign, bits = found["sign"] or "", int(found["bits"] or 0)
+    if found["bits"] and not bits:
         raise LayoutError(f"{place}: {text}: a word has at least 1 bit; without a number it has a channel")
-    if match[2] and match[1] not in CARRIERS:
+    if sign and name not in CARRIERS:
         raise LayoutError(f"{place}: {text}: only {', '.join(CARRIERS)} carry a sign")
-    return match[1], match[2] or "", int(match[3] or 0)
+    try:
+        kept = kept_as(found["curve"], found["range"] or "", name.partition(".")[0]) if found["curve"] else None
+    except ValueError as error:
+        raise LayoutError(f"{place}: {text}: {error}") from error
+    if kept and kept.is_whole and bits:
+        raise LayoutError(f"{place}: {text}: the numbers of {kept.encoding.name} have channels of their own")
+    return name, sign, bits, kept
 
 
 def _check_packed(place: str, text: str, storage: Storage, bits: int) -> None:

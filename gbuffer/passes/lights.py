@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..codecs.light_passes import BLEND_OF
+from ..codecs.light.light_passes import BLEND_OF
 from ..defines.materials import CONSTANTS
 from ..frame.canvas import AGAIN, COVERED, Canvas, counted
 from ..frame.contract import Pass

@@ -12,9 +12,9 @@ from normalbench.bench.tables.depth import measure as depth
 from normalbench.encodings import elementary
 from normalbench.encodings.catalogue import DEPTH_ENCODINGS
 from normalbench.encodings.codecs.depth_codec import DepthCodec
-from normalbench.encodings.position import Camera
+from normalbench.encodings.shared.position import Camera
 from normalbench.encodings.storages.depth_storage import DEPTH_STORAGES, store_depth
-from normalbench.gbuffer.codecs import depth_passes
+from normalbench.gbuffer.codecs.depth import depth_passes
 
 SIGNED = [name for name in sorted(DEPTH_ENCODINGS) if DEPTH_ENCODINGS[name].signed]
 WINDOWS = [name for name in sorted(DEPTH_ENCODINGS) if DEPTH_ENCODINGS[name].projection]

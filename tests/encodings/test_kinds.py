@@ -10,14 +10,21 @@ import pytest
 
 from normalbench.encodings.catalogue import BY_KIND, LIGHT_BUFFERS, PRECISE
 from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.codecs.curve_codec import CurveCodec
 from normalbench.encodings.codecs.depth_codec import DepthCodec
 from normalbench.encodings.codecs.frame_codec import FrameCodec
-from normalbench.encodings.codecs.kind import DEPTH, FRAME, KINDS, LIGHT, MOTION, NORMAL
+from normalbench.encodings.codecs.kind import CURVE, DEPTH, FRAME, KINDS, LIGHT, MOTION, NORMAL
 from normalbench.encodings.codecs.light_codec import LightCodec
 from normalbench.encodings.codecs.motion_codec import MotionCodec
 from normalbench.encodings.rotation import frame_of
 from normalbench.encodings.storages.depth_storage import DEPTH_STORAGES
-from normalbench.encodings.storages.storage import FRAME_STORAGES, LIGHT_STORAGES, MOTION_STORAGES, STORAGES
+from normalbench.encodings.storages.storage import (
+    CURVE_STORAGES,
+    FRAME_STORAGES,
+    LIGHT_STORAGES,
+    MOTION_STORAGES,
+    STORAGES,
+)
 from normalbench.encodings.vec import Vec2, Vec3, Vec4
 
 ROOT = Path(__file__).parents[2]
@@ -27,6 +34,7 @@ USUAL = {
     FRAME: (FrameCodec, FRAME_STORAGES),
     LIGHT: (LightCodec, LIGHT_STORAGES),
     MOTION: (MotionCodec, MOTION_STORAGES),
+    CURVE: (CurveCodec, CURVE_STORAGES),
 }
 
 
@@ -53,6 +61,7 @@ CODECS = {
         20,
         1023**2,
     ),
+    CURVE: (CurveCodec(BY_KIND[CURVE]["squared"], CURVE_STORAGES["rgb10a2"]), (number(0.3),), 10, 1024),
 }
 
 

@@ -11,14 +11,14 @@ from parity.light import apart, given_texels, lights, planes
 
 from normalbench.bench.ground.options.light_names import light_buffers_named
 from normalbench.encodings.catalogue import LIGHT_BUFFERS, LIGHT_ENCODINGS, LIGHT_NAMES
-from normalbench.encodings.chromaticity import chromaticity, coloured, luminance
 from normalbench.encodings.codecs.light_codec import LightCodec
 from normalbench.encodings.codecs.light_encoding import BLENDS
 from normalbench.encodings.light.nao32 import INVERSE, MATRIX
+from normalbench.encodings.shared.chromaticity import chromaticity, coloured, luminance
 from normalbench.encodings.storages.rounding import from_srgb, scale_of, store_small_float, store_srgb, to_srgb
 from normalbench.encodings.storages.storage import LIGHT_STORAGES, R11G11B10F, SRGB8_A8
 from normalbench.encodings.vec import BRIGHTEST, Vec3, Vec4, floor_log2, light_or_none, power_of_two
-from normalbench.gbuffer.codecs.light_passes import exact_light, light_defines
+from normalbench.gbuffer.codecs.light.light_passes import exact_light, light_defines
 from normalbench.gbuffer.gl.shader import Source
 
 EVERY = sorted(LIGHT_BUFFERS)

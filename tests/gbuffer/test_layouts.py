@@ -11,7 +11,7 @@ from slowly import all_but
 from normalbench.encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS, LIGHT_BUFFERS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.codecs.depth_codec import DepthCodec
-from normalbench.encodings.position import Camera
+from normalbench.encodings.shared.position import Camera
 from normalbench.encodings.storages.depth_storage import DEPTH_STORAGES
 from normalbench.encodings.storages.storage import MANTISSA, STORAGES
 from normalbench.encodings.vec import Vec3, from_array, to_array

@@ -102,8 +102,8 @@ def list_command(
     what: Annotated[
         str,
         typer.Argument(
-            help="encodings, storages, depths, frames, vectors, normals, layouts, pipelines, effects, scenes, lights, "
-            "or all."
+            help="encodings, storages, depths, frames, vectors, curves, normals, layouts, pipelines, effects, scenes, "
+            "environments, lights, or all."
         ),
     ] = "all",
     format: FormatOption = None,

@@ -2,7 +2,14 @@
 
 from __future__ import annotations
 
-from ....encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS, FRAME_ENCODINGS, LIGHT_BUFFERS, MOTION_ENCODINGS
+from ....encodings.catalogue import (
+    CURVE_ENCODINGS,
+    DEPTH_ENCODINGS,
+    ENCODINGS,
+    FRAME_ENCODINGS,
+    LIGHT_BUFFERS,
+    MOTION_ENCODINGS,
+)
 from ....encodings.codecs.encoding import Encoding
 from ....encodings.codecs.variants import known_settings
 from ....encodings.storages.depth_storage import DEPTH_STORAGES
@@ -93,6 +100,13 @@ def _vectors() -> list[Row]:
     ]
 
 
+def _curves() -> list[Row]:
+    return [
+        _row("curve", c.name, c.title, holds=f"0 to {c.usual_range:g}, or to what a layout says") | {"from": c.citation}
+        for c in CURVE_ENCODINGS.values()
+    ]
+
+
 def _normal_sets() -> list[Row]:
     return [_row("normals", name, title) for name, title in NORMAL_SETS.items()]
 
@@ -150,6 +164,7 @@ KINDS = {
     "depths": _depths,
     "frames": _frames,
     "vectors": _vectors,
+    "curves": _curves,
     "normals": _normal_sets,
     "layouts": _layouts,
     "pipelines": _pipelines,

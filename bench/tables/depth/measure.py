@@ -13,9 +13,9 @@ import jax.numpy as jnp
 import numpy as np
 
 from ....encodings.codecs.depth_codec import REBUILDS, DepthCodec
-from ....encodings.position import Camera
+from ....encodings.shared.position import Camera
 from ....encodings.vec import Vec2
-from ....gbuffer.codecs.depth_passes import DepthPasses, Rebuilt
+from ....gbuffer.codecs.depth.depth_passes import DepthPasses, Rebuilt
 from ....gbuffer.gl.device import FormatError, NoDeviceError, device
 from ....gbuffer.gl.shader import ShaderError
 from .table import TABLE

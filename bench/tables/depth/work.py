@@ -13,7 +13,7 @@ import numpy as np
 
 from ....encodings.catalogue import DEPTH_ENCODINGS, LIGHT_BUFFERS
 from ....encodings.codecs.depth_codec import REBUILDS, DepthCodec
-from ....encodings.position import Camera
+from ....encodings.shared.position import Camera
 from ....encodings.storages.depth_storage import DEPTH_STORAGES
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device

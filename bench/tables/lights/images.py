@@ -15,7 +15,7 @@ import numpy as np
 from ....encodings.catalogue import LIGHT_BUFFERS
 from ....encodings.codecs.light_codec import LightCodec
 from ....encodings.vec import Vec4, light_or_none
-from ....gbuffer.codecs.light_passes import Resolved, read_samples, resolved
+from ....gbuffer.codecs.light.light_passes import Resolved, read_samples, resolved
 from ....gbuffer.display import displayed
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.frame.resources import FINAL, LIGHT

@@ -12,7 +12,7 @@ import numpy as np
 
 from ....encodings.codecs.light_codec import LightCodec
 from ....encodings.vec import Vec4
-from ....gbuffer.codecs.light_passes import Resolved
+from ....gbuffer.codecs.light.light_passes import Resolved
 from ....gbuffer.gl.device import Device, FormatError
 from ....gbuffer.gl.shader import ShaderError
 from ....gbuffer.pipelines import Pipeline

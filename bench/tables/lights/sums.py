@@ -11,13 +11,13 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ....encodings.chromaticity import coloured, luminance
 from ....encodings.codecs.light_buffer import IDEAL, Blending, accumulate
 from ....encodings.codecs.light_codec import LightCodec
+from ....encodings.shared.chromaticity import coloured, luminance
 from ....encodings.storages.rounding import to_srgb
 from ....encodings.storages.storage import Storage
 from ....encodings.vec import Vec3, Vec4
-from ....gbuffer.codecs.light_passes import LightPasses, Sum
+from ....gbuffer.codecs.light.light_passes import LightPasses, Sum
 from ....gbuffer.display import displayed
 from ....gbuffer.gl.device import Device
 

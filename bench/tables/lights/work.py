@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ....encodings.codecs.light_codec import LightCodec
-from ....gbuffer.codecs.light_passes import Resolved
+from ....gbuffer.codecs.light.light_passes import Resolved
 from ....gbuffer.display import displayed
 from ....gbuffer.gl.device import Device
 from ....gbuffer.layouts.words import LayoutError

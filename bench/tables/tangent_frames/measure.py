@@ -17,7 +17,7 @@ import numpy as np
 from ....encodings.codecs.frame_codec import FrameCodec
 from ....encodings.rotation import frame_of
 from ....encodings.vec import Vec3
-from ....gbuffer.codecs.frame_passes import FramePasses
+from ....gbuffer.codecs.frames.frame_passes import FramePasses
 from ....gbuffer.gl.device import FormatError, NoDeviceError, device
 from ....gbuffer.gl.shader import ShaderError
 from ...measures.metrics.code_limits import is_measurable

@@ -18,7 +18,7 @@ from ....encodings.codecs.motion_codec import NUMBERS, MotionCodec, MotionEncodi
 from ....encodings.storages.rounding import fixed, shared
 from ....encodings.storages.storage import Storage
 from ....encodings.vec import Vec2
-from ....gbuffer.codecs.motion_passes import MotionPasses
+from ....gbuffer.codecs.motion.motion_passes import MotionPasses
 from ....gbuffer.gl.device import FormatError, NoDeviceError, device
 from ....gbuffer.gl.shader import ShaderError
 from .paths import FRAMES, POINTS, Paths

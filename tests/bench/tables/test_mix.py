@@ -24,7 +24,7 @@ from normalbench.bench.tables.mix.verdict import judged
 from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.catalogue import LIGHT_BUFFERS
 from normalbench.encodings.storages.storage import STORAGES
-from normalbench.gbuffer.codecs.light_passes import resolved
+from normalbench.gbuffer.codecs.light.light_passes import resolved
 from normalbench.gbuffer.codecs.mixing.passes import MixPasses, bands
 
 COUNT, SAMPLES = 512, 4

@@ -9,9 +9,8 @@ import numpy as np
 from neighbours import around
 
 from normalbench.encodings.catalogue import DEPTH_ENCODINGS
-from normalbench.encodings.codecs.depth_codec import REBUILDS, DepthCodec
-from normalbench.encodings.codecs.depth_encoding import DepthEncoding
-from normalbench.encodings.position import (
+from normalbench.encodings.codecs.depth_codec import REBUILDS, DepthCodec, DepthEncoding
+from normalbench.encodings.shared.position import (
     Camera,
     position_from_linear_depth,
     position_from_projection_terms,
@@ -19,7 +18,7 @@ from normalbench.encodings.position import (
 )
 from normalbench.encodings.storages.depth_storage import DEPTH_STORAGES
 from normalbench.encodings.vec import Vec2, depth_or_far
-from normalbench.gbuffer.codecs.depth_passes import DepthPasses, exact_values
+from normalbench.gbuffer.codecs.depth.depth_passes import DepthPasses, exact_values
 
 from .comparison import ULP, Comparison, Parity, planes, rows
 
@@ -220,7 +219,7 @@ PARITY = Parity(
     codecs=[codec for codec in CODECS if codec.storage.bits == 16],
     more_codecs=[codec for codec in CODECS if codec.encoding.name in ("linear", "linear_sign")],
     stored=stored,
-    shared={"window": ["position.glsl"], "linear_sign": ["sign.glsl", "vec.glsl:float depth_or_far"]},
+    shared={"window": ["shared/position.glsl"], "linear_sign": ["sign.glsl", "vec.glsl:float depth_or_far"]},
     # A product of the two that change places: these are not other functions.
     same=frozenset(
         {

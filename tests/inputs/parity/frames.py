@@ -15,7 +15,7 @@ from normalbench.encodings.frame.octahedral_angle import SEAM
 from normalbench.encodings.rotation import Frame, frame_of, frame_of_quaternion
 from normalbench.encodings.storages.storage import FRAME_STORAGES
 from normalbench.encodings.vec import Vec3, Vec4
-from normalbench.gbuffer.codecs.frame_passes import FramePasses, exact_frames
+from normalbench.gbuffer.codecs.frames.frame_passes import FramePasses, exact_frames
 
 from .comparison import ULP, Comparison, Parity, in_ulps, is_finite, planes, rows
 

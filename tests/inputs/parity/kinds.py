@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 
-from normalbench.encodings.codecs.kind import DEPTH, FRAME, LIGHT, MOTION, NORMAL, Kind
+from normalbench.encodings.codecs.kind import CURVE, DEPTH, FRAME, LIGHT, MOTION, NORMAL, Kind
 
-from . import depth, frames, light, motion, normals
+from . import curves, depth, frames, light, motion, normals
 from .comparison import Parity
 
 PARITY: Mapping[Kind, Parity] = {
@@ -13,4 +13,5 @@ PARITY: Mapping[Kind, Parity] = {
     FRAME: frames.PARITY,
     LIGHT: light.PARITY,
     MOTION: motion.PARITY,
+    CURVE: curves.PARITY,
 }

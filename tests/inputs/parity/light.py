@@ -11,7 +11,7 @@ from normalbench.encodings.catalogue import LIGHT_BUFFERS
 from normalbench.encodings.codecs.light_buffer import Blending, accumulate
 from normalbench.encodings.codecs.light_codec import LightCodec
 from normalbench.encodings.vec import Vec4, light_or_none
-from normalbench.gbuffer.codecs.light_passes import LightPasses, exact_light
+from normalbench.gbuffer.codecs.light.light_passes import LightPasses, exact_light
 
 from .comparison import ULP, Comparison, Parity, is_finite, rows
 from .comparison import planes as planes_of

@@ -9,7 +9,7 @@ from normalbench.encodings.catalogue import MOTION_ENCODINGS
 from normalbench.encodings.codecs.motion_codec import MotionCodec, MotionEncoding
 from normalbench.encodings.storages.storage import MOTION_STORAGES
 from normalbench.encodings.vec import Vec2
-from normalbench.gbuffer.codecs.motion_passes import MotionPasses, exact_motions
+from normalbench.gbuffer.codecs.motion.motion_passes import MotionPasses, exact_motions
 
 from .comparison import ULP, Comparison, Parity, in_ulps, planes, rows
 

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .vec import Vec2, Vec3, jnp
+from ..vec import Vec2, Vec3, jnp
 
 
 class Seen(NamedTuple):

@@ -5,7 +5,7 @@ The GLSL twin is `chromaticity.glsl`, which takes the weights from here.
 
 from __future__ import annotations
 
-from .vec import TINY, Vec3, dot, select
+from ..vec import TINY, Vec3, dot, select
 
 # Rec. 709, linear (M. Drobot, Architektury Deferred).
 LUMA = (0.2126, 0.7152, 0.0722)

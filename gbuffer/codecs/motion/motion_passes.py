@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...encodings import vec
-from ...encodings.codecs.motion_codec import MotionCodec, MotionEncoding
-from ...encodings.storages.storage import STORAGES
-from ..gl.device import Device
-from .codec_passes import rounding_defines
-from .harness import Passes, check_functions, exact, set_uniforms
+from ....encodings import vec
+from ....encodings.codecs.motion_codec import MotionCodec, MotionEncoding
+from ....encodings.storages.storage import STORAGES
+from ...gl.device import Device
+from ..codec_passes import rounding_defines
+from ..harness import Passes, check_functions, exact, set_uniforms
 
 
 def motion_defines(encoding: MotionEncoding, needs_range: bool) -> dict[str, object]:

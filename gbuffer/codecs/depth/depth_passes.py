@@ -9,18 +9,17 @@ from typing import Any
 
 import numpy as np
 
-from ...encodings import vec
-from ...encodings.codecs.depth_codec import DepthCodec
-from ...encodings.codecs.depth_encoding import DepthEncoding
-from ...encodings.position import Camera
-from ...encodings.storages.depth_storage import DepthStorage, store_depth
-from ...encodings.storages.storage import FORMATS, Storage
-from ...encodings.vec import jnp
-from ..gl.device import Device, read_pixels
-from ..gl.handles import Texture, VertexArray
-from ..gl.raw import DepthBuffer
-from .codec_passes import storage_kind
-from .harness import Passes, Textures, check_functions, exact, set_uniforms
+from ....encodings import vec
+from ....encodings.codecs.depth_codec import DepthCodec, DepthEncoding
+from ....encodings.shared.position import Camera
+from ....encodings.storages.depth_storage import DepthStorage, store_depth
+from ....encodings.storages.storage import FORMATS, Storage
+from ....encodings.vec import jnp
+from ...gl.device import Device, read_pixels
+from ...gl.handles import Texture, VertexArray
+from ...gl.raw import DepthBuffer
+from ..codec_passes import storage_kind
+from ..harness import Passes, Textures, check_functions, exact, set_uniforms
 
 HOMES = ("packed", "channel", "attachment")
 RG32F = Storage("rg32f", "RG32F", "float", (32, 32), 0x8230)

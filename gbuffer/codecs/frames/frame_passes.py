@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...encodings import vec
-from ...encodings.codecs.frame_codec import FrameCodec
-from ...encodings.codecs.frame_encoding import FrameEncoding
-from ...encodings.storages.storage import STORAGES
-from ..gl.device import Device
-from .codec_passes import rounding_defines
-from .harness import Passes, check_functions, exact
+from ....encodings import vec
+from ....encodings.codecs.frame_codec import FrameCodec
+from ....encodings.codecs.frame_encoding import FrameEncoding
+from ....encodings.storages.storage import STORAGES
+from ...gl.device import Device
+from ..codec_passes import rounding_defines
+from ..harness import Passes, check_functions, exact
 
 
 def frame_defines(encoding: FrameEncoding, least: float) -> dict[str, object]:

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...encodings import chromaticity, vec
-from ...encodings.codecs.light_codec import LightCodec
-from ...encodings.storages.storage import STORAGES, Storage
-from ..gl.device import ADD, MULTIPLY, Device, bind, read_pixels
-from ..gl.handles import Texture, VertexArray
-from .harness import Passes, Textures, check_functions, exact
+from ....encodings import vec
+from ....encodings.codecs.light_codec import LightCodec
+from ....encodings.shared import chromaticity
+from ....encodings.storages.storage import STORAGES, Storage
+from ...gl.device import ADD, MULTIPLY, Device, bind, read_pixels
+from ...gl.handles import Texture, VertexArray
+from ..harness import Passes, Textures, check_functions, exact
 
 # How the light buffer's code blends; one that is read is overwritten.
 BLEND_OF = {"add": ADD, "multiply": MULTIPLY, "read": None}

@@ -1,0 +1,97 @@
+"""Curve codecs: what a curve is, a pair of maps between a quantity and a number in [0, 1], written twice; and such a
+curve in a storage."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from ..storages.rounding import store_texel
+from ..storages.storage import Storage
+
+
+@dataclass(frozen=True, eq=False)
+class CurveEncoding:
+    """A pair of maps between a quantity and a number in [0, 1], in JAX here and in GLSL in the file beside it.
+
+    A quantity is what a material has one of at a point: a roughness, a metalness, a reflectance, a share of ambient
+    light, or a channel of a colour. It is finite and not negative. The range is the largest quantity that is kept; more
+    is cut off by fixed-point storages, not here. The GLSL file defines `float <name>_encode_curve(float x, float
+    range)` and `float <name>_decode_curve(float e, float range)`.
+
+    Attributes:
+        name: the catalogue's key, the file's name and the prefix of the GLSL functions.
+        title: what a reader calls it.
+        encode: (quantity, range) -> a number, in [0, 1] for quantities up to the range. On float64 the exact map.
+        decode: (number, range) -> quantity, likewise.
+        storages: where it usually lies, names of CURVE_STORAGES.
+        citation: where it comes from.
+        glsl: the GLSL twin.
+        ulps: how far the two languages may differ before storage, encode in 2^-23, decode in 2^-23 of the range.
+        ulps_reason: why it is that many.
+        usual_range: the range where none is named.
+        inverse_error: how far a quantity that is encoded and decoded without rounding comes back from itself, in shares
+            of the range; 0 where the two maps are each other's inverse.
+        constants: numbers that both languages need, by their GLSL name.
+    """
+
+    name: str
+    title: str
+    encode: Callable[[Any, Any], Any]
+    decode: Callable[[Any, Any], Any]
+    storages: tuple[str, ...]
+    citation: str
+    glsl: Path
+    ulps: tuple[int, int]
+    ulps_reason: str
+    usual_range: float = 1.0
+    inverse_error: float = 0.0
+    constants: Mapping[str, float | tuple[float, ...]] = field(default_factory=dict)
+
+    @property
+    def signatures(self) -> tuple[str, str]:
+        """What its GLSL file defines."""
+        return (
+            f"float {self.name}_encode_curve(float x, float range)",
+            f"float {self.name}_decode_curve(float e, float range)",
+        )
+
+
+@dataclass(frozen=True)
+class CurveCodec:
+    """A curve over a range, and the storage of its number, which lies in the first of the storage's channels."""
+
+    encoding: CurveEncoding
+    storage: Storage
+    range: float = 1.0
+
+    @property
+    def name(self) -> str:
+        return f"{self.encoding.name}/{self.storage.name}"
+
+    @property
+    def misfit(self) -> None:
+        """Every storage has a channel for one number."""
+        return None
+
+    @property
+    def bits(self) -> int:
+        """The bits it needs: those of a channel."""
+        return self.storage.bits[0]
+
+    @property
+    def codes(self) -> int:
+        """How many codes it has: the numbers in [0, 1] that the channel holds, half of those in [-1, 1] that has a
+        sign."""
+        count = self.storage.count(0)
+        return count if self.storage.is_biased else count // 2 + 1
+
+    def stored(self, x: Any) -> Any:
+        """The number of a quantity (float32, any shape, not negative) as it comes back from the storage."""
+        return store_texel(self.encoding.encode(x, self.range), self.storage, 0)
+
+    def round_trip(self, x: Any) -> Any:
+        """Quantities encoded, stored and decoded."""
+        return self.encoding.decode(self.stored(x), self.range)

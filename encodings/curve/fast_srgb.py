@@ -1,0 +1,43 @@
+"""The sRGB curve without its line near 0, and a polynomial back: cheaper, and not each other's inverse."""
+
+from pathlib import Path
+
+from ..codecs.curve_codec import CurveEncoding
+from ..storages.rounding import SRGB_OFFSET, SRGB_POWER
+from ..vec import maximum
+
+# x = e (e (e a + b) + c), highest power first.
+BACK = (0.305306011, 0.682171111, 0.012522878)
+
+
+def encode(x, range):
+    """A quantity (float32 or float64, any shape, not negative) to [0, 1] up to the range."""
+    # e = (1 + offset) s^(1 / power) - offset for s = x / range, at least 0
+    return maximum((1.0 + SRGB_OFFSET) * (x / range) ** (1.0 / SRGB_POWER) - SRGB_OFFSET, 0.0)
+
+
+def decode(e, range):
+    """The quantity of a number, of its shape."""
+    # x = e (e (e a + b) + c) range
+    a, b, c = BACK
+    return e * (e * (e * a + b) + c) * range
+
+
+ENCODING = CurveEncoding(
+    name="fast_srgb",
+    title="the sRGB curve without its line, a polynomial back",
+    encode=encode,
+    decode=decode,
+    storages=("r8", "rgba8"),
+    citation="Unity Technologies, Core Render Pipeline 14, Color.hlsl: FastLinearToSRGB and FastSRGBToLinear; the "
+    "polynomial: I. Taylor, sRGB Approximations for HLSL, 2012",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(4, 4),
+    ulps_reason="a power, by a logarithm and a power of two; six operations",
+    inverse_error=0.002,
+    constants={
+        "SRGB_OFFSET": SRGB_OFFSET,
+        "SRGB_POWER": SRGB_POWER,
+        "FAST_SRGB": BACK,
+    },
+)

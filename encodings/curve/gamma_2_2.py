@@ -1,0 +1,33 @@
+"""Power: the share of the range to the power 1 / 2.2, as colours are kept in a format without a curve of its own."""
+
+from pathlib import Path
+
+from ..codecs.curve_codec import CurveEncoding
+
+GAMMA = 2.2
+
+
+def encode(x, range):
+    """A quantity (float32 or float64, any shape, not negative) to [0, 1] up to the range."""
+    # e = (x / range)^(1 / gamma)
+    return (x / range) ** (1.0 / GAMMA)
+
+
+def decode(e, range):
+    """The quantity of a number, of its shape."""
+    # x = e^gamma range
+    return e**GAMMA * range
+
+
+ENCODING = CurveEncoding(
+    name="gamma_2_2",
+    title="the share of the range to the power 1 / 2.2",
+    encode=encode,
+    decode=decode,
+    storages=("r8", "rgba8"),
+    citation="Bevy 0.20, deferred/functions.wesl: base colour",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(4, 8),
+    ulps_reason="a power, by a logarithm and a power of two",
+    constants={"GAMMA_2_2": GAMMA},
+)

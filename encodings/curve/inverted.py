@@ -1,0 +1,30 @@
+"""Inverted: what is left of the range. Of a perceptual roughness it is the smoothness that engines store."""
+
+from pathlib import Path
+
+from ..codecs.curve_codec import CurveEncoding
+
+
+def encode(x, range):
+    """A quantity (float32 or float64, any shape, not negative) to [0, 1]: 1 of nothing, and 0 of the range."""
+    # e = 1 - x / range
+    return 1.0 - x / range
+
+
+def decode(e, range):
+    """The quantity of a number, of its shape."""
+    # x = (1 - e) range
+    return (1.0 - e) * range
+
+
+ENCODING = CurveEncoding(
+    name="inverted",
+    title="1 less the share of the range",
+    encode=encode,
+    decode=decode,
+    storages=("r8", "rgba8_snorm", "rgb10a2"),
+    citation="Unity Technologies, Universal Render Pipeline 14, UnityGBuffer.hlsl: smoothness",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(1, 1),
+    ulps_reason="a division and a difference; a difference and a product",
+)

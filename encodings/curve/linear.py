@@ -1,0 +1,31 @@
+"""Linear: the share of the range. Steps are even."""
+
+from pathlib import Path
+
+from ..codecs.curve_codec import CurveEncoding
+
+
+def encode(x, range):
+    """A quantity (float32 or float64, any shape, not negative) to [0, 1] up to the range."""
+    # e = x / range
+    return x / range
+
+
+def decode(e, range):
+    """The quantity of a number, of its shape."""
+    # x = e range
+    return e * range
+
+
+ENCODING = CurveEncoding(
+    name="linear",
+    title="the share of the range",
+    encode=encode,
+    decode=decode,
+    storages=("r8", "r16", "r16f", "rgba16_snorm"),
+    citation="Epic Games, Unreal Engine 4.27, DeferredShadingCommon.ush: roughness, metalness, and specular "
+    "over a range of 0.08",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(1, 1),
+    ulps_reason="a division; a product",
+)

@@ -1,0 +1,34 @@
+"""Logarithm of one more than the quantity: steps are even near 0 and grow with the quantity beyond 1."""
+
+from pathlib import Path
+
+from ..codecs.curve_codec import CurveEncoding
+from ..vec import exp2, log2
+
+RANGE = 31.0
+
+
+def encode(x, range):
+    """A quantity (float32 or float64, any shape, not negative) to [0, 1] up to the range."""
+    # e = log2(1 + x) / log2(1 + range)
+    return log2(1.0 + x) / log2(1.0 + range)
+
+
+def decode(e, range):
+    """The quantity of a number, of its shape."""
+    # x = 2^(e log2(1 + range)) - 1
+    return exp2(e * log2(1.0 + range)) - 1.0
+
+
+ENCODING = CurveEncoding(
+    name="log",
+    title="the logarithm of one more than the quantity",
+    encode=encode,
+    decode=decode,
+    storages=("r8", "rgba8"),
+    citation="A. Kapoulkine, niagara: emission as log2(1 + r) / 5, which is a range of 31",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(4, 16),
+    ulps_reason="a logarithm and a power of two, and a division",
+    usual_range=RANGE,
+)

@@ -1,0 +1,32 @@
+"""Square root: steps are narrow near 0, as those of a gamma of 2 are."""
+
+from pathlib import Path
+
+from ..codecs.curve_codec import CurveEncoding
+from ..vec import sqrt
+
+
+def encode(x, range):
+    """A quantity (float32 or float64, any shape, not negative) to [0, 1] up to the range."""
+    # e = sqrt(x / range)
+    return sqrt(x / range)
+
+
+def decode(e, range):
+    """The quantity of a number, of its shape."""
+    # x = e^2 range
+    return e * e * range
+
+
+ENCODING = CurveEncoding(
+    name="square_root",
+    title="the root of the share of the range",
+    encode=encode,
+    decode=decode,
+    storages=("r8", "rgba8", "rgb10a2"),
+    citation="Embark Studios, kajiya, pack_unpack.hlsl: colours; S. Lagarde and C. de Rousiers, Moving "
+    "Frostbite to PBR, 2014: reflectance over a range of 0.16; NVIDIA, NRD.hlsli: roughness",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(2, 2),
+    ulps_reason="a division and a root; two products",
+)

@@ -1,0 +1,32 @@
+"""Squared: steps are wide near 0 and narrow near the range. Of a perceptual roughness it is the alpha of GGX."""
+
+from pathlib import Path
+
+from ..codecs.curve_codec import CurveEncoding
+from ..vec import sqrt
+
+
+def encode(x, range):
+    """A quantity (float32 or float64, any shape, not negative) to [0, 1] up to the range."""
+    # e = (x / range)^2
+    share = x / range
+    return share * share
+
+
+def decode(e, range):
+    """The quantity of a number, of its shape."""
+    # x = sqrt(e) range
+    return sqrt(e) * range
+
+
+ENCODING = CurveEncoding(
+    name="squared",
+    title="the square of the share of the range",
+    encode=encode,
+    decode=decode,
+    storages=("r8", "rgba8"),
+    citation="AMD, FidelityFX SDK, Cauldron, gbufferps.hlsl, 2025: alpha of a roughness; NVIDIA, NRD.hlsli",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(3, 2),
+    ulps_reason="a division and a product; a root and a product",
+)

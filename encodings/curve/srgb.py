@@ -1,0 +1,42 @@
+"""The sRGB curve, computed by the shader: for a format that has none, or for what is packed into integers."""
+
+from pathlib import Path
+
+from ..codecs.curve_codec import CurveEncoding
+from ..storages.rounding import SRGB_KNEE, SRGB_OFFSET, SRGB_POWER, SRGB_SLOPE
+from ..vec import maximum, select
+
+
+def encode(x, range):
+    """A quantity (float32 or float64, any shape, not negative) to [0, 1] up to the range."""
+    # e = slope s for s = x / range up to the knee, else (1 + offset) s^(1 / power) - offset
+    s = x / range
+    curved = (1.0 + SRGB_OFFSET) * maximum(s, SRGB_KNEE) ** (1.0 / SRGB_POWER) - SRGB_OFFSET
+    return select(s <= SRGB_KNEE, s * SRGB_SLOPE, curved)
+
+
+def decode(e, range):
+    """The quantity of a number, of its shape."""
+    # x = e / slope range up to the knee, else ((e + offset) / (1 + offset))^power range
+    line = e * (1.0 / SRGB_SLOPE)
+    curved = ((e + SRGB_OFFSET) / (1.0 + SRGB_OFFSET)) ** SRGB_POWER
+    return select(line <= SRGB_KNEE, line, curved) * range
+
+
+ENCODING = CurveEncoding(
+    name="srgb",
+    title="the sRGB curve, by the shader",
+    encode=encode,
+    decode=decode,
+    storages=("r8", "rgba8"),
+    citation="IEC 61966-2-1, 1999",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(4, 8),
+    ulps_reason="a power, by a logarithm and a power of two",
+    constants={
+        "SRGB_KNEE": SRGB_KNEE,
+        "SRGB_SLOPE": SRGB_SLOPE,
+        "SRGB_OFFSET": SRGB_OFFSET,
+        "SRGB_POWER": SRGB_POWER,
+    },
+)

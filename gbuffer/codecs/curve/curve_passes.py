@@ -1,0 +1,67 @@
+"""Curves in shaders: through a real render target, and without any."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ....encodings import vec
+from ....encodings.codecs.curve_codec import CurveCodec, CurveEncoding
+from ....encodings.storages.storage import STORAGES
+from ...gl.device import Device
+from ..codec_passes import rounding_defines
+from ..harness import Passes, check_functions, exact, set_uniforms
+
+
+def curve_constants(encoding: CurveEncoding) -> dict[str, object]:
+    """The macros that a curve's GLSL file needs.
+
+    Raises:
+        ShaderError: the file cannot be read or lacks one of its functions.
+    """
+    check_functions(encoding.glsl, encoding.signatures)
+    return {**vec.CONSTANTS, **encoding.constants}
+
+
+def _curve_defines(encoding: CurveEncoding) -> dict[str, object]:
+    functions = {"CURVE_ENCODE": f"{encoding.name}_encode_curve", "CURVE_DECODE": f"{encoding.name}_decode_curve"}
+    return curve_constants(encoding) | functions
+
+
+class CurvePasses(Passes):
+    """A curve codec on a GL device; a context manager that releases what it holds there.
+
+    Raises:
+        ShaderError: the curve's GLSL does not compile.
+        FormatError: the device cannot render to the storage's format.
+    """
+
+    def __init__(self, device: Device, codec: CurveCodec):
+        _, rounds = rounding_defines(device, codec.storage)
+        shaders, names = ("curve_encode.frag", "curve_decode.frag"), {"CURVE_ENCODING": codec.encoding.glsl}
+        super().__init__(device, shaders, _curve_defines(codec.encoding) | rounds, names, {"texels": codec.storage})
+        for program in (self._encode.program, self._decode.program):
+            set_uniforms(program, {"range": codec.range})
+
+    def round_trip(self, quantities: np.ndarray) -> np.ndarray:
+        """Quantities, float32 of shape (height, width), encoded, stored and decoded.
+
+        Raises:
+            FormatError: the device cannot render to the storage's format.
+        """
+        (found,) = self._through([STORAGES["rgba32f"]], quantities=quantities[..., None])
+        return found[..., 0]
+
+
+def exact_curves(device: Device, encoding: CurveEncoding, largest: float, given: np.ndarray) -> np.ndarray:
+    """Numbers of quantities, and quantities of numbers, by a compute shader and without storage.
+
+    Args:
+        largest: the range.
+        given: two quantities and two numbers; float32 of shape (count, 4).
+
+    Returns:
+        the quantities' numbers and the numbers' quantities, likewise.
+    """
+    names = {"CURVE_ENCODING": encoding.glsl}
+    (found,) = exact(device, "curve_parity.comp", _curve_defines(encoding), names, [given], 1, range=largest)
+    return found

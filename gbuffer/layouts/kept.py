@@ -1,0 +1,62 @@
+"""How a layout keeps what a material is: on a curve over a range, or a light by the code of a whole texel."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ...encodings.catalogue import CURVE_ENCODINGS, LIGHT_ENCODINGS
+from ...encodings.codecs.curve_codec import CurveEncoding
+from ...encodings.codecs.light_encoding import LightEncoding
+
+COLOURS = ("albedo", "specular", "emission")
+SINGLE = ("roughness", "metalness", "reflectance", "occlusion")
+# What light is kept by in four numbers that mean nothing one by one.
+WHOLE = {name: encoding for name, encoding in LIGHT_ENCODINGS.items() if encoding.blend == "read"}
+LIGHT = "emission"
+
+
+@dataclass(frozen=True)
+class Kept:
+    """How a quantity is kept.
+
+    Attributes:
+        encoding: of each of its numbers, or of all of them.
+        range: the largest that a curve keeps; 1 for a code of light, which has its own.
+    """
+
+    encoding: CurveEncoding | LightEncoding
+    range: float = 1.0
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether it keeps a light in four numbers."""
+        return isinstance(self.encoding, LightEncoding)
+
+
+def kept_as(name: str, limit: str, quantity: str) -> Kept:
+    """What `name` or `name:limit` says of a quantity, such as `roughness` or `emission`.
+
+    Raises:
+        ValueError: there is none of that name, it is not for that quantity, or the range is none; a line.
+    """
+    if quantity not in (*COLOURS, *SINGLE):
+        raise ValueError(f"only {', '.join((*COLOURS, *SINGLE))} lie on a curve")
+    if name in WHOLE:
+        if quantity != LIGHT or limit:
+            raise ValueError(f"{name} keeps a light in a whole texel, as in {name}({LIGHT})")
+        return Kept(WHOLE[name])
+    if name not in CURVE_ENCODINGS:
+        raise ValueError(f"unknown curve {name!r}; known: {', '.join((*CURVE_ENCODINGS, *WHOLE))}")
+    encoding = CURVE_ENCODINGS[name]
+    return Kept(encoding, _range_of(limit) if limit else encoding.usual_range)
+
+
+def _range_of(text: str) -> float:
+    try:
+        found = float(text)
+    except ValueError:
+        found = math.nan
+    if not 1e-3 <= found <= 65504:
+        raise ValueError(f"a range is 0.001 to 65504, not {text}")
+    return found

@@ -1,0 +1,75 @@
+"""Curves: they rise from nothing to the range, come back, and have the values that their sources give."""
+
+import numpy as np
+import pytest
+from parity.comparison import ULP
+from parity.curves import range_of, shares
+
+from normalbench.encodings.catalogue import CURVE_ENCODINGS
+from normalbench.encodings.codecs.curve_codec import CurveCodec
+from normalbench.encodings.storages.storage import CURVE_STORAGES
+
+EVERY = sorted(CURVE_ENCODINGS)
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_a_curve_leads_from_nothing_to_the_range_and_back(name):
+    """0 and the range are the ends of [0, 1], no step goes the other way, and what comes back is what was given."""
+    encoding, largest = CURVE_ENCODINGS[name], np.float32(range_of(CURVE_ENCODINGS[name]))
+    x = np.sort(np.minimum(shares() * largest, largest))
+    numbers = np.asarray(encoding.encode(x, largest))
+    ends = (1, 0) if name == "inverted" else (0, 1)
+    assert (numbers[0], numbers[-1]) == pytest.approx(ends, abs=4 * ULP)
+    # A logarithm is within 2 units, so that neighbours may change places by as much.
+    assert (np.diff(numbers) * (ends[1] - ends[0]) > -4 * ULP).all() and numbers.min() >= 0 and numbers.max() < 1 + 1e-6
+    off = np.abs(np.asarray(encoding.decode(numbers, largest)) - x).max() / largest
+    # The square's root doubles what rounding takes from a small number: 2^-12 of the range at most.
+    allowed = 2.0**-12 if name == "squared" else max(encoding.inverse_error, 64 * ULP)
+    assert off <= allowed and (off > allowed / 2 or not encoding.inverse_error), f"{off:.2e} of {allowed:.2e}"
+
+
+@pytest.mark.parametrize(
+    "name, limit, quantity, number",
+    [
+        ("linear", 0.08, 0.04, 0.5),  # Unreal's default specular
+        ("square_root", 0.16, 0.04, 0.5),  # Frostbite's default reflectance
+        ("squared", 1, 0.5, 0.25),
+        ("inverted", 1, 0.3, 0.7),
+        ("srgb", 1, 0.5, 0.7353569),  # IEC 61966-2-1
+        ("srgb", 1, 0.003, 0.03876),
+        ("gamma_2_2", 1, 0.5, 0.7297401),
+        ("fast_srgb", 1, 0.5, 0.7353569),
+        ("fast_srgb", 1, 0.0, 0.0),
+        ("log", 31, 1.0, 0.2),
+        ("log", 31, 31.0, 1.0),
+    ],
+)
+def test_a_curve_has_the_values_of_its_source(name, limit, quantity, number):
+    found = float(CURVE_ENCODINGS[name].encode(np.float32(quantity), np.float32(limit)))
+    assert found == pytest.approx(number, abs=1e-6)
+
+
+def test_unitys_polynomial_is_within_a_sixth_of_a_percent_of_its_curve():
+    """Its codes come back up to 0.00167 off without any storage: 0.4 steps of 8 bits."""
+    fast = CURVE_ENCODINGS["fast_srgb"]
+    x = np.linspace(0, 1, 100_001)
+    off = np.abs(np.asarray(fast.decode(fast.encode(x, 1.0), 1.0)) - x).max()
+    assert off == pytest.approx(0.00167, abs=2e-5)
+
+
+@pytest.mark.parametrize(
+    "name, first",
+    [("linear", 1 / 255), ("square_root", 1 / 255**2), ("squared", 1 / 255**0.5), ("srgb", 1 / 255 / 12.92)],
+)
+def test_the_first_step_from_nothing_is_the_curves(name, first):
+    """In 8 bits: what the code 1 stands for. Half of it, on the curve, still comes back as 0."""
+    codec = CurveCodec(CURVE_ENCODINGS[name], CURVE_STORAGES["r8"])
+    found = np.asarray(codec.round_trip(np.linspace(0, 0.1, 200_001, dtype=np.float32)))
+    assert found[0] == 0 and found[found > 0].min() == pytest.approx(first, rel=1e-5)
+
+
+def test_more_than_the_range_is_cut_off_by_fixed_point_and_kept_by_floats():
+    x = np.float32([0.2])
+    for storage, kept in (("r8", 0.1), ("r16f", 0.2)):
+        codec = CurveCodec(CURVE_ENCODINGS["linear"], CURVE_STORAGES[storage], 0.1)
+        assert np.asarray(codec.round_trip(x)) == pytest.approx(kept, rel=1e-3)

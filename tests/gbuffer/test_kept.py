@@ -1,0 +1,124 @@
+"""What a material is on a curve, or in a code of light: the image follows, and a layout says what cannot be."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from drawing import SIZE, apart, draw
+from test_metal_rough import LIT
+
+from normalbench.encodings.catalogue import CURVE_ENCODINGS, ENCODINGS, LIGHT_BUFFERS
+from normalbench.encodings.light import rgbm
+from normalbench.gbuffer.frame.plan import Plan
+from normalbench.gbuffer.layouts.engines import targets_of
+from normalbench.gbuffer.layouts.kept import WHOLE
+from normalbench.gbuffer.layouts.layout import Layout, read_layout
+from normalbench.gbuffer.layouts.words import LayoutError
+from normalbench.gbuffer.pipelines import PIPELINES
+from normalbench.gbuffer.render import rendering
+
+NORMAL = "rgba32f: normal.x normal.y kind"
+
+
+def layout_of(targets: str) -> Layout:
+    return Layout("kept", "kept", targets_of(f"{NORMAL}; {targets}"), ENCODINGS["octahedral"], "test")
+
+
+def image(gl, targets: str, pipeline: str = "hybrid") -> np.ndarray:
+    return draw(gl, pipeline, LIT, layout_of(targets)).image
+
+
+@pytest.fixture(scope="module")
+def exact(gl) -> np.ndarray:
+    return image(gl, "rgba32f: albedo metalness; rgba32f: roughness reflectance occlusion; rgba32f: emission")
+
+
+@pytest.mark.parametrize("name", CURVE_ENCODINGS)
+def test_in_floats_a_curve_leaves_the_image_as_it_is(gl, exact, name):
+    """Every quantity on it: 75 dB; the fast curve is no inverse of itself, which costs 55 to 75."""
+    on = {q: f"{name}({q})" for q in ("albedo", "metalness", "roughness", "reflectance", "occlusion", "emission")}
+    targets = "rgba32f: {albedo} {metalness}; rgba32f: {roughness} {reflectance} {occlusion}; rgba32f: {emission}"
+    found = apart(image(gl, targets.format(**on)), exact)
+    assert 55 < found < 75 if CURVE_ENCODINGS[name].inverse_error else found > 75, f"{found:.1f} dB"
+
+
+# Colours as dark as soil and rubber, where linear steps are coarsest.
+DARK = replace(
+    LIT, materials=tuple(replace(m, base=(0.03, 0.02, 0.04), metalness=0.0, normal_map=None) for m in LIT.materials)
+)
+
+
+@pytest.mark.parametrize(
+    "scene, better, worse",
+    [
+        (DARK, "srgb(albedo):5", "albedo:5"),
+        (DARK, "square_root(albedo):5", "albedo:5"),
+        (LIT, "roughness:4", "squared(roughness):4"),
+        (LIT, "linear:0.08(reflectance):4", "reflectance:4"),
+    ],
+    ids=["sRGB", "square root", "square", "range"],
+)
+def test_in_few_bits_the_curve_decides(gl, scene, better, worse):
+    """Colours want a gamma, a roughness even steps, and a reflectance of 0.04 a range of its own: 3 dB and more."""
+    floats = {"albedo", "metalness", "roughness", "reflectance", "occlusion"} - {worse.rstrip("):45").split("(")[-1]}
+    targets = "; ".join(f"rgba32f: {quantity}" for quantity in sorted(floats))
+    right = draw(gl, "hybrid", scene).image
+    found = [
+        apart(draw(gl, "hybrid", scene, layout_of(f"rgba8: {w}; {targets}")).image, right) for w in (better, worse)
+    ]
+    assert 15 < found[1] < found[0] - 3 and found[0] < 75, f"{found[0]:.1f} and {found[1]:.1f} dB"
+
+
+@pytest.mark.parametrize("pipeline", ["deferred", "hybrid"])
+@pytest.mark.parametrize("name", WHOLE)
+def test_a_light_is_kept_by_a_code_of_a_texel(gl, exact, pipeline, name):
+    """As well as its light buffer keeps it: above 40 dB, and not exactly."""
+    others = "rgba32f: albedo metalness; rgba32f: roughness reflectance occlusion"
+    found = apart(image(gl, f"{others}; rgba8: {name}(emission)", pipeline), exact)
+    assert 40 < found < 90, f"{found:.1f} dB"
+
+
+def test_two_ranges_of_one_code_are_told_apart(gl):
+    """Its files have one range: that of the light buffer would be that of the emission."""
+    layout = layout_of("rgba32f: albedo metalness; rgba32f: roughness reflectance occlusion; rgba8: rgbm(emission)")
+    buffer = replace(LIGHT_BUFFERS["rgbm"], encoding=rgbm.ranged(8.0))
+    plan = Plan(SIZE, 1, layout, buffer, 2, False, 1.0)
+    with pytest.raises(LayoutError, match="its emission and the light buffer rgbm:8 have two ranges"):
+        rendering(gl, PIPELINES["hybrid"], LIT, plan).__enter__()
+
+
+@pytest.mark.parametrize(
+    "targets, message",
+    [
+        ("rgba8: gamma(roughness)", "unknown curve 'gamma'; known: linear, squared, square_root"),
+        (
+            "rgba8: squared(kind)",
+            "only albedo, specular, emission, roughness, metalness, reflectance, occlusion lie on",
+        ),
+        ("rgba8: squared:0(roughness)", "a range is 0.001 to 65504, not 0"),
+        ("rgba8: squared:e(roughness)", "a range is 0.001 to 65504, not e"),
+        ("rgba8: squared(roughness", r"unknown component 'squared\(roughness'"),
+        ("srgb8_a8: square_root(albedo)", "sRGB8 A8 keeps colours by a curve of its own"),
+        ("rgba8: srgb(albedo.r) albedo.g albedo.b", "all channels of albedo lie on one curve"),
+        ("rgba8: rgb9e5(albedo)", r"rgb9e5 keeps a light in a whole texel, as in rgb9e5\(emission\)"),
+        ("rgba8: metalness; rgba16f: rgb9e5(emission)", r"rgb9e5\(emission\) fills a texel, of rgba8"),
+        ("rgba8: emission.r emission.g emission.b emission.a", "a code of light has four numbers"),
+        ("rgba8: rgb9e5(emission):8", "the numbers of rgb9e5 have channels of their own"),
+    ],
+)
+def test_a_curve_that_cannot_be_is_a_line(targets, message):
+    with pytest.raises(LayoutError, match=message):
+        layout_of(targets)
+
+
+def test_a_file_says_curves_as_presets_do(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text(
+        'encoding = "octahedral"\n[[targets]]\nformat = "rg16"\nholds = "normal.x normal.y"\n'
+        '[[targets]]\nformat = "rgba8"\nholds = "square_root(albedo) inverted(roughness)"\n'
+    )
+    kept = read_layout(path).kept
+    assert {name: (how.encoding.name, how.range) for name, how in kept.items()} == {
+        **{f"albedo.{channel}": ("square_root", 1.0) for channel in "rgb"},
+        "roughness": ("inverted", 1.0),
+    }
