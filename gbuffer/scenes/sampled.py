@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -14,6 +15,11 @@ from .scene import Material
 
 # Probes along the longer side of a pixel's footprint, at most: as GL's anisotropic filters usually have.
 PROBES = 16
+# The largest integer of the coarser maps that tell how far maps of 8 bits are off, and their steps in steps of 8 bits.
+# Errors of neighbouring texels are alike where a map is smooth, in coarser maps as in finer ones: so filters take as
+# much from either.
+COARSER = 63
+COARSENED = 255 / COARSER
 
 
 class Pyramid:
@@ -133,6 +139,21 @@ def mapped_normals(
         tangent = np.einsum("pc,pck->pk", weights, tangents(mesh)[corners])
         normals[row, column] = _turned(normals[row, column].astype(np.float64), tangent, slopes)
     return normals
+
+
+def coarser(drawn: Sequence[tuple[Mesh, Material | MetalRough]]) -> list[tuple[Mesh, Material | MetalRough]] | None:
+    """The same with normal maps of 8 bits rounded to COARSER; None where none has 8."""
+    made: dict[int, np.ndarray] = {}
+    found = []
+    for mesh, material in drawn:
+        lying = material.normal_map if isinstance(material, MetalRough) else None
+        if isinstance(material, MetalRough) and lying and lying.texels.dtype == np.uint8:
+            if (texels := made.get(id(lying.texels))) is None:
+                levels = np.round(np.arange(256) / 255 * COARSER) / COARSER
+                texels = made[id(lying.texels)] = np.round(levels * 65535).astype(np.uint16)[lying.texels]
+            material = replace(material, normal_map=replace(lying, texels=texels))
+        found.append((mesh, material))
+    return found if made else None
 
 
 def cut_out(drawn: Sequence[tuple[Mesh, Material | MetalRough]]) -> IsDrawn | None:

@@ -146,3 +146,15 @@ def test_what_is_cut_out_shows_what_is_behind(tmp_path, cutoff, share):
     assert front.sum() == pytest.approx(share * whole, rel=0.05)
     quarter = front[: SIDE // 2, : SIDE // 2]
     assert quarter.any() == (cutoff == 0)
+
+
+def test_a_map_of_8_bits_is_off_as_far_as_one_of_16_shows(tmp_path):
+    """Found without the map of 16 bits, within a fifth. Half of what is seen has no map and is exact."""
+    fine, coarse = (
+        seen(read_mesh_file(halves(WAYS[0], kind=kind).write(tmp_path / f"{kind.__name__}.glb")), (160, 120))
+        for kind in (np.uint16, np.uint8)
+    )
+    apart = (fine.normals.astype(np.float64) - coarse.normals)[fine.covered]
+    right = float(np.degrees(np.linalg.norm(apart, axis=1)).mean())
+    assert fine.map_error_deg is None and 0.02 < right < 0.12, right
+    assert coarse.map_error_deg == pytest.approx(right, rel=0.2), right

@@ -16,13 +16,13 @@ WAYS = [np.array(m) @ n for m in (((1, 0), (0, 1)), ((-1, 0), (0, 1))) for n in 
 RIM = 0.6
 
 
-def picture(slopes) -> bytes:
-    """A normal map of 16 bits; `slopes` gives x and y of its normals at (right, up), each in [-1, 1]."""
+def picture(slopes, kind: type[np.unsignedinteger] = np.uint16) -> bytes:
+    """A normal map of 16 or 8 bits; `slopes` gives x and y of its normals at (right, up), each in [-1, 1]."""
     at = (np.arange(128) + 0.5) / 64 - 1
     right, up = np.meshgrid(at, -at)
     x, y = slopes(right, up)
     n = np.stack([x, y, np.sqrt(1 - x * x - y * y)], axis=-1)
-    return png_bytes(np.round((n * 0.5 + 0.5) * 65535).astype(np.uint16))
+    return png_bytes(np.round((n * 0.5 + 0.5) * np.iinfo(kind).max).astype(kind))
 
 
 def dome(right, up):
@@ -35,17 +35,20 @@ def uv_of(way: np.ndarray, corners: np.ndarray = CORNERS) -> np.ndarray:
     return (corners @ way.T) * (0.5, -0.5) + 0.5
 
 
-def halves(way: np.ndarray, authored: bool = False, **material: Any) -> Document:
+def halves(
+    way: np.ndarray, authored: bool = False, kind: type[np.unsignedinteger] = np.uint16, **material: Any
+) -> Document:
     """Two squares of 2 x 2 that face a camera, in one material but for the map: at the left, vertices have the dome's
     normals; at the right, a normal map has them, laid by `way`, one of WAYS.
 
     Args:
         way: (2, 2), orthogonal; what a determinant of -1 mirrors.
         authored: whether the file has tangents.
+        kind: of the map's texels.
         material: further fields of both materials.
     """
     document = Document()
-    picture_of_dome = {"index": document.texture(picture(dome), wrapS=33071, wrapT=33071)}
+    picture_of_dome = {"index": document.texture(picture(dome, kind), wrapS=33071, wrapT=33071)}
     mapped, modelled = document.material(normalTexture=picture_of_dome, **material), document.material(**material)
     at = np.linspace(-1, 1, 33)
     x, y = (a.ravel() for a in np.meshgrid(at, at))

@@ -58,6 +58,7 @@ class NormalSet:
         background: how many of them are of no surface and do not count; None where there can be none.
         not_finite: how many of a file's were NaN or infinite, which do not count either.
         code_space: of a captured frame the space that its normals are in: "view" or "world".
+        map_error_deg: of a scene whose normal maps have 8 bits, the mean angle by which its normals are off themselves.
         of: by number the chunks that are meant where this is a part of a set; None for all.
     """
 
@@ -71,6 +72,7 @@ class NormalSet:
     background: int | None = None
     not_finite: int | None = None
     code_space: str | None = None
+    map_error_deg: float | None = None
     of: range | None = None
 
     @property

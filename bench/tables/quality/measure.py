@@ -276,6 +276,7 @@ def _case_columns(case: Case) -> Row:
         "backend": case.backend,
         "bits": case.codec.bits,
         "background": case.normal_set.background,
+        "map_error_deg": case.normal_set.map_error_deg,
         "not_finite": case.normal_set.not_finite,
         "code_space": case.normal_set.code_space,
         "domain": case.domain,

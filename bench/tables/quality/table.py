@@ -89,6 +89,14 @@ COLUMNS = (
     shared.BITS,
     Column("count", "How many normals were measured.", HOW, drops=13),
     Column("background", "Pixels without a surface; they do not count.", HOW, drops=3),
+    Column(
+        "map_error_deg",
+        "Mean angle by which the normals of a scene's own maps are off, where these have 8 bits: as far as the same "
+        "maps of 6 bits are off from them, over 4.",
+        HOW,
+        "degrees",
+        drops=12,
+    ),
     Column("not_finite", "Normals of the set that were NaN or infinite; they do not count.", HOW, drops=4),
     shared.CODE_SPACE,
     Column(

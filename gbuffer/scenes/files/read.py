@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
 
@@ -12,7 +12,7 @@ import numpy as np
 from ...environment.catalogue import ENVIRONMENTS
 from ..mesh import facing, joined
 from ..rasterise import Camera, Rendered, rasterise
-from ..sampled import cut_out, mapped_normals
+from ..sampled import COARSENED, coarser, cut_out, mapped_normals
 from ..scene import Light, Part, Scene, View
 from ..setting import Setting, coloured
 from .gltf import read_gltf
@@ -124,7 +124,19 @@ def _made_up_lights(file: MeshFile, setting: Setting) -> tuple[Light, ...]:
     return Light("sun", (0.8, 0.77, 0.7), direction=_float_triple(sun)), *lamps
 
 
-def seen(file: MeshFile, size: tuple[int, int]) -> Rendered:
+@dataclass(frozen=True)
+class Seen(Rendered):
+    """What a camera sees of a file.
+
+    Attributes:
+        map_error_deg: by how many degrees the normals of maps of 8 bits are off, in the mean over all normals that are
+            seen; None where no map has 8.
+    """
+
+    map_error_deg: float | None
+
+
+def seen(file: MeshFile, size: tuple[int, int]) -> Seen:
     """View-space normals, positions and coverage as the camera sees them, drawn without a GL driver.
 
     The normal of a pixel is that of its material's normal map, where it has one. What a material cuts out is a hole.
@@ -137,4 +149,11 @@ def seen(file: MeshFile, size: tuple[int, int]) -> Rendered:
     camera = Camera(*size, view.fov, view.near, view.far)
     made_of = [(mesh, file.materials[p.material]) for mesh, p in zip(drawn, file.pieces, strict=True)]
     found = rasterise(joined(drawn), camera, cut_out(made_of))
-    return replace(found, normals=mapped_normals(found, camera, made_of))
+    mapped = mapped_normals(found, camera, made_of)
+    rougher = coarser(made_of)
+    off = None
+    if rougher and found.covered.any():
+        other = mapped_normals(found, camera, rougher)[found.covered].astype(np.float64)
+        apart = np.linalg.norm(mapped[found.covered] - other, axis=1)
+        off = float(np.degrees(2 * np.arcsin(np.minimum(apart / 2, 1))).mean()) / COARSENED
+    return Seen(mapped, found.positions, found.covered, found.triangle, off)
