@@ -204,12 +204,25 @@ def across(kind: str, bits: tuple[int, ...]) -> Storage:
     return _packed_storage(name, f"{spread} {'signed ' if is_signed else ''}in {channels.upper()}", kind, *bits)
 
 
-def storage_of(name: str) -> Storage | None:
-    """The storage of a name: one of the catalogue's, or numbers laid across channels as `rg8_9_7` has them; else None.
+def by_rule(kind: str, bits: tuple[int, ...]) -> Storage:
+    """UNORM or SNORM numbers of so many bits: the catalogue's format that has just these, or laid across channels.
 
     Raises:
-        ValueError: laid across channels, but not so; a line.
+        ValueError: as `across`.
     """
+    alike = (s for s in STORAGES.values() if (s.kind, s.bits) == (kind, bits))
+    return next(alike, None) or across(kind, bits)
+
+
+def storage_of(name: str) -> Storage | None:
+    """The storage of a name: one of the catalogue's, numbers by rule as in `unorm:9:7`, or laid across channels as
+    `rg8_9_7` has them; else None.
+
+    Raises:
+        ValueError: by rule or laid across channels, but not so; a line.
+    """
+    if by := re.fullmatch(r"(unorm|snorm)((?::\d{1,3})+)", name):
+        return by_rule(by[1], tuple(map(int, by[2][1:].split(":"))))
     match = re.fullmatch(r"(r|rg|rgb|rgba)8((?:_\d{1,3}){2,})(_snorm)?", name)
     if name in STORAGES or not match:
         return STORAGES.get(name)

@@ -60,7 +60,7 @@ def pick(
     Codes that do not meet the constraints are left out, with the reason. Of the others a code may cost twice as much if it is --worth decibels better. The exit status is 1 where no code meets the constraints.
 
     Args:
-        storage: Storages, comma-separated, or all; `normalbench list` shows them. Any split of bytes is one too: rgb8_12_12.
+        storage: Storages, comma-separated, or all; `normalbench list` shows them. Any bits are one too: unorm:9:7, snorm:12:12, unorm:4:4..16:16.
         bytes: Bytes of a texel, comma-separated: all storages of that size, not --storage.
         encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
         against: Encodings or files of GLSL, HLSL or Slang to compare with the answer, comma-separated, or all; `normalbench list` shows them.
@@ -96,6 +96,46 @@ def pick(
         nan_share: Captures: the share of NaN that is masked and counted.
         fov: Captures: vertical degrees, for per-pixel view space.
         size: WIDTHxHEIGHT of the picture of a mesh.
+        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
+    """
+
+def roughness(
+    *,
+    encoding: Names = ...,
+    storage: Names = ...,
+    rounding: Names = ...,
+    object: Names = ...,
+    environment: Names = ...,
+    threshold: Names = ...,
+    size: Names = ...,
+    dither: Names = ...,
+    frames: Names | None = ...,
+    define: Names | None = ...,
+    prelude: Names | None = ...,
+    include: Names | None = ...,
+    language: Names | None = ...,
+    all_pairs: bool = ...,
+    on: str | None = ...,
+) -> Rows:
+    """From which roughness on a normal code carries reflections: a mirror shows each step of a code, a dull surface none.
+
+    A sphere and two panels of a metal that reflects all light fill the picture one by one, under three environments. A code carries a roughness where FLIP's 99th percentile is at most --threshold there and at every greater roughness, on the worst of objects and environments. 0.1 is what we call acceptable and 0.05 invisible: both are conventions.
+
+    Args:
+        encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
+        storage: Storages, comma-separated, or all; `normalbench list` shows them. Any bits are one too: unorm:9:7, snorm:12:12, unorm:4:4..16:16.
+        rounding: nearest, truncate, truncate_half; comma-separated, or all.
+        object: sphere, panel20, panel4; comma-separated, or all.
+        environment: studio, strips, lamp, sky, or .hdr and .exr files; comma-separated.
+        threshold: FLIP's 99th percentile that a code may have, comma-separated.
+        size: WIDTHxHEIGHT of the image.
+        dither: Noise before rounding, besides none: still, moving; comma-separated, or all.
+        frames: Frames whose mean a picture is, comma-separated. Default: 1; with --dither 1,8.
+        define: Shader files: macros, NAME or NAME=VALUE.
+        prelude: Shader files: files that are put in front.
+        include: Shader files: where includes lie: FOLDER, or NAME=FOLDER of NAME/file.
+        language: Shader files: hlsl, slang, glsl or wgsl. Default: by the ending.
+        all_pairs: Shader files: each encoder that its decoder undoes, not one.
         on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
@@ -135,7 +175,7 @@ def quality(
 
     Args:
         encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
-        storage: Storages, comma-separated, or all; `normalbench list` shows them. Any split of bytes is one too: rgb8_12_12.
+        storage: Storages, comma-separated, or all; `normalbench list` shows them. Any bits are one too: unorm:9:7, snorm:12:12, unorm:4:4..16:16.
         rounding: nearest, truncate, truncate_half; comma-separated, or all.
         arithmetic: What codes are computed in: float (32 bits), half (every step rounded to 16 bits), or declared: float, and half as well for a file that declares half, min16float, float16_t or mediump; comma-separated, or all.
         normals: Normal sets or files, comma-separated, or all; `normalbench list` shows them. `domain` is all that a code is made for: sphere and axes, or hemisphere.
@@ -235,46 +275,6 @@ def render(
         on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
-def roughness(
-    *,
-    encoding: Names = ...,
-    storage: Names = ...,
-    rounding: Names = ...,
-    object: Names = ...,
-    environment: Names = ...,
-    threshold: Names = ...,
-    size: Names = ...,
-    dither: Names = ...,
-    frames: Names | None = ...,
-    define: Names | None = ...,
-    prelude: Names | None = ...,
-    include: Names | None = ...,
-    language: Names | None = ...,
-    all_pairs: bool = ...,
-    on: str | None = ...,
-) -> Rows:
-    """From which roughness on a normal code carries reflections: a mirror shows each step of a code, a dull surface none.
-
-    A sphere and two panels of a metal that reflects all light fill the picture one by one, under three environments. A code carries a roughness where FLIP's 99th percentile is at most --threshold there and at every greater roughness, on the worst of objects and environments. 0.1 is what we call acceptable and 0.05 invisible: both are conventions.
-
-    Args:
-        encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
-        storage: Storages, comma-separated, or all; `normalbench list` shows them. Any split of bytes is one too: rgb8_12_12.
-        rounding: nearest, truncate, truncate_half; comma-separated, or all.
-        object: sphere, panel20, panel4; comma-separated, or all.
-        environment: studio, strips, lamp, sky, or .hdr and .exr files; comma-separated.
-        threshold: FLIP's 99th percentile that a code may have, comma-separated.
-        size: WIDTHxHEIGHT of the image.
-        dither: Noise before rounding, besides none: still, moving; comma-separated, or all.
-        frames: Frames whose mean a picture is, comma-separated. Default: 1; with --dither 1,8.
-        define: Shader files: macros, NAME or NAME=VALUE.
-        prelude: Shader files: files that are put in front.
-        include: Shader files: where includes lie: FOLDER, or NAME=FOLDER of NAME/file.
-        language: Shader files: hlsl, slang, glsl or wgsl. Default: by the ending.
-        all_pairs: Shader files: each encoder that its decoder undoes, not one.
-        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
-    """
-
 def mix(
     *,
     encoding: Names = ...,
@@ -313,7 +313,7 @@ def mix(
 
     Args:
         encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
-        storage: Storages, comma-separated, or all; `normalbench list` shows them. Any split of bytes is one too: rgb8_12_12.
+        storage: Storages, comma-separated, or all; `normalbench list` shows them. Any bits are one too: unorm:9:7, snorm:12:12, unorm:4:4..16:16.
         operation: filter, mip_2x2, mip_4x4, resolve, resolve_decoded, blend, blend_decoded, detail, upsample; comma-separated, or all.
         normals: Normal sets or files, comma-separated, or all; `normalbench list` shows them.
         angle: Degrees between neighbours, comma-separated. Images have their own neighbours.
@@ -474,7 +474,7 @@ def roofline(
 
     Args:
         encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
-        storage: Storages, comma-separated, or all; `normalbench list` shows them. Any split of bytes is one too: rgb8_12_12.
+        storage: Storages, comma-separated, or all; `normalbench list` shows them. Any bits are one too: unorm:9:7, snorm:12:12, unorm:4:4..16:16.
         gpu: GPUs, comma-separated, or all: rx480 (Radeon RX 480), vega64 (Radeon RX Vega 64), rx5700xt (Radeon RX 5700 XT), rx6800xt (Radeon RX 6800 XT), rx7900xtx (Radeon RX 7900 XTX), series_x (Xbox Series X), steam_deck (Steam Deck), hd530 (HD Graphics 530, two channels of DDR4-2133), iris_xe (Iris Xe of a Core i7-1185G7, LPDDR4x-4266), a770 (Arc A770), rtx2080 (GeForce RTX 2080), rtx3080 (GeForce RTX 3080), rtx4090 (GeForce RTX 4090), rtx5090 (GeForce RTX 5090). NAME:memory=400 changes a rate; known: lanes, clock (GHz), memory (GB/s), cache (MB), cached (GB/s). A family with these is a GPU of that family.
         size: WIDTHxHEIGHT of the G-buffer, comma-separated.
         reads: Passes that read and decode each pixel's normal, comma-separated.
@@ -569,7 +569,7 @@ def motion(
 
     Args:
         encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
-        storage: Storages, comma-separated, or all; `normalbench list` shows them. Any split of bytes is one too: rgb8_12_12.
+        storage: Storages, comma-separated, or all; `normalbench list` shows them. Any bits are one too: unorm:9:7, snorm:12:12, unorm:4:4..16:16.
         rounding: nearest, truncate, truncate_half; comma-separated, or all.
         space: view, world: the space that normals are encoded in; comma-separated, or all. Of several spaces a code is measured in those that it is made for.
         moves: camera, object: what turns; comma-separated, or all.

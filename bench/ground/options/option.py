@@ -43,7 +43,9 @@ Encodings = Annotated[
 ]
 StorageNames = Annotated[
     str,
-    Option("--storage", f"Storages, {Names}. Any split of bytes is one too: rgb8_12_12.", in_run=True),
+    Option(
+        "--storage", f"Storages, {Names}. Any bits are one too: unorm:9:7, snorm:12:12, unorm:4:4..16:16.", in_run=True
+    ),
 ]
 Roundings = Annotated[
     str, Option("--rounding", "nearest, truncate, truncate_half; comma-separated, or all.", in_run=True)

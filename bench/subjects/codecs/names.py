@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -22,6 +23,9 @@ from ...shaders.code.twin import NoTwinError, has_twin
 from ...shaders.languages.words import CHAIN, file_of, split_names
 from .half.compute import half_device
 from .user_encodings import encodings_named
+
+# Storages by rule from some bits to some others.
+RANGE = re.compile(r"(?P<kind>unorm|snorm):(?P<first>\d{1,2}(?::\d{1,2})*)\.\.(?P<last>\d{1,2}(?::\d{1,2})*)")
 
 
 def codecs_named(encodings: str, storages: str, roundings: str, arithmetics: str = FLOAT) -> list[Codec]:
@@ -96,13 +100,33 @@ def as_declared(codecs: Sequence[Codec]) -> list[Codec]:
 
 
 def storages_named(names: str) -> list[Storage]:
-    """The storages of comma-separated names, also of numbers laid across channels by their bits. Raises UsageError."""
+    """The storages of comma-separated names, also of numbers by their bits, and of ranges of such: unorm:4:4..8:8.
+
+    Raises UsageError.
+    """
+    words = [one for word in map(str.strip, names.split(",")) for one in _in_range(word)]
     try:
-        made = {word: storage_of(word) for word in map(str.strip, names.split(","))}
+        made = {word: storage_of(word) for word in words}
     except ValueError as error:
         raise UsageError(f"--storage: {error}") from error
     named = {name: storage for name, storage in made.items() if storage}
-    return choose("storage", names, {**STORAGES, **named, **given_in(names)})
+    chosen = choose("storage", ",".join(words), {**STORAGES, **named, **given_in(names)})
+    return list(dict.fromkeys(chosen))
+
+
+def _in_range(word: str) -> list[str]:
+    """The names of a range, in which each number grows by a bit from one to the next; a name alone is its own.
+
+    Raises UsageError.
+    """
+    found = RANGE.fullmatch(word)
+    if not found:
+        return [word]
+    first, last = ([int(bits) for bits in found[end].split(":")] for end in ("first", "last"))
+    steps = {high - low for low, high in zip(first, last, strict=False)}
+    if len(first) != len(last) or len(steps) != 1 or min(steps) < 0:
+        raise UsageError(f"--storage {word}: in a range each number grows by as many bits, as in unorm:4:4..16:16")
+    return [":".join((found["kind"], *(str(low + step) for low in first))) for step in range(steps.pop() + 1)]
 
 
 def fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:
