@@ -113,6 +113,12 @@ def test_encodings_import_nothing_but_jax_and_numpy_and_no_other_encoding():
         assert not others, f"{path.name} imports {others}"
 
 
+def test_no_two_modules_of_tests_have_one_name():
+    """pytest imports them by their names alone, and tells two apart only where it collects both."""
+    names = [path.name for path in (ROOT / "tests").rglob("test_*.py")]
+    assert sorted(name for name in set(names) if names.count(name) > 1) == []
+
+
 def test_the_package_list_is_the_folders():
     """setuptools maps the four folders into normalbench; the list is spelled out and must not drift."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())

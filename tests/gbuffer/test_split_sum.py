@@ -42,7 +42,7 @@ def errors(light: np.ndarray, towards: np.ndarray, area: np.ndarray, n_v: float,
     return np.abs(found)
 
 
-@pytest.mark.nightly("test_metal_rough.py::test_without_what_is_given_back_the_lobe_is_the_split_sum")
+@pytest.mark.slow
 def test_the_manual_says_how_far_the_split_sum_is_off():
     """The median in `studio`, by roughness and n.v; its texels 4 x 4 as one, which the narrowest lobe here covers."""
     radiance = ENVIRONMENTS["studio"].make().radiance.astype(np.float64).mean(axis=-1)
