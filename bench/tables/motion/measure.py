@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -24,7 +25,7 @@ from ....gbuffer.scenes.scene import Scene, View
 from ....gbuffer.scenes.setting import Setting
 from ...measures.metrics.totals import psnr_db
 from ..quality.measure import UNMEASURABLE
-from . import highlights, turning
+from . import highlights, panel, turning
 from .code_wobble import Motion, code_wobble
 from .highlights import Spots
 from .table import TABLE
@@ -120,6 +121,7 @@ class Bench:
     def __init__(self, device: Device | None, keeps_frames: bool):
         self._device, self._keeps_frames = device, keeps_frames
         self._references: dict[FrameSequence, Filmed] = {}
+        self._panels: dict[tuple[str, float, int], panel.Exact] = {}
 
     def measure(self, case: Case) -> tuple[Row, Filmed | None]:
         """One row of the table, and the frames; a row that cannot be measured has its reason in `skipped`."""
@@ -130,6 +132,8 @@ class Bench:
                 if not case.pictures or not self._device:
                     return row, None
                 filmed, found = self._film_and_columns(case, case.pictures, trip)
+                if case.motion.moves == turning.MOVES[0]:
+                    found |= self._panel_columns(case.motion, case.pictures.frames, trip)
         except UNMEASURABLE as error:
             return row | {"skipped": str(error)}, None
         return row | found | {"device": self._device.renderer}, filmed
@@ -143,6 +147,17 @@ class Bench:
             with _projector(self._device, pictures) as projector:
                 self._references[pictures] = _exact_film(projector)
         return self._references[pictures]
+
+    def _panel_columns(self, motion: Motion, frames: int, trip: Trip) -> Row:
+        assert self._device
+        sums, asked = Differences(), (motion.axis, motion.turn, frames)
+        with panel.going_around(self._device, *asked) as around:
+            if asked not in self._panels:
+                self._panels[asked] = panel.exact(around)
+            keeps = partial(in_space, trip, motion.space)
+            for difference, covered in panel.differences(around, self._panels[asked], keeps):
+                sums.add(difference, covered)
+        return {"panel_psnr_db": sums.static_db, "crawl_psnr_db": sums.wobble_db}
 
     def _film_and_columns(self, case: Case, pictures: FrameSequence, trip: Trip) -> tuple[Filmed, Row]:
         assert self._device

@@ -121,6 +121,20 @@ COLUMNS = (
         unit="dB",
         better="more",
     ),
+    Column(
+        "panel_psnr_db",
+        "The displayed image of a panel whose normal turns by 4 degrees across the picture, of a metal of roughness "
+        "0.1, under thin strips, against that of exact normals; all frames of a camera that goes around it, peak 1.",
+        unit="dB",
+        better="more",
+        drops=7,
+    ),
+    Column(
+        "crawl_psnr_db",
+        "The same of the change of their difference from one frame to the next: steps that crawl.",
+        unit="dB",
+        better="more",
+    ),
     Column("invalid", "Decodes that were NaN or infinite; each counts as the opposite direction.", shown=False),
     Column("frames", "Frames of a sequence.", HOW, drops=13),
     Column(

@@ -4,6 +4,7 @@ import itertools
 import json
 import math
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from PIL import Image
 from normalbench.bench.measures.metrics.totals import psnr_db
 from normalbench.bench.run.measuring import Nothing, asked, measured
 from normalbench.bench.subjects.codecs.names import codecs_named
-from normalbench.bench.tables.motion import highlights, turning
+from normalbench.bench.tables.motion import highlights, panel, turning
 from normalbench.bench.tables.motion.code_wobble import Motion, code_wobble
 from normalbench.bench.tables.motion.measure import Differences, FrameSequence, in_space, on_surfaces
 from normalbench.bench.tables.motion.table import MotionOptions
@@ -230,6 +231,53 @@ def test_the_image_is_that_of_a_real_target(gl, rows):
     moving = np.mean([np.mean(one[where] ** 2) for one, where in zip(np.diff(apart, axis=0), both, strict=True)])
     assert rows[0]["static_psnr_db"] == pytest.approx(psnr_db(static), abs=0.1)
     assert rows[0]["wobble_psnr_db"] == pytest.approx(psnr_db(moving), abs=0.1)
+
+
+def test_rows_of_a_camera_have_a_panel(rows):
+    for row in rows:
+        assert (row["panel_psnr_db"] is None) == (row["turn_deg"] == 2), row
+    assert all(15 < row["panel_psnr_db"] < 45 and 15 < row["crawl_psnr_db"] < 50 for row in rows[::2])
+
+
+def test_steps_of_a_panel_crawl_in_view_space_and_stay_in_world_space(gl):
+    """8:8 bits, a camera that goes around it: in world space more steps are there to see, and they move by less. The
+    manual has these figures."""
+    found = {}
+    with (
+        panel.going_around(gl, "yaw", 0.25, 16) as around,
+        trip_of(codecs_named("octahedral", "rg8", "nearest")[0]) as trip,
+    ):
+        right = panel.exact(around)
+        for space in turning.SPACES:
+            found[space] = Differences()
+            for apart, covered in panel.differences(around, right, partial(in_space, trip, space)):
+                found[space].add(apart, covered)
+    still, moving = ([getattr(found[space], of) for space in turning.SPACES] for of in ("static_db", "wobble_db"))
+    assert (*still, *moving) == pytest.approx((27.7, 21.5, 26.0, 36.6), abs=0.3)
+
+
+def test_the_panel_is_drawn_as_by_a_real_target(gl):
+    """By GLSL, which encodes into a texture of RG8 and decodes from it: the same difference from exact normals."""
+    (codec,) = codecs_named("octahedral", "rg8", "nearest")
+    with panel.going_around(gl, "yaw", 0.5, 3) as around, trip_of(codec) as trip:
+        right = panel.exact(around)
+        found = [one for one, _ in panel.differences(around, right, partial(in_space, trip, "world"))]
+        layout = replace(LAYOUTS["fp32"], space="world").with_codec(codec)
+        with rendering(gl, PIPELINES["deferred"], around.scene, replace(around.made.frame.plan, layout=layout)) as made:
+            for at, view in enumerate(around.views()):
+                made.draw(replace(around.scene, view=view, previous=view))
+                apart = right.display.image(made.image()).astype(np.float32) - right.shown[at] - found[at]
+                assert psnr_db(float(np.mean(apart[right.covered[at]] ** 2))) > 45, at
+
+
+@pytest.mark.parametrize("axis", TURNS)
+def test_a_camera_goes_around_what_it_looks_at(axis):
+    """It stays as far away, looks at the same point, and turns as it would where it stands."""
+    view = View((3.0, 2.0, 5.0), (1.0, 0.0, -1.0), 40.0, 0.1, 20.0)
+    gone = panel.around(view, axis, 7.0)
+    assert np.linalg.norm(np.subtract(gone.eye, gone.target)) == pytest.approx(np.sqrt(44))
+    assert gone.target == view.target
+    assert gone.matrix()[:3, :3] == pytest.approx(view.turned(axis, 7.0).matrix()[:3, :3])
 
 
 def drawn(gl, shots, layout):

@@ -1,0 +1,105 @@
+"""Steps that crawl: a slow panel that mirrors thin strips, which the camera goes around.
+
+A step of a code stays on the surface, or moves over it, while what the surface reflects goes by. The eye sees that
+sooner than it sees the step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ....encodings.catalogue import LIGHT_BUFFERS
+from ....gbuffer.display import Display, measured_exposure
+from ....gbuffer.environment.catalogue import ENVIRONMENTS
+from ....gbuffer.frame.plan import Plan
+from ....gbuffer.gl.device import Device
+from ....gbuffer.layouts.presets import LAYOUTS
+from ....gbuffer.pipelines import PIPELINES
+from ....gbuffer.render import Keeps, Rendering, rendering
+from ....gbuffer.scenes.scene import Scene, View
+from ..roughness.objects import shown
+from . import turning
+
+PIPELINE = "deferred"
+OBJECT, ENVIRONMENT = "panel4", "strips"
+# What reflects nearly as a mirror does, as wet floors, cars and screens do.
+ROUGHNESS = 0.1
+SIZE = (256, 256)
+TONE_MAPPING = "aces"
+# The camera goes as far to either side of where the panel reflects most, in degrees.
+SWING_DEG = 4.0
+
+
+@dataclass(frozen=True)
+class Around:
+    """A panel about to be rendered from each place of the camera."""
+
+    scene: Scene
+    made: Rendering
+    axis: str
+    turn: float
+    frames: int
+
+    def views(self) -> Iterator[View]:
+        """The camera of each frame."""
+        angles = turning.angles(self.turn, self.frames, 2 * SWING_DEG)
+        for angle in angles - np.max(angles) / 2:
+            yield around(self.scene.view, self.axis, float(angle))
+
+    def light(self, view: View, keeps: Keeps | None = None) -> np.ndarray:
+        """A frame's linear light, (height, width, 3)."""
+        self.made.draw(replace(self.scene, view=view, previous=view), keeps)
+        return self.made.image()
+
+    def covered(self) -> np.ndarray:
+        """Where the frame that was drawn last shows the panel, bool of shape (height, width)."""
+        return self.made.gbuffer()[0][..., 2] != 0
+
+
+@dataclass(frozen=True)
+class Exact:
+    """Frames of exact normals: as displayed, float32 of shape (height, width, 3); where the panel is; and how."""
+
+    shown: list[np.ndarray]
+    covered: list[np.ndarray]
+    display: Display
+
+
+@contextmanager
+def going_around(device: Device, axis: str, turn: float, frames: int) -> Iterator[Around]:
+    """The panel under a camera that goes around it, `turn` degrees a frame about its own up, right or line of sight."""
+    scene = shown(OBJECT, ENVIRONMENTS[ENVIRONMENT].make()).scene(ROUGHNESS)
+    plan = Plan(SIZE, 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 1, False, 1.0, antialiased=False)
+    with rendering(device, PIPELINES[PIPELINE], scene, plan) as made:
+        yield Around(scene, made, axis, turn, frames)
+
+
+def exact(panel: Around) -> Exact:
+    """The frames of exact normals, exposed once for all."""
+    light, covered = [], []
+    for view in panel.views():
+        light.append(panel.light(view))
+        covered.append(panel.covered())
+    middle = len(light) // 2
+    display = Display(measured_exposure(light[middle][covered[middle]]), TONE_MAPPING)
+    return Exact([display.image(one).astype(np.float32) for one in light], covered, display)
+
+
+def differences(
+    panel: Around, right: Exact, keeps_of: Callable[[View], Keeps]
+) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Of each frame its image less that of exact normals, and where the panel is."""
+    for at, view in enumerate(panel.views()):
+        image = right.display.image(panel.light(view, keeps_of(view))).astype(np.float32)
+        yield image - right.shown[at], right.covered[at]
+
+
+def around(view: View, axis: str, degrees: float) -> View:
+    """The camera gone around what it looks at, as `View.turned` turns it where it stands."""
+    turned = view.turned(axis, degrees)
+    x, y, z = map(float, np.add(view.target, np.subtract(view.eye, turned.target)))
+    return replace(turned, eye=(x, y, z), target=view.target)
