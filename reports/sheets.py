@@ -86,6 +86,7 @@ class Section:
         parts: a column; rows that differ in it are shown as tables of their own.
         extras: what the page's template shows beside the tables.
         leads: whether it is the page's first screen.
+        follows: whether it comes right behind that, before the page's pictures.
     """
 
     title: str
@@ -95,6 +96,7 @@ class Section:
     parts: str = ""
     extras: tuple[str, ...] = ()
     leads: bool = False
+    follows: bool = False
 
 
 @dataclass(frozen=True)

@@ -168,9 +168,10 @@ class Part:
 
 def navigation(found: Found, has_pictures: bool) -> list[tuple[str, str]]:
     """Anchors and their names, in the order of the page; what leads is on top of it."""
-    made = [("pictures", "Pictures")] if has_pictures else []
+    made = [(section.key, section.about.short) for section in found.sections if section.about.follows]
+    made += [("pictures", "Pictures")] if has_pictures else []
     for section in found.sections:
-        if section.about.leads:
+        if section.about.leads or section.about.follows:
             continue
         made.append((section.key, section.about.short))
         made += [(extra, EXTRAS[extra]) for extra in section.about.extras if extra in EXTRAS]

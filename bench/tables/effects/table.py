@@ -12,16 +12,7 @@ from ..table import Column, Role, Section, Table
 
 KEY, HOW, TIME = Role.KEY, Role.HOW, Role.TIME
 # What a run measures: the best of each kind, and the worst of those that ship.
-USUAL = (
-    "octahedral",
-    "octahedral_precise",
-    "spheremap",
-    "spherical",
-    "per_pixel_view",
-    "xyz",
-    "xyz_largest",
-    "best_fit",
-)
+USUAL = ("octahedral", "spheremap", "xyz", "best_fit")
 DEPTHS = "linear/packed16,window/depth24,window/depth32f"
 
 
@@ -146,7 +137,7 @@ TABLE = Table(
     options=EffectsOptions,
     outputs=EffectsOutputs,
     columns=COLUMNS,
-    usual=({"effect": "gtao,lpv,subsurface,water", "encoding": ",".join(USUAL)},),
+    usual=({"effect": "gtao,ssr", "encoding": ",".join(USUAL)},),
     single={"effect": "gtao", "encoding": "octahedral", "depth": "none"},
     files={"images": "effects"},
     by="effect",

@@ -28,7 +28,7 @@ PIPELINE = "deferred"
 OBJECT, ENVIRONMENT = "panel4", "strips"
 # What reflects nearly as a mirror does, as wet floors, cars and screens do.
 ROUGHNESS = 0.1
-SIZE = (256, 256)
+SIZE = (128, 128)
 TONE_MAPPING = "aces"
 # The camera goes as far to either side of where the panel reflects most, in degrees.
 SWING_DEG = 4.0

@@ -47,6 +47,7 @@ TABLE = Table(
     example="normalbench published --source cigolle,tyler",
     options=PublishedOptions,
     columns=COLUMNS,
+    in_all=False,
     usual=({"source": "pranckevicius,cigolle,smith"},),
     single={"source": "cigolle"},
     is_measured_beside=True,

@@ -26,10 +26,15 @@ from ...ground.options.option import (
 )
 from ...shaders.languages.source_options import SourceOptions
 from .. import shared_columns as shared
-from ..quality.table import COMMON
 from ..table import Column, Role, Section, Table
 
 KEY, HOW, TIME = Role.KEY, Role.HOW, Role.TIME
+
+# What a run draws: the articles' methods, and what engines ship.
+USUAL = (
+    *("xyz", "xy", "spherical", "spheremap", "cryengine3", "stereographic", "per_pixel_view", "octahedral"),
+    *("best_fit", "xyz_largest"),
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -212,7 +217,7 @@ TABLE = Table(
     options=RenderOptions,
     outputs=RenderOutputs,
     columns=COLUMNS,
-    usual=({"encoding": ",".join(COMMON), "repeats": 0},),
+    usual=({"encoding": ",".join(USUAL), "repeats": 0},),
     single={"encoding": "octahedral"},
     files={"images": "images"},
     section=Section(

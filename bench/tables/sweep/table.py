@@ -90,6 +90,7 @@ TABLE = Table(
     options=SweepOptions,
     outputs=SweepOutputs,
     columns=COLUMNS,
+    in_all=False,
     usual=({"pipeline": "all", "objects": "200", "shadow": "on", "size": "auto", "scale": 1.0, "repeats": 9},),
     single={"pipeline": "deferred", "objects": "100", "shadow": "on", "size": "320x240", "repeats": 1},
     section=Section(
