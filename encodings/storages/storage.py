@@ -205,11 +205,21 @@ def across(kind: str, bits: tuple[int, ...]) -> Storage:
 
 
 def by_rule(kind: str, bits: tuple[int, ...]) -> Storage:
-    """UNORM or SNORM numbers of so many bits: the catalogue's format that has just these, or laid across channels.
+    """Numbers of so many bits: the catalogue's format that has just these, or laid across channels.
+
+    Args:
+        kind: "unorm" or "snorm"; "centred" for the integers of SNORM in the channels of a UNORM format.
 
     Raises:
-        ValueError: as `across`.
+        ValueError: as `across`; and centred ones that are no format of a GPU.
     """
+    if kind == "centred":
+        like = by_rule("unorm", bits)
+        if like.is_packed:
+            raise ValueError(
+                f"centred numbers lie in a format of a GPU, such as centred:8:8, not {':'.join(map(str, bits))}"
+            )
+        return _centred_storage(like)
     alike = (s for s in STORAGES.values() if (s.kind, s.bits) == (kind, bits))
     return next(alike, None) or across(kind, bits)
 
@@ -221,8 +231,10 @@ def storage_of(name: str) -> Storage | None:
     Raises:
         ValueError: by rule or laid across channels, but not so; a line.
     """
-    if by := re.fullmatch(r"(unorm|snorm)((?::\d{1,3})+)", name):
+    if by := re.fullmatch(r"(unorm|snorm|centred)((?::\d{1,3})+)", name):
         return by_rule(by[1], tuple(map(int, by[2][1:].split(":"))))
+    if name.endswith(CENTRED) and name in MOTION_STORAGES:
+        return MOTION_STORAGES[name]
     match = re.fullmatch(r"(r|rg|rgb|rgba)8((?:_\d{1,3}){2,})(_snorm)?", name)
     if name in STORAGES or not match:
         return STORAGES.get(name)

@@ -25,7 +25,7 @@ from .half.compute import half_device
 from .user_encodings import encodings_named
 
 # Storages by rule from some bits to some others.
-RANGE = re.compile(r"(?P<kind>unorm|snorm):(?P<first>\d{1,2}(?::\d{1,2})*)\.\.(?P<last>\d{1,2}(?::\d{1,2})*)")
+RANGE = re.compile(r"(?P<kind>unorm|snorm|centred):(?P<first>\d{1,2}(?::\d{1,2})*)\.\.(?P<last>\d{1,2}(?::\d{1,2})*)")
 
 
 def codecs_named(encodings: str, storages: str, roundings: str, arithmetics: str = FLOAT) -> list[Codec]:
