@@ -194,10 +194,13 @@ def across(kind: str, bits: tuple[int, ...]) -> Storage:
     """Numbers of so many bits laid across as few channels of 8 bits as hold them: rg8_9_7.
 
     Raises:
-        ValueError: no number or a negative one, more than MOST_BITS, or more than 32 altogether; a line.
+        ValueError: no number or a negative one, a signed one of a bit, more than MOST_BITS, or more than 32 altogether;
+            a line.
     """
     if not all(1 <= b <= MOST_BITS for b in bits) or sum(bits) > 32 or len(bits) not in (2, 3, 4):
         raise ValueError(f"two to four numbers of 1 to {MOST_BITS} bits, 32 altogether, not {':'.join(map(str, bits))}")
+    if kind == "snorm" and 1 in bits:
+        raise ValueError(f"a signed number has at least 2 bits, not {':'.join(map(str, bits))}")
     channels, spread = ACROSS[(sum(bits) - 1) // 8], ":".join(map(str, bits))
     is_signed = kind == "snorm"
     name = f"{channels}_{spread.replace(':', '_')}" + ("_snorm" if is_signed else "")

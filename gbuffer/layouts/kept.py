@@ -34,8 +34,8 @@ class Kept:
         return isinstance(self.encoding, LightEncoding)
 
 
-def kept_as(name: str, limit: str, quantity: str) -> Kept:
-    """What `name` or `name:limit` says of a quantity, such as `roughness` or `emission`.
+def kept_as(name: str, limit: str | None, quantity: str) -> Kept:
+    """What `name`, or `name:limit` where there is a limit, says of a quantity such as `roughness` or `emission`.
 
     Raises:
         ValueError: there is none of that name, it is not for that quantity, or the range is none; a line.
@@ -43,13 +43,13 @@ def kept_as(name: str, limit: str, quantity: str) -> Kept:
     if quantity not in (*COLOURS, *SINGLE):
         raise ValueError(f"only {', '.join((*COLOURS, *SINGLE))} lie on a curve")
     if name in WHOLE:
-        if quantity != LIGHT or limit:
+        if quantity != LIGHT or limit is not None:
             raise ValueError(f"{name} keeps a light in a whole texel, as in {name}({LIGHT})")
         return Kept(WHOLE[name])
     if name not in CURVE_ENCODINGS:
         raise ValueError(f"unknown curve {name!r}; known: {', '.join((*CURVE_ENCODINGS, *WHOLE))}")
     encoding = CURVE_ENCODINGS[name]
-    return Kept(encoding, _range_of(limit) if limit else encoding.usual_range)
+    return Kept(encoding, encoding.usual_range if limit is None else _range_of(limit))
 
 
 def _range_of(text: str) -> float:
@@ -57,6 +57,7 @@ def _range_of(text: str) -> float:
         found = float(text)
     except ValueError:
         found = math.nan
+    # Not a number is no range either.
     if not 1e-3 <= found <= 65504:
         raise ValueError(f"a range is 0.001 to 65504, not {text}")
     return found

@@ -40,7 +40,7 @@ LEAST_BITS = {"kind": 2, "instance": 8}
 # How far from 0 a carried sign keeps its number, in steps: NRD.hlsli has 1.5 / 512 of 10 bits.
 SIGN_STEPS = 1.5
 WORD = re.compile(
-    r"(?:(?P<curve>\w+)(?::(?P<range>[\d.e+-]+))?\((?P<curved>[a-z.]+)\)|(?P<name>[a-z.]+|-))"
+    r"(?:(?P<curve>\w+)(?::(?P<range>[^()\s]*))?\((?P<curved>[a-z.]+)\)|(?P<name>[a-z.]+|-))"
     r"(?:\*(?P<sign>normal\.[xyz]))?(?::(?P<bits>\d{1,2}))?"
 )
 
@@ -120,7 +120,7 @@ def _spelt_out(place: str, target: Target) -> Iterator[str]:
         is_whole = found["curve"] in WHOLE and name == LIGHT
         if is_whole and (target.holds.split()[0] != text or target.format not in WHOLE[found["curve"]].storages):
             known = ", ".join(WHOLE[found["curve"]].storages)
-            raise LayoutError(f"{place}: {text} fills a texel, of {known}")
+            raise LayoutError(f"{place}: {text} is all that its target holds, of {known}")
         for channel in "rgba" if is_whole else "rgb":
             yield f"{name}.{channel}".join(text.rsplit(name, 1))
 
@@ -130,6 +130,8 @@ def _word_parts(place: str, text: str) -> tuple[str, str, int, Kept | None]:
     found = WORD.fullmatch(text)
     name = (found["curved"] or found["name"]) if found else ""
     if not found or name not in (*COMPONENTS, OTHER, FREE):
+        if not found and set(text) & set("()"):
+            raise LayoutError(f"{place}: {text}: a curve is said as squared(roughness) or linear:0.08(reflectance):6")
         known = ", ".join((*COMPONENTS, OTHER, FREE))
         raise LayoutError(f"{place}: unknown component {name or text!r}; known: {known}")
     sign, bits = found["sign"] or "", int(found["bits"] or 0)
@@ -138,7 +140,7 @@ def _word_parts(place: str, text: str) -> tuple[str, str, int, Kept | None]:
     if sign and name not in CARRIERS:
         raise LayoutError(f"{place}: {text}: only {', '.join(CARRIERS)} carry a sign")
     try:
-        kept = kept_as(found["curve"], found["range"] or "", name.partition(".")[0]) if found["curve"] else None
+        kept = kept_as(found["curve"], found["range"], name.partition(".")[0]) if found["curve"] else None
     except ValueError as error:
         raise LayoutError(f"{place}: {text}: {error}") from error
     if kept and kept.is_whole and bits:

@@ -99,46 +99,6 @@ def pick(
         on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
-def roughness(
-    *,
-    encoding: Names = ...,
-    storage: Names = ...,
-    rounding: Names = ...,
-    object: Names = ...,
-    environment: Names = ...,
-    threshold: Names = ...,
-    size: Names = ...,
-    dither: Names = ...,
-    frames: Names | None = ...,
-    define: Names | None = ...,
-    prelude: Names | None = ...,
-    include: Names | None = ...,
-    language: Names | None = ...,
-    all_pairs: bool = ...,
-    on: str | None = ...,
-) -> Rows:
-    """From which roughness on a normal code carries reflections: a mirror shows each step of a code, a dull surface none.
-
-    A sphere and two panels of a metal that reflects all light fill the picture one by one, under three environments. A code carries a roughness where FLIP's 99th percentile is at most --threshold there and at every greater roughness, on the worst of objects and environments. 0.1 is what we call acceptable and 0.05 invisible: both are conventions.
-
-    Args:
-        encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
-        storage: Storages, comma-separated, or all; `normalbench list` shows them. Any bits are one too: unorm:9:7, snorm:12:12, unorm:4:4..16:16.
-        rounding: nearest, truncate, truncate_half; comma-separated, or all.
-        object: sphere, panel20, panel4; comma-separated, or all.
-        environment: studio, strips, lamp, sky, or .hdr and .exr files; comma-separated.
-        threshold: FLIP's 99th percentile that a code may have, comma-separated.
-        size: WIDTHxHEIGHT of the image.
-        dither: Noise before rounding, besides none: still, moving; comma-separated, or all.
-        frames: Frames whose mean a picture is, comma-separated. Default: 1; with --dither 1,8.
-        define: Shader files: macros, NAME or NAME=VALUE.
-        prelude: Shader files: files that are put in front.
-        include: Shader files: where includes lie: FOLDER, or NAME=FOLDER of NAME/file.
-        language: Shader files: hlsl, slang, glsl or wgsl. Default: by the ending.
-        all_pairs: Shader files: each encoder that its decoder undoes, not one.
-        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
-    """
-
 def quality(
     *,
     encoding: Names = ...,
@@ -581,6 +541,46 @@ def motion(
         size: WIDTHxHEIGHT of the image.
         lights: Point lights.
         seed: The random seed of uniform sets, points and scenes.
+        define: Shader files: macros, NAME or NAME=VALUE.
+        prelude: Shader files: files that are put in front.
+        include: Shader files: where includes lie: FOLDER, or NAME=FOLDER of NAME/file.
+        language: Shader files: hlsl, slang, glsl or wgsl. Default: by the ending.
+        all_pairs: Shader files: each encoder that its decoder undoes, not one.
+        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
+    """
+
+def roughness(
+    *,
+    encoding: Names = ...,
+    storage: Names = ...,
+    rounding: Names = ...,
+    object: Names = ...,
+    environment: Names = ...,
+    threshold: Names = ...,
+    size: Names = ...,
+    dither: Names = ...,
+    frames: Names | None = ...,
+    define: Names | None = ...,
+    prelude: Names | None = ...,
+    include: Names | None = ...,
+    language: Names | None = ...,
+    all_pairs: bool = ...,
+    on: str | None = ...,
+) -> Rows:
+    """From which roughness on a normal code carries reflections: a mirror shows each step of a code, a dull surface none.
+
+    A sphere and two panels of a metal that reflects all light fill the picture one by one, under three environments. A code carries a roughness where FLIP's 99th percentile is at most --threshold there and at every greater roughness, on the worst of objects and environments. 0.1 is what we call acceptable and 0.05 invisible: both are conventions.
+
+    Args:
+        encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
+        storage: Storages, comma-separated, or all; `normalbench list` shows them. Any bits are one too: unorm:9:7, snorm:12:12, unorm:4:4..16:16.
+        rounding: nearest, truncate, truncate_half; comma-separated, or all.
+        object: sphere, panel20, panel4; comma-separated, or all.
+        environment: studio, strips, lamp, sky, or .hdr and .exr files; comma-separated.
+        threshold: FLIP's 99th percentile that a code may have, comma-separated.
+        size: WIDTHxHEIGHT of the image.
+        dither: Noise before rounding, besides none: still, moving; comma-separated, or all.
+        frames: Frames whose mean a picture is, comma-separated. Default: 1; with --dither 1,8.
         define: Shader files: macros, NAME or NAME=VALUE.
         prelude: Shader files: files that are put in front.
         include: Shader files: where includes lie: FOLDER, or NAME=FOLDER of NAME/file.

@@ -87,7 +87,10 @@ def codec_of(codec: Codec | str) -> Codec:
         name, _, storage = before.rpartition("/")
         if not (name and storage):
             raise UsageError(f'codec {codec!r}: name an encoding and a storage, such as "octahedral/rg8"')
-        (found,) = codecs_named(name, storage, rounding)
+        several = codecs_named(name, storage, rounding)
+        if len(several) != 1:
+            raise UsageError(f"codec {codec!r}: one codec at a time, not {len(several)}")
+        (found,) = several
     if found.misfit:
         raise UsageError(f"{found.name}: {found.misfit}")
     return found if has_twin(found.encoding) else replace(found, encoding=_by_gl(found.encoding))

@@ -102,7 +102,7 @@ def _vectors() -> list[Row]:
 
 def _curves() -> list[Row]:
     return [
-        _row("curve", c.name, c.title, holds=f"0 to {c.usual_range:g}, or to what a layout says") | {"from": c.citation}
+        _row("curve", c.name, f"{c.title}, from 0 to {c.usual_range:g}") | {"from": c.citation}
         for c in CURVE_ENCODINGS.values()
     ]
 

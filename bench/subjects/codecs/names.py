@@ -24,7 +24,8 @@ from ...shaders.languages.words import CHAIN, file_of, split_names
 from .half.compute import half_device
 from .user_encodings import encodings_named
 
-# Storages by rule from some bits to some others.
+# A storage by rule, and some from some bits to some others.
+ONE = re.compile(r"(unorm|snorm|centred)(:\d{1,3})+")
 RANGE = re.compile(r"(?P<kind>unorm|snorm|centred):(?P<first>\d{1,2}(?::\d{1,2})*)\.\.(?P<last>\d{1,2}(?::\d{1,2})*)")
 
 
@@ -120,6 +121,8 @@ def _in_range(word: str) -> list[str]:
     Raises UsageError.
     """
     found = RANGE.fullmatch(word)
+    if not found and re.match(r"(unorm|snorm|centred|uint|float):", word, re.I) and not ONE.fullmatch(word):
+        raise UsageError(f"--storage {word}: bits are said as unorm:9:7, snorm:12:12, centred:8:8, unorm:4:4..16:16")
     if not found:
         return [word]
     first, last = ([int(bits) for bits in found[end].split(":")] for end in ("first", "last"))

@@ -127,7 +127,6 @@ COLUMNS = (
         "0.1, under thin strips, against that of exact normals; all frames of a camera that goes around it, peak 1.",
         unit="dB",
         better="more",
-        drops=7,
     ),
     Column(
         "crawl_psnr_db",

@@ -4,6 +4,7 @@ import json
 
 import pytest
 
+from normalbench.bench.door.python.codecs import codec_of
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.subjects.codecs.names import storages_named
 
@@ -37,6 +38,10 @@ def test_bits_name_a_storage(said, names):
         ("unorm:8:8..10", "each number grows by as many bits"),
         ("centred:9:7", "centred numbers lie in a format of a GPU, such as centred:8:8, not 9:7"),
         ("unorms:8:8", "unknown storage 'unorms:8:8'"),
+        ("snorm:1:8", "a signed number has at least 2 bits, not 1:8"),
+        ("UNORM:9:7", "bits are said as unorm:9:7"),
+        ("unorm:8:8..", "bits are said as unorm:9:7"),
+        ("float:5:10", "bits are said as unorm:9:7"),
     ],
 )
 def test_what_cannot_be_is_a_line(said, message):
@@ -54,3 +59,8 @@ def test_centred_numbers_are_measured_and_not_written_or_laid_out(run):
     assert status == 2 and err == "normalbench: layout fp32: RG8 centred: a layout keeps no centred numbers\n"
     status, _, err = run("code", "octahedral", "--storage", "centred:8:8")
     assert status == 2 and err.count("\n") == 1 and "code writes none" in err
+
+
+def test_python_takes_one_codec_at_a_time():
+    with pytest.raises(UsageError, match="one codec at a time, not 3"):
+        codec_of("octahedral/unorm:4:4..6:6")
