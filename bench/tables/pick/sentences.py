@@ -184,7 +184,7 @@ def _seen_sentences(row: Row) -> str:
     said = f"A mirror's reflection moves by {degrees(moved[0])} in the mean and at most {degrees(moved[1])}: "
     said += f"{texels} texels of {MAP}, {far} cm at {FAR:g} m."
     enough = " That is enough for such a map." if is_enough(row) else ""
-    return f"{said}{enough} From which roughness on no step shows, {_roughness_command(row)} says."
+    return f"{said}{enough} {_roughness_command(row)} says from which roughness on no step shows."
 
 
 def _roughness_command(row: Row) -> str:
