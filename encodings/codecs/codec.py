@@ -12,12 +12,11 @@ import numpy as np
 
 from ..storages.dither import Dither
 from ..storages.rounding import numbers_around, store_number
-from ..storages.storage import BITS_32, LARGEST, STORAGES, Storage, of_unit
+from ..storages.storage import BITS_32, LARGEST, Storage, of_unit
 from ..vec import Vec3, dot, jnp, select
 from .encoding import Encoding
 
-# A number that is not one of few values is not laid into fewer bits of a storage of the catalogue. Who says the bits
-# means them.
+# A number that is not one of few values is not laid into fewer bits, unless somebody said them.
 LEAST_BITS = 4
 
 
@@ -27,7 +26,7 @@ def numbers_misfit(storage: Storage, levels: Sequence[int]) -> str | None:
         bits = storage.bits[channel]
         if count > storage.levels(channel):
             return f"number {channel + 1} has {count} values, more than {storage.title} tells apart"
-        if not count and bits < LEAST_BITS and storage.name in STORAGES:
+        if not count and bits < LEAST_BITS and not storage.is_said:
             return f"number {channel + 1} has {bits} bits in {storage.title}, which are for one of few values"
     return None
 

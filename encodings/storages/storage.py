@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -38,6 +38,7 @@ class Storage:
         is_packed: numbers of so many bits lie as integers across the channels of RGBA8.
         is_centred: the integers of SNORM lie in UNORM channels, 2^(n-1) - 1 more than themselves.
         holds_unit: its texels hold numbers in [0, 1] though it has a sign: those of an encoder that returns them so.
+        is_said: somebody said its bits, however few they are.
     """
 
     name: str
@@ -49,6 +50,7 @@ class Storage:
     is_packed: bool = False
     is_centred: bool = False
     holds_unit: bool = False
+    is_said: bool = field(default=False, compare=False)
 
     @property
     def channels(self) -> int:
@@ -204,7 +206,12 @@ def across(kind: str, bits: tuple[int, ...]) -> Storage:
     channels, spread = ACROSS[(sum(bits) - 1) // 8], ":".join(map(str, bits))
     is_signed = kind == "snorm"
     name = f"{channels}_{spread.replace(':', '_')}" + ("_snorm" if is_signed else "")
-    return _packed_storage(name, f"{spread} {'signed ' if is_signed else ''}in {channels.upper()}", kind, *bits)
+    made = _packed_storage(name, f"{spread} {'signed ' if is_signed else ''}in {channels.upper()}", kind, *bits)
+    return replace(made, is_said=True)
+
+
+# Storages by rule: unorm:9:7.
+BY_RULE = re.compile(r"(?P<kind>unorm|snorm|centred):(?P<bits>\d{1,3}(?::\d{1,3})*)")
 
 
 def by_rule(kind: str, bits: tuple[int, ...]) -> Storage:
@@ -234,8 +241,8 @@ def storage_of(name: str) -> Storage | None:
     Raises:
         ValueError: by rule or laid across channels, but not so; a line.
     """
-    if by := re.fullmatch(r"(unorm|snorm|centred)((?::\d{1,3})+)", name):
-        return by_rule(by[1], tuple(map(int, by[2][1:].split(":"))))
+    if by := BY_RULE.fullmatch(name):
+        return by_rule(by["kind"], tuple(map(int, by["bits"].split(":"))))
     if name.endswith(CENTRED) and name in MOTION_STORAGES:
         return MOTION_STORAGES[name]
     match = re.fullmatch(r"(r|rg|rgb|rgba)8((?:_\d{1,3}){2,})(_snorm)?", name)

@@ -72,16 +72,16 @@ def curve_defines(layout: Layout) -> dict[str, object]:
     """
     found: dict[str, object] = {}
     lines: dict[str, list[str]] = {"encode": [], "decode": []}
+    prefix = ""
     for component, kept in layout.kept.items():
         if isinstance(kept.encoding, LightEncoding):
+            prefix = kept.encoding.prefix
             found |= kept.encoding.constants
             continue
         found |= curve_constants(kept.encoding)
         place = f"numbers[{COMPONENTS.index(component)}]"
         for way, made in lines.items():
             made.append(f"{place} = {kept.encoding.name}_{way}_curve({place}, {glsl_value(kept.range)});")
-    codes = {k.encoding.prefix for k in layout.kept.values() if isinstance(k.encoding, LightEncoding)}
-    prefix = next(iter(codes), "")
     return found | {
         "TO_CURVES": " ".join(lines["encode"]),
         "FROM_CURVES": " ".join(lines["decode"]),

@@ -23,6 +23,7 @@ from slowly import all_but
 from normalbench.encodings.catalogue import FRAME_ENCODINGS
 from normalbench.encodings.codecs.frame_codec import FrameCodec
 from normalbench.encodings.rotation import quaternion_of
+from normalbench.encodings.storages.storage import FRAME_STORAGES
 
 
 @pytest.mark.parametrize("name", sorted(FRAME_ENCODINGS))
@@ -105,3 +106,9 @@ def test_a_hand_at_an_end_of_its_range_is_kept():
     for name, frames, number in (("smallest_three", third, 2), ("qtangent", half_turn, 3)):
         codes = rows(FRAME_ENCODINGS[name].encode(as_frame(frames), LEAST))
         assert codes[:, number] == pytest.approx([LEAST, -LEAST], rel=2e-3), name
+
+
+def test_a_number_of_many_values_is_laid_into_no_single_bit_that_nobody_said():
+    """qtangent's fourth number in the one bit of 10:10:11:1."""
+    found = FrameCodec(FRAME_ENCODINGS["qtangent"], FRAME_STORAGES["rgba8_10_10_11_1"]).misfit
+    assert found == "number 4 has 1 bits in 10:10:11:1 in RGBA8, which are for one of few values"

@@ -14,7 +14,7 @@ from ....encodings.catalogue import ENCODINGS
 from ....encodings.codecs.codec import Codec
 from ....encodings.codecs.encoding import Encoding
 from ....encodings.codecs.variants import ARITHMETICS, DECLARED, FLOAT, HALF, in_half
-from ....encodings.storages.storage import ROUNDINGS, STORAGES, Storage, storage_of
+from ....encodings.storages.storage import BY_RULE, ROUNDINGS, STORAGES, Storage, storage_of
 from ....encodings.vec import Vec3
 from ...ground.choose import choose, names_a_file
 from ...ground.options.words import Words, given_in
@@ -24,8 +24,7 @@ from ...shaders.languages.words import CHAIN, file_of, split_names
 from .half.compute import half_device
 from .user_encodings import encodings_named
 
-# A storage by rule, and some from some bits to some others.
-ONE = re.compile(r"(unorm|snorm|centred)(:\d{1,3})+")
+# Storages by rule from some bits to some others.
 RANGE = re.compile(r"(?P<kind>unorm|snorm|centred):(?P<first>\d{1,2}(?::\d{1,2})*)\.\.(?P<last>\d{1,2}(?::\d{1,2})*)")
 
 
@@ -121,7 +120,7 @@ def _in_range(word: str) -> list[str]:
     Raises UsageError.
     """
     found = RANGE.fullmatch(word)
-    if not found and re.match(r"(unorm|snorm|centred|uint|float):", word, re.I) and not ONE.fullmatch(word):
+    if not found and re.match(r"(unorm|snorm|centred|uint|float):", word, re.I) and not BY_RULE.fullmatch(word):
         raise UsageError(f"--storage {word}: bits are said as unorm:9:7, snorm:12:12, centred:8:8, unorm:4:4..16:16")
     if not found:
         return [word]
