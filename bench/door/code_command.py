@@ -80,8 +80,6 @@ def _codecs(options: CodeOptions) -> list[Codec]:
     if not options.check or options.storage:
         for line in left_out:
             leave_out(line)
-    if centred := next((codec for codec in codecs if codec.storage.is_centred), None):
-        raise UsageError(f"{centred.name}: centred numbers are measured, and code writes none; write SNORM's integers")
     return codecs
 
 

@@ -19,11 +19,11 @@ from ...encodings.storages.storage import STORAGES, Storage
 from ...reports import tables
 from ...reports.charts.sphere_chart import sphere_chart
 from ..ground.choose import choose_one
+from ..ground.options.storage_names import storages_named
 from ..ground.output.errors import UsageError, tell
 from ..ground.output.writing import check_plot, save_plot, write, write_text
 from ..shaders.languages.source_options import in_names
 from ..shaders.languages.words import file_of
-from ..subjects.codecs.names import storages_named
 from ..subjects.codecs.user_encodings import ANY, Examined, examined
 from ..subjects.normals.normal_sets import NORMAL_SETS
 from ..tables.quality.measure import Case, measure

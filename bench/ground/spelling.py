@@ -59,12 +59,12 @@ def spelled(what: str, word: str, known: Iterable[str]) -> str | None:
         return word
     wanted = OTHER_WORDS.get(what, {}).get(plain(word), word)
     found = [name for name in known if plain(name) == plain(wanted)]
-    if not found and what.endswith("storage") and (channels := _channels(word)):
-        found = [name for name in known if _channels(name) == channels]
+    if not found and what.endswith("storage") and (channels := channels_of(word)):
+        found = [name for name in known if channels_of(name) == channels]
     return found[0] if len(found) == 1 else None
 
 
-def _channels(word: str) -> tuple[str, ...]:
+def channels_of(word: str) -> tuple[str, ...]:
     """The channels of a format with their bits, red first, and how they hold numbers; none of another word."""
     match = _FORMAT.fullmatch(_API.sub("", word.lower()))
     if not match:

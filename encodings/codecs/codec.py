@@ -12,7 +12,7 @@ import numpy as np
 
 from ..storages.dither import Dither
 from ..storages.rounding import numbers_around, store_number
-from ..storages.storage import BITS_32, LARGEST, Storage, of_unit
+from ..storages.storage import BITS_32, FORMS, Storage, of_unit
 from ..vec import Vec3, dot, jnp, select
 from .encoding import Encoding
 
@@ -64,7 +64,8 @@ class Codec:
         if encoding.before and encoding.before.misfit:
             return f"{encoding.before.name}: {encoding.before.misfit}"
         if encoding.components > storage.channels:
-            return f"{encoding.components} components, but {storage.title} has {storage.channels} channels"
+            has = f"{storage.channels} channel" + "s" * (storage.channels > 1)
+            return f"{encoding.components} components, but {storage.title} has {has}"
         if storage.kind == "float" and (encoding.is_precise or self.rounding == "truncate_half"):
             return f"{storage.title} is of floats, and {self._rounding_text} is for fixed point"
         if encoding.is_precise and self.rounding != "nearest":
@@ -88,7 +89,7 @@ class Codec:
             return "precise rounding compares errors too small"
         # Whole numbers are bits and counts of loops, which stay integers.
         numbers = [value for value in self.encoding.constants.values() if isinstance(value, float)]
-        is_large = self.encoding.has_tables or max(numbers, default=0.0) > LARGEST[16]
+        is_large = self.encoding.has_tables or max(numbers, default=0.0) > FORMS[16].largest
         return "it counts in numbers too large" if is_large else ""
 
     @property
@@ -112,6 +113,11 @@ class Codec:
     def fits(self) -> bool:
         """Whether the storage can hold what the encoding makes."""
         return self.misfit is None
+
+    @property
+    def is_integer(self) -> bool:
+        """Whether its texels are bits alone, whose means are no numbers: an integer, or floats across channels."""
+        return self.encoding.is_packed or self.storage.form is not None
 
     @property
     def bits(self) -> int:

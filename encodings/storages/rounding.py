@@ -15,13 +15,13 @@ Numbers in float64 stand for the exact map: the same integers and floats, produc
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..vec import jnp, maximum, minimum, select
-from .storage import MANTISSA, STORAGES, Storage, of_unit
+from ..vec import jnp, maximum, minimum, select, sign_bit
+from .storage import FORMS, STORAGES, FloatForm, Storage, of_unit
 
 # IEC 61966-2-1: x is slope x up to the knee, and (1 + offset) x^(1/power) - offset above.
 SRGB_KNEE, SRGB_SLOPE, SRGB_OFFSET, SRGB_POWER = 0.0031308, 12.92, 0.055, 2.4
@@ -39,12 +39,17 @@ def scale_of(integer: int) -> Scale:
     return Scale(float(integer), 1.0 / integer)
 
 
-def rounded(x, scale: Scale, rounding: str = "nearest"):
-    """x in [-1, 1] (any shape) as a whole number: nearest, or cut off toward zero, or cut off of x (one + 1/2)."""
+def rounded(x, scale: Scale, rounding: str = "nearest", most=None):
+    """x in [-1, 1] (any shape) as a whole number: nearest, or cut off toward zero, or cut off of x (one + 1/2).
+
+    Args:
+        most: the largest one, where that does not stand for 1.
+    """
     if rounding == "nearest":
-        return jnp.round(x * scale.one)
+        whole = jnp.round(x * scale.one)
+        return whole if most is None else minimum(whole, most)
     widened = jnp.trunc(x * (scale.one + 0.5 if rounding == "truncate_half" else scale.one))
-    return minimum(maximum(widened, -scale.one), scale.one)
+    return minimum(maximum(widened, -scale.one), scale.one if most is None else most)
 
 
 def store_unorm(x, scale: Scale, rounding: str = "nearest"):
@@ -52,9 +57,9 @@ def store_unorm(x, scale: Scale, rounding: str = "nearest"):
     return rounded(minimum(maximum(x, 0.0), 1.0), scale, rounding) * scale.reciprocal
 
 
-def store_snorm(x, scale: Scale, rounding: str = "nearest"):
-    """x (float32, any shape) as SNORM stores it and gives it back, in [-1, 1]; NaN is -1."""
-    code = rounded(minimum(maximum(x, -1.0), 1.0), scale, rounding)
+def store_snorm(x, scale: Scale, rounding: str = "nearest", is_full: bool = False):
+    """x (float32, any shape) as SNORM stores it and gives it back, in [-1, 1]; NaN is -1. One that is full has no 1."""
+    code = rounded(minimum(maximum(x, -1.0), 1.0), scale, rounding, scale.one - 1 if is_full else None)
     # An integer has no negative zero.
     return code.astype(jnp.int32).astype(x.dtype) * scale.reciprocal
 
@@ -66,39 +71,43 @@ def store_half(x, rounding: str = "nearest"):
     """
     if rounding == "nearest":
         return x.astype(jnp.float16).astype(jnp.float32)
-    bits = x.view(jnp.uint32)
-    normal = (bits & jnp.uint32(0xFFFFE000)).view(jnp.float32)
-    subnormal = jnp.trunc(x * 2.0**24) * 2.0**-24
-    kept = select(abs(x) < 2.0**-14, subnormal, normal)
-    return select(jnp.isfinite(x), minimum(maximum(kept, -65504.0), 65504.0), x)
+    return store_small_float(x, FORMS[16], rounding)
 
 
-def store_small_float(x, bits: int, rounding: str = "nearest"):
-    """x (float32, any shape) as an unsigned float of 11 or 10 bits stores it: five of exponent, the rest of mantissa.
+def store_small_float(x, form: FloatForm, rounding: str = "nearest"):
+    """x (float32, any shape) as a float of so many bits stores it.
 
-    There is nothing below 0, and what is finite stays finite: 65024 or 64512 at most (OpenGL 4.6, 2.3.4.3 and 2.3.4.4).
+    Without a sign there is nothing below 0, and what is finite stays finite (OpenGL 4.6, 2.3.4.3 and 2.3.4.4). With a
+    sign nearest makes infinite what is too large, and toward zero does not (IEEE 754).
     """
-    cut = 23 - (bits - 5)
-    least, most = 2.0 ** (-14 - (bits - 5)), 2.0**16 - 2.0 ** (15 - (bits - 5))
-    word = maximum(x, 0.0).view(jnp.uint32)
-    half = jnp.uint32(2 ** (cut - 1) - 1) + (word >> cut & 1) if rounding == "nearest" else jnp.uint32(0)
-    normal = (word + half & jnp.uint32(2**32 - 2**cut)).view(jnp.float32)
-    steps = maximum(x, 0.0) * (1.0 / least)
-    subnormal = (jnp.round(steps) if rounding == "nearest" else jnp.floor(steps)) * least
-    kept = minimum(select(x < 2.0**-14, subnormal, normal), most)
-    return select((x == jnp.inf) | jnp.isnan(x), x, kept)
+    magnitude = abs(x) if form.is_signed else maximum(x, 0.0)
+    cut, word = 23 - form.mantissa, magnitude.view(jnp.uint32)
+    is_nearest = rounding == "nearest" and cut > 0
+    half = jnp.uint32(2 ** (cut - 1) - 1) + (word >> cut & 1) if is_nearest else jnp.uint32(0)
+    kept = (word + half & jnp.uint32(2**32 - 2**cut)).view(jnp.float32)
+    # Of eight bits of exponent those below the normal ones are float32's own.
+    if form.exponent < 8:
+        least = 2.0 ** (1 - form.one - form.mantissa)
+        steps = magnitude * (1.0 / least)
+        subnormal = (jnp.round(steps) if rounding == "nearest" else jnp.floor(steps)) * least
+        kept = select(magnitude < 2.0 ** (1 - form.one), subnormal, kept)
+    too_large = jnp.inf if form.is_signed and rounding == "nearest" else form.largest
+    kept = select(kept > form.largest, too_large, kept)
+    signed = select(sign_bit(x), -kept, kept) if form.is_signed else kept
+    is_endless = jnp.isinf(x) if form.is_signed else x == jnp.inf
+    return select(is_endless | jnp.isnan(x), x, signed)
 
 
-def store_float(x, bits: int, rounding: str = "nearest"):
+def store_float(x, form: FloatForm, rounding: str = "nearest"):
     """x (float64, any shape, magnitude below 2^15) as a float of so many bits stores it, by arithmetic: what stands for
-    the exact map. Of 11 and 10 bits there is nothing below 0."""
-    if bits == 32:
+    the exact map. Without a sign there is nothing below 0."""
+    if form == FORMS[32]:
         return x.astype(jnp.float32).astype(x.dtype)
-    octave = maximum(jnp.frexp(x)[1] - 1, -14)
-    step = jnp.ldexp(jnp.ones_like(x), octave - MANTISSA[bits])
+    octave = maximum(jnp.frexp(x)[1] - 1, 1 - form.one)
+    step = jnp.ldexp(jnp.ones_like(x), octave - form.mantissa)
     whole = x / step
     stored = (jnp.round(whole) if rounding == "nearest" else jnp.trunc(whole)) * step
-    return stored if bits == 16 else maximum(stored, 0.0)
+    return stored if form.is_signed else maximum(stored, 0.0)
 
 
 def to_srgb(x):
@@ -144,11 +153,13 @@ def shared(storage: Storage, count: int, number: type[np.floating] = np.float32)
     them, and this one's scales of the first `count` channels, of float32 or float64. Floats have no scales; the first
     format with as many bits in these channels stands for them. Others stand for themselves."""
     if storage.kind == "float":
+        if storage.form:
+            return storage, ()
         alike = (s for s in STORAGES.values() if (s.kind, s.bits[:count]) == ("float", storage.bits[:count]))
         return _filled_as(storage, next(alike, storage)), ()
     if storage.curved:
         return storage, ()
-    like = STORAGES["rgba8" if storage.kind == "unorm" else "rgba8_snorm"]
+    like = replace(STORAGES["rgba8" if storage.kind == "unorm" else "rgba8_snorm"], is_full=storage.is_full)
     return _filled_as(storage, like), scales_of(storage, number)[:count]
 
 
@@ -173,18 +184,18 @@ def store_texel(x, storage: Storage, channel: int, rounding: str = "nearest"):
     if x.dtype == jnp.float16:
         return store_texel(x.astype(jnp.float32), storage, channel, rounding).astype(jnp.float16)
     if storage.kind == "float":
-        return _store_float_texel(x, storage.bits[channel], rounding)
+        return _store_float_texel(x, storage.float_form(channel), rounding)
     if storage.kind == "snorm":
-        return store_snorm(x, _scale(storage, channel), rounding)
+        return store_snorm(x, _scale(storage, channel), rounding, storage.is_full)
     return (store_srgb if channel < storage.curved else store_unorm)(x, _scale(storage, channel), rounding)
 
 
-def _store_float_texel(x, bits: int, rounding: str):
+def _store_float_texel(x, form: FloatForm, rounding: str):
     if x.dtype != jnp.float32:
-        return store_float(x, bits, rounding)
-    if bits == 32:
+        return store_float(x, form, rounding)
+    if form == FORMS[32]:
         return store_exactly(x)
-    return store_half(x, rounding) if bits == 16 else store_small_float(x, bits, rounding)
+    return store_half(x, rounding) if form == FORMS[16] else store_small_float(x, form, rounding)
 
 
 def store_number(c, storage: Storage, channel: int, rounding: str = "nearest"):
@@ -200,5 +211,6 @@ def numbers_around(c, storage: Storage, channel: int):
     scale = _scale(storage, channel)
     x = minimum(maximum(c * 0.5 + 0.5, 0.0) if storage.is_biased else maximum(c, -1.0), 1.0)
     below = jnp.floor(x * scale.one)
-    texels = (step * scale.reciprocal for step in (below, minimum(below + 1.0, scale.one)))
+    most = scale.one - 1.0 if storage.is_full else scale.one
+    texels = (step * scale.reciprocal for step in (minimum(below, most), minimum(below + 1.0, most)))
     return tuple(texel * 2.0 - 1.0 if storage.is_biased else texel for texel in texels)

@@ -1,33 +1,27 @@
 // Rounding in the shader, beside rounding.py, for a device that does not round as the codec asks. The kinds of format
-// are UNORM 0, SNORM 1, half 2, small floats 3, and 32-bit floats 4, which stay as they are. The ways to round are
-// nearest 0, truncate 1, and truncate_half 2.
+// are UNORM 0, SNORM 1, half 2, small floats without a sign 3, 32-bit floats 4, which stay as they are, and floats of any
+// form across channels 5. The ways to round are nearest 0, truncate 1, and truncate_half 2.
 #include "../sign.glsl"
 
-float round_half(float x, bool truncates) {
-    const float STEP = exp2(24.0);  // below 2^-14 half floats are multiples of 2^-24
-    uint bits = floatBitsToUint(x), magnitude = bits & 0x7FFFFFFFu, sign = bits & 0x80000000u;
-    if (magnitude >= 0x7F800000u) return x;
-    float small = (truncates ? trunc(x * STEP) : roundEven(x * STEP)) / STEP;
-    if (truncates) {
-        magnitude = min(magnitude & 0xFFFFE000u, 0x477FE000u);  // 65504
-    } else {
-        magnitude = (magnitude + 0xFFFu + (magnitude >> 13 & 1u)) & 0xFFFFE000u;
-        magnitude = magnitude > 0x477FE000u ? 0x7F800000u : magnitude;
-    }
-    return abs(x) < exp2(-14.0) ? small : uintBitsToFloat(sign | magnitude);
-}
+float exact_power(int exponent) { return uintBitsToFloat(uint(exponent + 127) << 23); }
 
-// An unsigned float of `bits` bits, five of them the exponent's: 11 or 10.
-float round_small_float(float x, int bits, bool truncates) {
-    int cut = 23 - (bits - 5);
-    uint word = floatBitsToUint(x), unit_bits = 1u << cut;
-    if (x != x || word == 0x7F800000u) return x;
-    if (!(x > 0.0)) return 0.0;
-    float step = exp2(float(cut - 23 - 14)), most = exp2(16.0) - exp2(float(cut - 23 + 15));
-    float small = (truncates ? floor(x / step) : roundEven(x / step)) * step;
-    uint half_unit = truncates ? 0u : (unit_bits >> 1) - 1u + (word >> cut & 1u);
-    float normal = uintBitsToFloat((word + half_unit) & ~(unit_bits - 1u));
-    return min(x < exp2(-14.0) ? small : normal, most);
+// x as a float of so many bits of exponent and mantissa. Without a sign there is nothing below 0, and what is finite
+// stays finite; with a sign nearest makes infinite what is too large.
+float round_float(float x, int exponent, int mantissa, bool is_signed, bool truncates) {
+    int cut = 23 - mantissa, one = (1 << (exponent - 1)) - 1;
+    uint word = floatBitsToUint(x), magnitude = word & 0x7FFFFFFFu, unit_bits = 1u << cut;
+    if (magnitude > 0x7F800000u || (is_signed && magnitude == 0x7F800000u) || word == 0x7F800000u) return x;
+    if (!is_signed && !(x > 0.0)) return 0.0;
+    uint half_unit = truncates || cut == 0 ? 0u : (unit_bits >> 1) - 1u + (magnitude >> cut & 1u);
+    float kept = uintBitsToFloat((magnitude + half_unit) & ~(unit_bits - 1u));
+    // of eight bits of exponent those below the normal ones are float32's own
+    if (exponent < 8 && abs(x) < exact_power(1 - one)) {
+        float least = exact_power(1 - one - mantissa), steps = abs(x) / least;
+        kept = (truncates ? floor(steps) : roundEven(steps)) * least;
+    }
+    float most = (2.0 - exact_power(-mantissa)) * exact_power(one);
+    if (kept > most) kept = is_signed && !truncates ? uintBitsToFloat(0x7F800000u) : most;
+    return is_signed && word != magnitude ? -kept : kept;
 }
 
 // x in [-1, 1] as a whole number, `scale` standing for 1.
@@ -45,8 +39,8 @@ vec2 numbers_around(float c, float scale, bool is_biased) {
 
 // A texel's number as a format of this kind keeps it; scale is the integer that stands for 1, bits are the channel's.
 float round_number(float x, int kind, float scale, int bits, int rounding) {
-    if (kind == 2) return round_half(x, rounding != 0);
-    if (kind == 3) return round_small_float(x, bits, rounding != 0);
+    if (kind == 2) return round_float(x, 5, 10, true, rounding != 0);
+    if (kind == 3) return round_float(x, 5, bits - 5, false, rounding != 0);
     if (kind == 4) return x;
     return round_whole(clamp(x, kind == 0 ? 0.0 : -1.0, 1.0), scale, rounding) / scale;
 }
@@ -76,24 +70,26 @@ float from_fixed_code(uint integer, float scale, bool is_signed) {
     return is_negative ? with_sign_of(magnitude, -1.0) : magnitude;
 }
 
-// An unsigned integer of `bits` bits laid across a texel's channels of 8, from bit `first` on, the highest bits first:
-// the byte of a channel, and a channel's part of the integer.
-uint byte_of(uint integer, int first, int bits, int channel) {
-    int shift = 8 * (channel + 1) - first - bits;
-    if (8 * (channel + 1) <= first || shift >= 8) return 0u;
-    return (shift >= 0 ? integer << shift : integer >> -shift) & 0xFFu;
+// An unsigned integer of `bits` bits laid across a texel's channels of `size` bits, from bit `first` on, the highest bits
+// first: the part of it in a channel, and a channel's part of the integer.
+uint part_in(uint integer, int first, int bits, int channel, int size) {
+    int shift = size * (channel + 1) - first - bits;
+    if (size * (channel + 1) <= first || shift >= size) return 0u;
+    return (shift >= 0 ? integer << shift : integer >> -shift) & ((1u << size) - 1u);
 }
 
-uint part_of(uint byte, int first, int bits, int channel) {
-    int shift = 8 * (channel + 1) - first - bits;
-    if (8 * (channel + 1) <= first || shift >= 8) return 0u;
-    return (shift >= 0 ? byte >> shift : byte << -shift) & ((1u << bits) - 1u);
+uint part_from(uint held, int first, int bits, int channel, int size) {
+    int shift = size * (channel + 1) - first - bits;
+    if (size * (channel + 1) <= first || shift >= size) return 0u;
+    return (shift >= 0 ? held >> shift : held << -shift) & ((1u << bits) - 1u);
 }
 
 #ifdef STORAGE_KIND
 // Of one storage: STORAGE_KIND is its kind, STORAGE_BIASED 1 where a number c is kept as c/2 + 1/2; by channel
-// STORAGE_SCALE, the integers that stand for 1, and STORAGE_BITS. STORAGE_PACKED is 1 where numbers are integers across
-// channels of 8 bits, STORAGE_CENTRED where SNORM's lie in UNORM channels. SHADER_ROUNDS is 1 where the shader must round before the write, by channel as STORAGE_ROUNDING.
+// STORAGE_SCALE, the integers that stand for 1, and STORAGE_BITS. STORAGE_PART is the bits of each channel that numbers
+// lie across as integers, or 0 where each has a channel; then STORAGE_MOST are the largest integers, and floats have
+// STORAGE_EXPONENT bits of exponent, and STORAGE_SIGNED. STORAGE_CENTRED is 1 where SNORM's integers lie in UNORM
+// channels. SHADER_ROUNDS is 1 where the shader must round before the write, by channel as STORAGE_ROUNDING.
 const float storage_scale[] = STORAGE_SCALE;
 const int storage_bits[] = STORAGE_BITS, storage_rounding[] = STORAGE_ROUNDING;
 
@@ -106,33 +102,66 @@ vec4 round_texel(vec4 texel) {
 vec4 biased(vec4 code) { return STORAGE_BIASED != 0 ? code * 0.5 + 0.5 : code; }
 vec4 unbiased(vec4 texel) { return STORAGE_BIASED != 0 ? texel * 2.0 - 1.0 : texel; }
 
-#if STORAGE_PACKED
-const float BYTE_SCALE = exp2(8.0) - 1.0;
+#if STORAGE_PART
+const float PART_SCALE = exp2(float(STORAGE_PART)) - 1.0;
+
+#if STORAGE_KIND == 5
+// The bits of a float of a form, and back: they count its steps, from 0 on.
+uint integer_of(float number, int i) {
+    int mantissa = storage_bits[i] - STORAGE_EXPONENT - STORAGE_SIGNED, one = (1 << (STORAGE_EXPONENT - 1)) - 1;
+    float kept = round_float(number, STORAGE_EXPONENT, mantissa, STORAGE_SIGNED != 0, storage_rounding[i] != 0);
+    uint word = floatBitsToUint(kept), magnitude = word & 0x7FFFFFFFu;
+    uint integer = (magnitude >> (23 - mantissa)) - (uint(127 - one) << mantissa);
+    if (STORAGE_EXPONENT < 8 && abs(kept) < exact_power(1 - one)) integer = uint(abs(kept) * exact_power(one - 1 + mantissa));
+    if (magnitude >= 0x7F800000u) integer = (uint(exp2(float(STORAGE_EXPONENT))) * 2u - (magnitude > 0x7F800000u ? 1u : 2u)) << (mantissa - 1);
+    return word != magnitude ? integer | 1u << (storage_bits[i] - 1) : integer;
+}
+
+float number_of(uint integer, int i) {
+    int mantissa = storage_bits[i] - STORAGE_EXPONENT - STORAGE_SIGNED, one = (1 << (STORAGE_EXPONENT - 1)) - 1;
+    uint magnitude = integer & ((1u << (mantissa + STORAGE_EXPONENT)) - 1u), exponent = magnitude >> mantissa;
+    float value = uintBitsToFloat((magnitude << (23 - mantissa)) + (uint(127 - one) << 23));
+    if (STORAGE_EXPONENT < 8 && exponent == 0u) value = float(magnitude) * exact_power(1 - one - mantissa);
+    if (exponent + 1u == 1u << STORAGE_EXPONENT) value = uintBitsToFloat(0x7F800000u | magnitude << (23 - mantissa));
+    return integer != magnitude ? -value : value;
+}
+#else
 // A signed number's integer is `scale` more than itself, so that -1 is 0.
-const uint PACKED_ZERO = STORAGE_KIND == 1 ? 1u : 0u;
+const uint ZERO = STORAGE_KIND == 1 ? 1u : 0u;
+
+uint integer_of(float number, int i) {
+    const float storage_most[] = STORAGE_MOST;
+    float scale = storage_scale[i], inside = clamp(number, STORAGE_KIND == 0 ? 0.0 : -1.0, 1.0);
+    float whole = min(round_whole(inside, scale, storage_rounding[i]), storage_most[i]);
+    return uint(int(whole) + int(ZERO) * int(scale));
+}
+
+float number_of(uint integer, int i) {
+    const float steps[] = STORAGE_STEP;
+    return float(int(integer) - int(ZERO) * int(storage_scale[i])) * steps[i];
+}
+#endif
 
 vec4 to_texel(vec4 code) {
     vec4 numbers = biased(code);
-    uvec4 bytes = uvec4(0u);
+    uvec4 parts = uvec4(0u);
     int first = 0;
     for (int i = 0; i < STORAGE_CHANNELS; ++i) {
-        float scale = storage_scale[i], number = clamp(numbers[i], STORAGE_KIND == 0 ? 0.0 : -1.0, 1.0);
-        uint integer = uint(int(round_whole(number, scale, storage_rounding[i])) + int(PACKED_ZERO) * int(scale));
-        for (int c = 0; c < 4; ++c) bytes[c] |= byte_of(integer, first, storage_bits[i], c);
+        uint integer = integer_of(numbers[i], i);
+        for (int c = 0; c < 4; ++c) parts[c] |= part_in(integer, first, storage_bits[i], c, STORAGE_PART);
         first += storage_bits[i];
     }
-    return vec4(bytes) / BYTE_SCALE;
+    return vec4(parts) / PART_SCALE;
 }
 
 vec4 from_texel(vec4 texel) {
-    uvec4 bytes = uvec4(texel * BYTE_SCALE + 0.5);
-    const float steps[] = STORAGE_STEP;
+    uvec4 parts = uvec4(texel * PART_SCALE + 0.5);
     vec4 numbers = vec4(0.0);
     int first = 0;
     for (int i = 0; i < STORAGE_CHANNELS; ++i) {
         uint integer = 0u;
-        for (int c = 0; c < 4; ++c) integer |= part_of(bytes[c], first, storage_bits[i], c);
-        numbers[i] = float(int(integer) - int(PACKED_ZERO) * int(storage_scale[i])) * steps[i];
+        for (int c = 0; c < 4; ++c) integer |= part_from(parts[c], first, storage_bits[i], c, STORAGE_PART);
+        numbers[i] = number_of(integer, i);
         first += storage_bits[i];
     }
     return unbiased(numbers);

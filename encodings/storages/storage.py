@@ -1,8 +1,9 @@
 """What numbers are stored in: render target formats, and integers laid across their channels.
 
-Numbers may be laid across channels of 8 bits as integers of any size, the highest bits first: 12:12 in three bytes. A
-signed one of n bits is then the integer of SNORM plus 2^(n-1) - 1, so that -1 is 0 and there is a code for 0. How
-numbers become texels is in `rounding.py`.
+Numbers may be laid across channels of 8 bits as integers of any size, the highest bits first: 12:12 in three bytes; and
+across channels of 16 bits where they have more than 32 together. A signed one of n bits is then the integer of SNORM
+plus 2^(n-1) - 1, so that -1 is 0 and there is a code for 0. Floats of any size lie there by their own bits. How numbers
+become texels is in `rounding.py`.
 
 A format in STORAGES holds normals everywhere. FORMATS, which layouts name, has these and more. Those of tangent frames
 and of motion vectors are picked from STORAGES by their names.
@@ -10,7 +11,6 @@ and of motion vectors are picked from STORAGES by their names.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
@@ -18,10 +18,42 @@ from types import MappingProxyType
 import numpy as np
 
 ROUNDINGS = ("nearest", "truncate", "truncate_half")
-# Of floats by their size: bits of the mantissa, and the biased exponent of 1.
-MANTISSA = {32: 23, 16: 10, 11: 6, 10: 5}
-FLOAT_ONE = {32: 127, 16: 15, 11: 15, 10: 15}
-LARGEST = {32: float(np.finfo(np.float32).max), 16: 65504.0, 11: 65024.0, 10: 64512.0}
+
+
+@dataclass(frozen=True)
+class FloatForm:
+    """How a float is laid out: a sign, an exponent and a mantissa. The highest exponent is that of infinity and NaN.
+
+    Attributes:
+        exponent: its bits, 2 to 8.
+        mantissa: its bits, 1 to 23.
+        is_signed: whether there is a sign; without one there is nothing below 0, and what is finite stays finite.
+    """
+
+    exponent: int
+    mantissa: int
+    is_signed: bool = True
+
+    @property
+    def bits(self) -> int:
+        """The bits of a float."""
+        return self.is_signed + self.exponent + self.mantissa
+
+    @property
+    def one(self) -> int:
+        """The biased exponent of 1."""
+        return 2 ** (self.exponent - 1) - 1
+
+    @property
+    def largest(self) -> float:
+        """The largest finite float."""
+        return (2.0 - 2.0**-self.mantissa) * 2.0**self.one
+
+
+# The floats of GPUs by their size.
+FORMS: Mapping[int, FloatForm] = MappingProxyType(
+    {32: FloatForm(8, 23), 16: FloatForm(5, 10), 11: FloatForm(5, 6, False), 10: FloatForm(5, 5, False)}
+)
 
 
 @dataclass(frozen=True)
@@ -35,10 +67,13 @@ class Storage:
         bits: bits of each channel, in channel order.
         internal_format: the GL enum.
         curved: how many of its channels, the first, keep linear light by the sRGB curve.
-        is_packed: numbers of so many bits lie as integers across the channels of RGBA8.
+        part: bits of each channel that numbers lie across as integers: 8 of RGBA8, 16 of RGBA16, or 0 where each number
+            has a channel.
         is_centred: the integers of SNORM lie in UNORM channels, 2^(n-1) - 1 more than themselves.
         holds_unit: its texels hold numbers in [0, 1] though it has a sign: those of an encoder that returns them so.
         is_said: somebody said its bits, however few they are.
+        is_full: its signed integers are -2^(n-1) to 2^(n-1) - 1, and 2^(n-1) would stand for 1.
+        form: of its floats, where they are none of a GPU's.
     """
 
     name: str
@@ -47,10 +82,21 @@ class Storage:
     bits: tuple[int, ...]
     internal_format: int
     curved: int = 0
-    is_packed: bool = False
+    part: int = 0
     is_centred: bool = False
     holds_unit: bool = False
     is_said: bool = field(default=False, compare=False)
+    is_full: bool = False
+    form: FloatForm | None = None
+
+    @property
+    def is_packed(self) -> bool:
+        """Whether its numbers lie as integers across channels."""
+        return self.part > 0
+
+    def float_form(self, channel: int) -> FloatForm:
+        """How the floats of a channel are laid out."""
+        return self.form or FORMS[self.bits[channel]]
 
     @property
     def channels(self) -> int:
@@ -60,19 +106,32 @@ class Storage:
     @property
     def is_biased(self) -> bool:
         """Whether a number c is stored as c/2 + 1/2: the format has no sign, or its sign is not used."""
-        return self.holds_unit or self.kind == "unorm" or (self.kind == "float" and self.bits[0] < 16)
+        return self.holds_unit or self.kind == "unorm" or (self.kind == "float" and not self.float_form(0).is_signed)
 
     @property
     def largest(self) -> float:
         """The largest finite number of a texel that every channel holds."""
-        return min(LARGEST[bits] for bits in self.bits) if self.kind == "float" else 1.0
+        if self.kind != "float":
+            return 1.0
+        return min(self.float_form(channel).largest for channel in range(self.channels))
 
     @property
     def target(self) -> Storage:
         """The format of the render target: another one where numbers are laid across its channels, or centred."""
         if self.is_centred:
             return STORAGES[self.name.removesuffix(CENTRED)]
-        return STORAGES["rgba8"] if self.is_packed else self
+        return STORAGES[TARGETS[self.part]] if self.is_packed else self
+
+    @property
+    def only_measured(self) -> str:
+        """What its numbers are, where no layout keeps them and no code is written for them; else empty."""
+        if self.form:
+            return "floats of a form that no GPU has"
+        if self.is_centred:
+            return "centred numbers"
+        if self.is_full:
+            return "signed integers over a power of two"
+        return "words of more than 32 bits" if self.part > 8 else ""
 
     @property
     def texel_bytes(self) -> int:
@@ -83,31 +142,36 @@ class Storage:
         """The integer that stands for 1 in a channel; 1 for float formats."""
         if self.kind == "float":
             return 1
-        return 2 ** (self.bits[channel] - (self.kind == "snorm")) - 1
+        return 2 ** (self.bits[channel] - (self.kind == "snorm")) - (not self.is_full)
+
+    def most(self, channel: int) -> int:
+        """The largest integer of a fixed-point channel."""
+        return self.scale(channel) - self.is_full
 
     def levels(self, channel: int) -> int:
         """How many values of a number in [-1, 1] a channel tells apart at least, evenly spread ones."""
         if self.kind != "float":
-            return self.scale(channel) * (1 + (not self.is_biased)) + 1
-        return 2 ** (MANTISSA[self.bits[channel]] + 1 - self.is_biased)
+            return self.scale(channel) * (not self.is_biased) + self.most(channel) + 1
+        return 2 ** (self.float_form(channel).mantissa + 1 - self.is_biased)
 
     def step(self, channel: int) -> float:
         """How far apart the numbers in [-1, 1] are that a fixed-point channel tells apart."""
-        return 2.0 / (self.levels(channel) - 1)
+        return 1.0 / self.scale(channel) if self.is_full else 2.0 / (self.levels(channel) - 1)
 
     def count(self, channel: int) -> int:
         """How many numbers in [-1, 1] a channel tells apart, however spread."""
         if self.kind != "float":
             return self.levels(channel)
         # From 0 to 1 the floats of each octave, down from the exponent of 1.
-        to_one = FLOAT_ONE[self.bits[channel]] << MANTISSA[self.bits[channel]]
+        form = self.float_form(channel)
+        to_one = form.one << form.mantissa
         return to_one + 1 if self.is_biased else 2 * to_one + 1
 
     def numbers(self, channel: int) -> np.ndarray:
         """Those numbers, ascending; float64. Not of 32-bit floats, which are too many."""
         if self.kind != "float":
-            return np.linspace(-1.0, 1.0, self.count(channel))
-        one, mantissa = FLOAT_ONE[self.bits[channel]], MANTISSA[self.bits[channel]]
+            return np.linspace(-1.0, 1.0 - self.is_full * self.step(channel), self.count(channel))
+        one, mantissa = self.float_form(channel).one, self.float_form(channel).mantissa
         word = np.arange((one << mantissa) + 1)
         octave, rest = np.maximum(word >> mantissa, 1), np.where(word >> mantissa, 1.0, 0.0)
         texels = np.ldexp(rest + (word & 2**mantissa - 1) * 2.0**-mantissa, octave - one)
@@ -115,10 +179,11 @@ class Storage:
 
 
 def _packed_storage(name: str, title: str, kind: str, *bits: int) -> Storage:
-    return Storage(name, title, kind, bits, RGBA8, is_packed=True)
+    return Storage(name, title, kind, bits, RGBA8, part=8)
 
 
-def _centred_storage(like: Storage) -> Storage:
+def centred_storage(like: Storage) -> Storage:
+    """A UNORM format that holds the integers of SNORM."""
     name, title = f"{like.name}{CENTRED}", f"{like.title} centred"
     return replace(like, name=name, title=title, kind="snorm", is_centred=True)
 
@@ -129,6 +194,8 @@ def of_unit(storage: Storage) -> Storage:
 
 
 CENTRED = "_centred"
+# By the bits of a channel that numbers are laid across: the target.
+TARGETS: Mapping[int, str] = MappingProxyType({8: "rgba8", 16: "rgba16"})
 RGBA8 = 0x8058
 R11G11B10F = Storage("r11g11b10f", "R11F G11F B10F", "float", (11, 11, 10), 0x8C3A)
 STORAGES: Mapping[str, Storage] = MappingProxyType(
@@ -180,78 +247,10 @@ MOTION_STORAGES: Mapping[str, Storage] = MappingProxyType(
         **{name: STORAGES[name] for name in _OF_MOTION},
         **{
             s.name: s
-            for s in (_centred_storage(STORAGES[name]) for name in ("rg8", "rgb10a2", "rg16", "rgba8", "rgba16"))
+            for s in (centred_storage(STORAGES[name]) for name in ("rg8", "rgb10a2", "rg16", "rgba8", "rgba16"))
         },
     }
 )
-
-
-# Most bits of a number laid across channels, far from the 24 that float32 has; and of such storages by the number of
-# channels what their names begin with.
-MOST_BITS = 20
-ACROSS = ("r8", "rg8", "rgb8", "rgba8")
-
-
-def across(kind: str, bits: tuple[int, ...]) -> Storage:
-    """Numbers of so many bits laid across as few channels of 8 bits as hold them: rg8_9_7.
-
-    Raises:
-        ValueError: no number or a negative one, a signed one of a bit, more than MOST_BITS, or more than 32 altogether;
-            a line.
-    """
-    if not all(1 <= b <= MOST_BITS for b in bits) or sum(bits) > 32 or len(bits) not in (2, 3, 4):
-        raise ValueError(f"two to four numbers of 1 to {MOST_BITS} bits, 32 altogether, not {':'.join(map(str, bits))}")
-    if kind == "snorm" and 1 in bits:
-        raise ValueError(f"a signed number has at least 2 bits, not {':'.join(map(str, bits))}")
-    channels, spread = ACROSS[(sum(bits) - 1) // 8], ":".join(map(str, bits))
-    is_signed = kind == "snorm"
-    name = f"{channels}_{spread.replace(':', '_')}" + ("_snorm" if is_signed else "")
-    made = _packed_storage(name, f"{spread} {'signed ' if is_signed else ''}in {channels.upper()}", kind, *bits)
-    return replace(made, is_said=True)
-
-
-# Storages by rule: unorm:9:7.
-BY_RULE = re.compile(r"(?P<kind>unorm|snorm|centred):(?P<bits>\d{1,3}(?::\d{1,3})*)")
-
-
-def by_rule(kind: str, bits: tuple[int, ...]) -> Storage:
-    """Numbers of so many bits: the catalogue's format that has just these, or laid across channels.
-
-    Args:
-        kind: "unorm" or "snorm"; "centred" for the integers of SNORM in the channels of a UNORM format.
-
-    Raises:
-        ValueError: as `across`; and centred ones that are no format of a GPU.
-    """
-    if kind == "centred":
-        like = by_rule("unorm", bits)
-        if like.is_packed:
-            raise ValueError(
-                f"centred numbers lie in a format of a GPU, such as centred:8:8, not {':'.join(map(str, bits))}"
-            )
-        return _centred_storage(like)
-    alike = (s for s in STORAGES.values() if (s.kind, s.bits) == (kind, bits))
-    return next(alike, None) or across(kind, bits)
-
-
-def storage_of(name: str) -> Storage | None:
-    """The storage of a name: one of the catalogue's, numbers by rule as in `unorm:9:7`, or laid across channels as
-    `rg8_9_7` has them; else None.
-
-    Raises:
-        ValueError: by rule or laid across channels, but not so; a line.
-    """
-    if by := BY_RULE.fullmatch(name):
-        return by_rule(by["kind"], tuple(map(int, by["bits"].split(":"))))
-    if name.endswith(CENTRED) and name in MOTION_STORAGES:
-        return MOTION_STORAGES[name]
-    match = re.fullmatch(r"(r|rg|rgb|rgba)8((?:_\d{1,3}){2,})(_snorm)?", name)
-    if name in STORAGES or not match:
-        return STORAGES.get(name)
-    made = across("snorm" if match[3] else "unorm", tuple(map(int, match[2][1:].split("_"))))
-    if made.name != name:
-        raise ValueError(f"{name}: these bits are called {made.name}")
-    return made
 
 
 R16F = Storage("r16f", "R16F", "float", (16,), 0x822D)

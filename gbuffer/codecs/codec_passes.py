@@ -62,7 +62,10 @@ def levels_of(encoding: Encoding) -> tuple[int, ...]:
 
 
 def storage_kind(storage: Storage) -> int:
-    """A format's kind as `storage.glsl` counts them: UNORM 0, SNORM 1, half 2, small floats 3, 32-bit floats 4."""
+    """A format's kind as `storage.glsl` counts them: UNORM 0, SNORM 1, half 2, small floats 3, 32-bit floats 4; 5 are
+    floats of another form."""
+    if storage.form:
+        return 5
     if storage.kind == "float":
         return {16: 2, 32: 4}.get(storage.bits[0], 3)
     return KINDS.index(storage.kind)
@@ -92,7 +95,9 @@ def storage_defines(storage: Storage, roundings: Sequence[str], shader_rounds: b
     return {
         "STORAGE_KIND": storage_kind(storage),
         "STORAGE_BIASED": int(storage.is_biased),
-        "STORAGE_PACKED": int(storage.is_packed),
+        "STORAGE_PART": storage.part,
+        "STORAGE_MOST": tuple(float(storage.most(i)) for i in channels),
+        **_form_defines(storage),
         "STORAGE_CENTRED": int(storage.is_centred),
         "STORAGE_CHANNELS": storage.channels,
         "STORAGE_SCALE": tuple(float(scale) for scale in scales),
@@ -101,6 +106,11 @@ def storage_defines(storage: Storage, roundings: Sequence[str], shader_rounds: b
         "STORAGE_ROUNDING": tuple(ROUNDINGS.index(roundings[i]) for i in channels),
         "SHADER_ROUNDS": int(shader_rounds),
     }
+
+
+def _form_defines(storage: Storage) -> dict[str, object]:
+    form = storage.form
+    return {"STORAGE_EXPONENT": form.exponent, "STORAGE_SIGNED": int(form.is_signed)} if form else {}
 
 
 @dataclass(frozen=True)

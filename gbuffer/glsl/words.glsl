@@ -113,7 +113,7 @@ vec4[TARGETS] to_texels(float numbers[NUMBERS]) {
             uint integer = carries
                 ? uint(floor(carrying(component, x, numbers[SIGN_NUMBER], 0, scale) * scale + 0.5))
                 : to_word(component, x, scale);
-            for (int c = 0; c < 4; ++c) packed_bytes[target][c] |= byte_of(integer, first, bits, c);
+            for (int c = 0; c < 4; ++c) packed_bytes[target][c] |= part_in(integer, first, bits, c, 8);
         }
     }
     for (int i = 0; i < TARGETS; ++i)
@@ -140,7 +140,7 @@ void from_texels(vec4 texels[TARGETS], inout float numbers[NUMBERS]) {
             uint integer = 0u;
             for (int c = 0; c < 4; ++c) {
                 uint byte = uint(texels[target][c] * target_scale[target * 4 + c] + 0.5);
-                integer |= part_of(byte, first, bits, c);
+                integer |= part_from(byte, first, bits, c, 8);
             }
             float scale = exp2(float(bits)) - 1.0;
             if (carries) take_carried(component, carried(float(integer) / scale, 0), scale, numbers);

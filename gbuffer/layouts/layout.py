@@ -227,12 +227,12 @@ class Layout:
         """The layout with its normal in a target of its own, encoded and stored as `codec` does.
 
         Raises:
-            LayoutError: the codec keeps a sign in a depth that the layout does not keep, cuts off signed words, or is
-                centred, which no word of a layout says.
+            LayoutError: the codec keeps a sign in a depth that the layout does not keep, cuts off signed words, or its
+                storage is only measured.
         """
         storage, components = codec.storage, "xyz"[: codec.encoding.components]
-        if storage.is_centred:
-            raise LayoutError(f"layout {self.name}: {storage.title}: a layout keeps no centred numbers")
+        if storage.only_measured:
+            raise LayoutError(f"layout {self.name}: {storage.title}: a layout does not keep {storage.only_measured}")
         is_signed = storage.is_packed and storage.kind == "snorm"
         if is_signed and codec.rounding != "nearest":
             raise LayoutError(f"layout {self.name}: {storage.title}: signed words of a layout are rounded to nearest")

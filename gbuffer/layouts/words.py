@@ -16,7 +16,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from ...encodings.storages.storage import FORMATS, MANTISSA, Storage
+from ...encodings.storages.storage import FORMATS, FORMS, Storage
 from .kept import COLOURS, LIGHT, WHOLE, Kept, kept_as
 
 # The order is the G-buffer shaders' (gbuffer.glsl).
@@ -165,7 +165,7 @@ def least_carried(storage: Storage, bits: int) -> float:
         return 1.0 / (2 ** (bits - 1) - 1)
     if storage.kind == "unorm":
         return SIGN_STEPS / 2 ** (bits - 1)
-    return SIGN_STEPS / 2 ** MANTISSA[bits] if storage.is_biased else 2.0**-14
+    return SIGN_STEPS / 2 ** FORMS[bits].mantissa if storage.is_biased else 2.0**-14
 
 
 def without_normal(holds: str) -> list[str]:

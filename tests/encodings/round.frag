@@ -9,7 +9,7 @@ void main() {
     texel = texelFetch(source, ivec2(gl_FragCoord.xy), 0);
 #if READS
     texel = from_texel(texel);
-#elif STORAGE_PACKED
+#elif STORAGE_PART
     texel = to_texel(texel);
 #else
     texel = round_texel(texel);

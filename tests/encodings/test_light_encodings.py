@@ -16,7 +16,7 @@ from normalbench.encodings.codecs.light_encoding import BLENDS
 from normalbench.encodings.light.nao32 import INVERSE, MATRIX
 from normalbench.encodings.shared.chromaticity import chromaticity, coloured, luminance
 from normalbench.encodings.storages.rounding import from_srgb, scale_of, store_small_float, store_srgb, to_srgb
-from normalbench.encodings.storages.storage import LIGHT_STORAGES, R11G11B10F, SRGB8_A8
+from normalbench.encodings.storages.storage import FORMS, LIGHT_STORAGES, R11G11B10F, SRGB8_A8
 from normalbench.encodings.vec import BRIGHTEST, Vec3, Vec4, floor_log2, light_or_none, power_of_two
 from normalbench.gbuffer.codecs.light.light_passes import exact_light, light_defines
 from normalbench.gbuffer.gl.shader import Source
@@ -154,14 +154,14 @@ def test_small_floats_round_to_the_nearest_or_are_cut_off(bits, rounding):
         x - low == high - x, np.where((above - 1) % 2 == 0, low, high), np.where(x - low < high - x, low, high)
     )
     expected = np.where(x >= values[-1], values[-1], nearest if rounding == "nearest" else low)
-    got = np.asarray(store_small_float(jnp.asarray(x), bits, rounding))
+    got = np.asarray(store_small_float(jnp.asarray(x), FORMS[bits], rounding))
     wrong = got != expected
     assert not wrong.any(), f"{x[wrong][0]!r} is stored as {got[wrong][0]!r}, not {expected[wrong][0]!r}"
 
 
 def test_small_floats_have_no_sign_and_keep_infinity_and_nan():
     x = jnp.float32([-1.0, -0.0, -np.inf, np.inf, np.nan])
-    assert np.array_equal(np.asarray(store_small_float(x, 11)), [0, 0, 0, np.inf, np.nan], equal_nan=True)
+    assert np.array_equal(np.asarray(store_small_float(x, FORMS[11])), [0, 0, 0, np.inf, np.nan], equal_nan=True)
 
 
 def test_the_device_stores_small_floats_as_it_is_said_to(gl):
@@ -172,7 +172,7 @@ def test_the_device_stores_small_floats_as_it_is_said_to(gl):
     assert rounding in ("nearest", "truncate"), f"{gl.renderer} rounds r11g11b10f in a way that is not emulated"
     got = gl.through(np.repeat(values.astype(np.float32)[None, :, None], 4, axis=2), R11G11B10F)[0]
     for channel, bits in enumerate((11, 11, 10)):
-        expected = np.asarray(store_small_float(jnp.asarray(values, jnp.float32), bits, rounding))
+        expected = np.asarray(store_small_float(jnp.asarray(values, jnp.float32), FORMS[bits], rounding))
         assert np.array_equal(got[:, channel], expected), f"channel {channel}, {rounding}"
 
 

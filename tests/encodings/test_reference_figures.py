@@ -16,7 +16,8 @@ from normalbench.bench.tables.quality import measure as quality
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.normals.tetrahedral import SIDE, UP
-from normalbench.encodings.storages.storage import STORAGES, by_rule
+from normalbench.encodings.storages.rules import by_rule
+from normalbench.encodings.storages.storage import STORAGES
 from normalbench.encodings.vec import Vec2, Vec3, to_array
 
 pytestmark = pytest.mark.usefixtures("rows_are_kept")

@@ -5,6 +5,7 @@ from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -19,7 +20,8 @@ from normalbench.encodings.storages.rounding import (
     store_texel,
     store_unorm,
 )
-from normalbench.encodings.storages.storage import ROUNDINGS, STORAGES, by_rule
+from normalbench.encodings.storages.rules import by_rule
+from normalbench.encodings.storages.storage import ROUNDINGS, STORAGES
 from normalbench.encodings.storages.words import words
 from normalbench.gbuffer.codecs.codec_passes import storage_defines
 from normalbench.gbuffer.gl.device import in_steps, read_pixels
@@ -28,7 +30,12 @@ INTEGERS = [name for name, s in STORAGES.items() if s.kind != "float" and not s.
 # Each with the first channel of every size that it has.
 CHANNELS = [(name, STORAGES[name].bits.index(bits)) for name in INTEGERS for bits in dict.fromkeys(STORAGES[name].bits)]
 PACKED = [s for s in STORAGES.values() if s.is_packed]
-BY_RULE = [by_rule(kind, (bits, bits)) for kind in ("unorm", "snorm") for bits in range(2, 17)]
+BY_RULE = [by_rule(kind, (bits, bits)) for kind in ("unorm", "snorm", "snorm_full") for bits in range(2, 17)]
+# Four numbers of more than 32 bits together lie across channels of 16.
+BY_RULE += [by_rule("unorm", bits) for bits in ((20, 20, 20), (12, 12, 12, 12), (1, 20, 17, 19))]
+FORMS_SAID = [by_rule(*said) for said in (("float", (2, 1)), ("float", (3, 4)), ("float", (4, 3)), ("float", (5, 2)))]
+FORMS_SAID += [by_rule(*said) for said in (("float", (6, 9)), ("float", (8, 7)), ("float", (7, 13)))]
+FORMS_SAID += [by_rule(*said) for said in (("ufloat", (4, 4)), ("ufloat", (5, 6)), ("ufloat", (8, 12)))]
 FLOATS = [name for name, s in STORAGES.items() if s.kind == "float" and s.bits[0] < 32]
 FLOAT_ROUNDINGS = ROUNDINGS[:2]
 
@@ -39,7 +46,7 @@ OUTSIDE = np.array([0.0, -0.0, 1, -1, 1.5, -1.5, 1e-30, -1e-30, 3e38, -3e38, np.
 def integer_inputs(storage) -> np.ndarray:
     """Every code and every tie between codes with neighbours, values out of range, infinities, and random ones."""
     scale = storage.scale(0)
-    codes = np.arange(-scale if storage.kind == "snorm" else 0, scale + 1)
+    codes = np.arange(-scale if storage.kind == "snorm" else 0, storage.most(0) + 1)
     random = np.random.default_rng(0).uniform(-1.2, 1.2, 2**16)
     return np.concatenate([around(codes / scale), around((codes + 0.5) / scale), OUTSIDE, random.astype(np.float32)])
 
@@ -178,6 +185,67 @@ def test_numbers_across_channels_come_back_as_the_emulation_says(gl, storage, ro
         held = partial(words, storage=storage, channel=channel)
         what = f"{storage.name}, number {channel}, {rounding}"
         assert_same_texels(gl, values, expected, got[:, channel].copy(), held, what)
+
+
+def form_inputs(form) -> np.ndarray:
+    """Every float of up to 16 bits, or 2^16 of more, ties between neighbours, and what is beyond; -1 to 1 mostly."""
+    every = every_float(form)
+    some = every[:: max(1, len(every) // 2**16)]
+    ties = ((some[1:].astype(np.float64) + some[:-1]) / 2).astype(np.float32)
+    beyond = np.float32([min(form.largest * 1.5, 3.3e38), np.nan])
+    values = np.concatenate([around(some, 1), around(ties, 1), beyond, OUTSIDE])
+    # Those below 2^-126 are float32's own, which GPUs may take for 0.
+    return values[(abs(values) >= 2.0**-126) | (values == 0) | np.isnan(values)]
+
+
+def every_float(form) -> np.ndarray:
+    """The finite floats of a form from 0 on, ascending, by what their bits mean; of many every so many."""
+    count = (2**form.exponent - 1) << form.mantissa
+    bits = np.arange(0, count, max(1, count // 2**18))
+    exponent, mantissa = bits >> form.mantissa, bits & 2**form.mantissa - 1
+    scale = np.ldexp(1.0, np.maximum(exponent, 1) - form.one - form.mantissa)
+    values = (mantissa + np.where(exponent > 0, 2**form.mantissa, 0)) * scale
+    return values.astype(np.float32)
+
+
+@pytest.mark.parametrize("rounding", FLOAT_ROUNDINGS)
+@pytest.mark.parametrize("storage", [s for s in FORMS_SAID if s.form.bits <= 16], ids=lambda s: s.name)
+def test_floats_of_any_form_are_the_nearest_ones_or_those_below(storage, rounding):
+    """Against a search among all floats of the form, in float64."""
+    form = storage.form
+    every = every_float(form).astype(np.float64)
+    values = np.concatenate([form_inputs(form), -form_inputs(form)])
+    values = values[np.isfinite(values) & (abs(values) <= form.largest)].astype(np.float64)
+    inside = values if form.is_signed else np.maximum(values, 0.0)
+    below = np.searchsorted(every, abs(inside), side="right") - 1
+    above = np.minimum(below + 1, len(every) - 1)
+    low, high = abs(inside) - every[below], every[above] - abs(inside)
+    up = (high < low) | ((high == low) & (above % 2 == 0) & (low > 0))
+    magnitude = np.where(up & (rounding == "nearest"), every[above], every[below])
+    expected = (np.copysign(magnitude, inside) if form.is_signed else magnitude).astype(np.float32)
+    got = emulated(values.astype(np.float32), storage, rounding)
+    assert_same_bits(values, expected, got, f"{storage.name}, {rounding}")
+    with jax.enable_x64(True):
+        in_double = np.asarray(store_texel(jnp.asarray(inside), storage, 0, rounding))
+    assert np.array_equal(in_double, expected)
+
+
+@pytest.mark.parametrize("rounding", FLOAT_ROUNDINGS)
+@pytest.mark.parametrize("storage", FORMS_SAID, ids=lambda s: s.name)
+def test_floats_of_any_form_come_back_from_their_bits(gl, storage, rounding):
+    """Rounded, laid across channels by their bits, and read: what the emulation says, and the bits are the float's."""
+    values = np.concatenate([form_inputs(storage.form), -form_inputs(storage.form)])
+    with np.errstate(over="ignore"):
+        numbers = values * 2 - 1 if storage.is_biased else values
+    got = rounded_in_the_shader(gl, numbers, storage, rounding)
+    for channel in range(storage.channels):
+        expected = np.asarray(store_number(jnp.asarray(numbers), storage, channel, rounding))
+        assert_same_bits(numbers, expected, got[:, channel].copy(), f"{storage.name}, number {channel}, {rounding}")
+    # The bits of floats from 0 on count.
+    if not storage.is_biased:
+        every = every_float(storage.form).astype(np.float64)
+        counted = np.unique(words(every, storage, 0))
+        assert len(counted) == len(every) and counted[0] == 0
 
 
 def test_truncating_half_a_code_wider_is_floor_of_f_times_4095_and_a_half():

@@ -11,7 +11,8 @@ from normalbench.bench.ground.angles import angles_deg
 from normalbench.bench.tables.quality.measure import round_trip
 from normalbench.encodings.catalogue import ENCODINGS, LIGHT_BUFFERS
 from normalbench.encodings.codecs.codec import Codec
-from normalbench.encodings.storages.storage import STORAGES, storage_of
+from normalbench.encodings.storages.rules import storage_of
+from normalbench.encodings.storages.storage import STORAGES
 from normalbench.gbuffer.frame.plan import Plan
 from normalbench.gbuffer.layouts.layout import Layout
 from normalbench.gbuffer.layouts.presets import LAYOUTS

@@ -13,7 +13,7 @@ from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.codecs.depth_codec import DepthCodec
 from normalbench.encodings.shared.position import Camera
 from normalbench.encodings.storages.depth_storage import DEPTH_STORAGES
-from normalbench.encodings.storages.storage import MANTISSA, STORAGES
+from normalbench.encodings.storages.storage import FORMS, STORAGES
 from normalbench.encodings.vec import Vec3, from_array, to_array
 from normalbench.gbuffer.display import displayed
 from normalbench.gbuffer.frame.plan import Plan
@@ -282,7 +282,7 @@ def check_kept(name: str, component: str, exact: np.ndarray, got: np.ndarray) ->
     # A float's rounding is a share of the number; what cuts off is off by twice as much.
     cut = 1 if preset.rounding == "truncate" else 2
     part = HALF_CURVED if storage.curved else HALF
-    half = part * whole * step if step else exact * 2.0 ** -MANTISSA[storage.bits[word.first]] / cut + 2e-6
+    half = part * whole * step if step else exact * 2.0 ** -FORMS[storage.bits[word.first]].mantissa / cut + 2e-6
     worst = np.max(abs(got - exact) / half)
     assert worst <= 1, f"{component}: {worst:.3f} times half a code"
 

@@ -20,7 +20,8 @@ from normalbench.bench.tables.sweep.points import points
 from normalbench.bench.tables.sweep.table import SweepOptions
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
-from normalbench.encodings.storages.storage import STORAGES, across
+from normalbench.encodings.storages.rules import across
+from normalbench.encodings.storages.storage import STORAGES
 
 from .timing import Row, exponent, least_times
 

@@ -18,7 +18,7 @@ import numpy as np
 from ....encodings.catalogue import ENCODINGS
 from ....encodings.codecs.codec import Codec
 from ....encodings.codecs.encoding import Encoding
-from ....encodings.storages.storage import ROUNDINGS, Storage
+from ....encodings.storages.storage import ROUNDINGS, FloatForm, Storage
 from ....encodings.vec import Vec2, Vec3, Vec4, from_array, to_array
 from ....gbuffer.codecs.codec_passes import exact_values
 from ....gbuffer.gl.device import device
@@ -30,8 +30,6 @@ from ...subjects.codecs.names import codecs_named
 AHEAD = (0.0, 0.0, -1.0)
 CODES = {2: Vec2, 3: Vec3, 4: Vec4}
 NORMAL = 3
-# Integers with the bits of a float, by its size.
-BITS = {16: (jnp.float16, jnp.uint16), 32: (jnp.float32, jnp.uint32)}
 
 
 class Codes(NamedTuple):
@@ -181,11 +179,25 @@ def _integer(codec: Codec, component: int, number: Any) -> Any:
         return (number > 0).astype(jnp.uint32)
     number = number * 0.5 + 0.5 if storage.is_biased else number
     if storage.kind == "float":
-        kind, bits = BITS[storage.bits[component]]
-        return jax.lax.bitcast_convert_type(number.astype(kind), bits).astype(jnp.uint32)
+        return _float_integer(storage.float_form(component), number)
     scale = storage.scale(component)
     if storage.kind == "unorm":
         return jnp.rint(number * scale).astype(jnp.uint32)
     signed = jnp.rint(number * scale).astype(jnp.int32)
     # Laid across channels, -1 is the integer 0; else it is two's complement.
     return signed.astype(jnp.uint32) + scale if storage.is_packed else signed.astype(jnp.uint32)
+
+
+def _float_integer(form: FloatForm, number: Any) -> Any:
+    """The bits of floats (float32, any shape) that are of a form, uint32."""
+    magnitude = abs(number)
+    word = jax.lax.bitcast_convert_type(magnitude, jnp.uint32)
+    integer = (word >> (23 - form.mantissa)) - jnp.uint32((127 - form.one) << form.mantissa)
+    if form.exponent < 8:
+        steps = (magnitude * 2.0 ** (form.one - 1 + form.mantissa)).astype(jnp.uint32)
+        integer = jnp.where(magnitude < 2.0 ** (1 - form.one), steps, integer)
+    endless = jnp.uint32((2**form.exponent - 1) << form.mantissa)
+    integer = jnp.where(jnp.isinf(number), endless, integer)
+    integer = jnp.where(jnp.isnan(number), endless + jnp.uint32(2 ** (form.mantissa - 1)), integer)
+    sign = jnp.signbit(number).astype(jnp.uint32) << (form.bits - 1)
+    return integer | sign if form.is_signed else integer

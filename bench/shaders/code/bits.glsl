@@ -3,7 +3,7 @@
 
 // The bits of a half float.
 uint half_bits(float x, bool truncates) {
-    float rounded = round_half(x, truncates);
+    float rounded = round_float(x, 5, 10, true, truncates);
     uint magnitude = floatBitsToUint(abs(rounded)), sign = floatBitsToUint(x) >> 16 & 0x8000u;
     // from 2^-14 on the exponent is biased by 15 in place of 127; below, the number counts steps of 2^-24
     uint bits = magnitude < 0x38800000u ? uint(abs(rounded) * exp2(24.0)) : (magnitude - 0x38000000u) >> 13;
@@ -21,7 +21,7 @@ float half_value(uint bits) {
 // The bits of an unsigned float of `size` bits, five of them the exponent's: 11 or 10.
 uint small_bits(float x, int size, bool truncates) {
     int mantissa = size - 5;
-    float rounded = round_small_float(x, size, truncates);
+    float rounded = round_float(x, 5, mantissa, false, truncates);
     uint magnitude = floatBitsToUint(rounded);
     // infinite, or no number
     if (magnitude >= 0x47800000u) return (magnitude > 0x7F800000u ? 63u : 62u) << (mantissa - 1);

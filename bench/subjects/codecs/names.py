@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -14,18 +13,16 @@ from ....encodings.catalogue import ENCODINGS
 from ....encodings.codecs.codec import Codec
 from ....encodings.codecs.encoding import Encoding
 from ....encodings.codecs.variants import ARITHMETICS, DECLARED, FLOAT, HALF, in_half
-from ....encodings.storages.storage import BY_RULE, ROUNDINGS, STORAGES, Storage, storage_of
+from ....encodings.storages.storage import ROUNDINGS
 from ....encodings.vec import Vec3
 from ...ground.choose import choose, names_a_file
+from ...ground.options.storage_names import storages_named
 from ...ground.options.words import Words, given_in
 from ...ground.output.errors import MissingError, UsageError, by_reason, tell
 from ...shaders.code.twin import NoTwinError, has_twin
 from ...shaders.languages.words import CHAIN, file_of, split_names
 from .half.compute import half_device
 from .user_encodings import encodings_named
-
-# Storages by rule from some bits to some others.
-RANGE = re.compile(r"(?P<kind>unorm|snorm|centred):(?P<first>\d{1,2}(?::\d{1,2})*)\.\.(?P<last>\d{1,2}(?::\d{1,2})*)")
 
 
 def codecs_named(encodings: str, storages: str, roundings: str, arithmetics: str = FLOAT) -> list[Codec]:
@@ -97,38 +94,6 @@ def as_declared(codecs: Sequence[Codec]) -> list[Codec]:
     if not _computes_halves([codec.encoding for codec in codecs]):
         return list(codecs)
     return [replace(one, encoding=in_half(one.encoding)) if one.encoding.is_also_half else one for one in codecs]
-
-
-def storages_named(names: str) -> list[Storage]:
-    """The storages of comma-separated names, also of numbers by their bits, and of ranges of such: unorm:4:4..8:8.
-
-    Raises UsageError.
-    """
-    words = [one for word in map(str.strip, names.split(",")) for one in _in_range(word)]
-    try:
-        made = {word: storage_of(word) for word in words}
-    except ValueError as error:
-        raise UsageError(f"--storage: {error}") from error
-    named = {name: storage for name, storage in made.items() if storage}
-    chosen = choose("storage", ",".join(words), {**STORAGES, **named, **given_in(names)})
-    return list(dict.fromkeys(chosen))
-
-
-def _in_range(word: str) -> list[str]:
-    """The names of a range, in which each number grows by a bit from one to the next; a name alone is its own.
-
-    Raises UsageError.
-    """
-    found = RANGE.fullmatch(word)
-    if not found and re.match(r"(unorm|snorm|centred|uint|float):", word, re.I) and not BY_RULE.fullmatch(word):
-        raise UsageError(f"--storage {word}: bits are said as unorm:9:7, snorm:12:12, centred:8:8, unorm:4:4..16:16")
-    if not found:
-        return [word]
-    first, last = ([int(bits) for bits in found[end].split(":")] for end in ("first", "last"))
-    steps = {high - low for low, high in zip(first, last, strict=False)}
-    if len(first) != len(last) or len(steps) != 1 or min(steps) < 0:
-        raise UsageError(f"--storage {word}: in a range each number grows by as many bits, as in unorm:4:4..16:16")
-    return [":".join((found["kind"], *(str(low + step) for low in first))) for step in range(steps.pop() + 1)]
 
 
 def fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:

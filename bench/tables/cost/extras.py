@@ -13,7 +13,8 @@ from ....encodings.catalogue import ENCODINGS
 from ....encodings.codecs.codec import Codec
 from ....encodings.codecs.encoding import Encoding
 from ....encodings.codecs.variants import MARK
-from ....encodings.storages.storage import Storage, storage_of
+from ....encodings.storages.rules import storage_of
+from ....encodings.storages.storage import Storage
 from ....reports.charts.looks import as_text
 from ....reports.charts.pareto import Panel, Point, decibels
 from ....reports.page.codec_key import CodecKey

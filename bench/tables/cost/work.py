@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ....encodings.codecs.encoding import Encoding
-from ....encodings.storages.storage import STORAGES, Storage, storage_of
+from ....encodings.storages.storage import STORAGES, Storage
 from ....gbuffer.defines.kernels import STAGES
 from ....gbuffer.defines.packings import PACKINGS, Packing, packings_of
 from ....reports.charts import pareto
@@ -21,6 +21,7 @@ from ...ground.choose import choose
 from ...ground.options import gpu_families as families
 from ...ground.options import listing
 from ...ground.options.counts import MAX_REPEATS, MAX_TIMED_COUNT, check_seed, checked_count, in_range
+from ...ground.options.storage_names import storages_said
 from ...ground.output.errors import MissingError, UsageError
 from ...ground.output.writing import check_folder, whole_file
 from ...shaders.isa import isa, spirv
@@ -45,12 +46,10 @@ def measures(options: CostOptions) -> list[str]:
 
 def packings(names: str) -> list[Packing]:
     """What `--storage` names: packings, and storages by their bits alone. Raises UsageError."""
-    try:
-        made = {word: storage_of(word) for word in map(str.strip, names.split(",")) if word not in PACKINGS}
-    except ValueError as error:
-        raise UsageError(f"--storage: {error}") from error
-    known = {**PACKINGS, **{word: packings_of(storage) for word, storage in made.items() if storage}}
-    return list(dict.fromkeys(packing for several in choose("storage", names, known) for packing in several))
+    said = storages_said(names, PACKINGS)
+    known = {**PACKINGS, **{word: packings_of(storage) for word, storage in said.items() if storage}}
+    chosen = choose("storage", ",".join(said), known)
+    return list(dict.fromkeys(packing for several in chosen for packing in several))
 
 
 # Compilers that people have to install or build themselves.

@@ -73,7 +73,7 @@ def judgement(codec: Codec, uses: Sequence[str], normals: NormalSet, domain: str
     # Seams lie about the axes: a mean over these is not that of a surface.
     means = [row["angle_mean_deg"] for row in inside if row["normals"] != AXES]
     largest = max((row["angle_max_deg"] for row in inside), default=None)
-    integer = dict.fromkeys((use for use in uses if _is_of_codes(use)), OF_INTEGER) if codec.encoding.is_packed else {}
+    integer = dict.fromkeys((use for use in uses if _is_of_codes(use)), OF_INTEGER) if codec.is_integer else {}
     return Judgement(
         _faults_by_use(inside, uses) | integer, _faults_by_use(across, uses), fmean(means) if means else None, largest
     )

@@ -203,7 +203,7 @@ def measure(case: Case) -> list[Row]:
     if not case.mixes.patches.held_by(domain).any():
         said = outside(case.mixes.patches.name, domain)
         return [described | {"operation": name, "skipped": said} for name in case.operations]
-    refused = [name for name in case.operations if name in BY_MODEL] if case.codec.encoding.is_packed else []
+    refused = [name for name in case.operations if name in BY_MODEL] if case.codec.is_integer else []
     allowed = tuple(name for name in case.operations if name not in refused)
     rows = [described | {"operation": name, "skipped": OF_INTEGER} for name in refused]
     rows += _measured(replace(case, operations=allowed), domain) if allowed else []

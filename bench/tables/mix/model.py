@@ -18,7 +18,7 @@ import numpy as np
 from ....encodings.codecs.codec import Codec
 from ....encodings.storages.rounding import store_texel
 from ....encodings.storages.storage import Storage
-from ....encodings.storages.words import words
+from ....encodings.storages.words import numbers_across, words
 from .patches import Mixes
 
 F32 = np.float32
@@ -116,32 +116,30 @@ class Texels:
         return np.concatenate([numbers, signs])
 
     def _packed_channels(self, code: np.ndarray) -> np.ndarray:
-        storage = self._codec.storage
+        storage, part = self._codec.storage, self._codec.storage.part
         whole = np.zeros(code.shape[1:], np.uint64)
         for channel, bits in enumerate(storage.bits):
             # A channel that the encoding has no number for holds 0.
             number = code[channel] if channel < self._components else np.zeros_like(code[0])
             whole = whole << np.uint64(bits) | words(number, storage, channel).astype(np.uint64)
         whole = whole << np.uint64(self._spare_bits)
-        shifts = range(32 - BYTE, -1, -BYTE)
-        return np.stack([(whole >> np.uint64(s) & np.uint64(255)).astype(F32) * F32(1 / 255) for s in shifts])
+        shifts, most = range(3 * part, -1, -part), 2**part - 1
+        return np.stack([(whole >> np.uint64(s) & np.uint64(most)).astype(F32) * F32(1 / most) for s in shifts])
 
     @property
     def _spare_bits(self) -> int:
-        return 32 - sum(self._codec.storage.bits)
+        return 4 * self._codec.storage.part - sum(self._codec.storage.bits)
 
     def _unpacked_numbers(self, texels: np.ndarray) -> np.ndarray:
         storage, whole = self._codec.storage, np.zeros(texels.shape[1:], np.uint64)
-        for byte in texels[:4]:
-            whole = whole << np.uint64(BYTE) | np.floor(byte * F32(255) + F32(0.5)).astype(np.uint64)
-        shift, numbers = 32, []
+        most = 2**storage.part - 1
+        for held in texels[:4]:
+            whole = whole << np.uint64(storage.part) | np.floor(held * F32(most) + F32(0.5)).astype(np.uint64)
+        shift, numbers = 4 * storage.part, []
         for channel, bits in enumerate(storage.bits):
             shift -= bits
-            integer = (whole >> np.uint64(shift) & np.uint64(2**bits - 1)).astype(np.int64)
-            scale = storage.scale(channel)
-            signed = integer - (scale if storage.kind == "snorm" else 0)
-            number = signed.astype(F32) * F32(1 / scale)
-            numbers.append(number * F32(2) - F32(1) if storage.is_biased else number)
+            integer = (whole >> np.uint64(shift) & np.uint64(2**bits - 1)).astype(np.uint32)
+            numbers.append(numbers_across(integer, storage, channel))
         return np.stack(numbers[: self._components])
 
     def written(self, texels: np.ndarray, rounding: str) -> np.ndarray:

@@ -20,9 +20,10 @@ from ...ground.machine.devices import found_device, require_jax
 from ...ground.options.counts import check_seed, checked_count, in_range
 from ...ground.options.effect_names import effects_named, lacking, name_of, pipeline_with
 from ...ground.options.scene_names import powers_named, scene_makers_named
+from ...ground.options.storage_names import storages_named
 from ...ground.output.errors import UsageError, by_reason, leave_out, tell
 from ...ground.output.writing import check_folder
-from ...subjects.codecs.names import as_declared, check_twin, codecs_named, storages_named
+from ...subjects.codecs.names import as_declared, check_twin, codecs_named
 from ...subjects.normals.normal_names import normal_sets_named
 from ...subjects.normals.normal_sets import NormalSet
 from ..families_named import families_named

@@ -12,6 +12,7 @@ from ...ground.choose import choose
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_count
+from ...ground.options.storage_names import storages_named
 from ...ground.options.targets import that_fit
 from ..table import NoOutputs, Row, Sheet, Step, Work, each
 from . import measure
@@ -47,9 +48,7 @@ def codecs(options: FramesOptions) -> list[FrameCodec]:
     return that_fit(
         FrameCodec(encoding, storage)
         for encoding in choose("frame encoding", options.encoding, FRAME_ENCODINGS)
-        for storage in choose(
-            "frame storage", ",".join(encoding.storages) if options.storage is None else options.storage, FRAME_STORAGES
-        )
+        for storage in storages_named(options.storage or ",".join(encoding.storages), FRAME_STORAGES, "frame storage")
     )
 
 

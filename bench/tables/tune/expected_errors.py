@@ -18,7 +18,6 @@ import jax.numpy as jnp
 import numpy as np
 
 from ....encodings.codecs.codec import Codec
-from ....encodings.storages.storage import FLOAT_ONE, MANTISSA
 from ....encodings.vec import Vec3, dot, maximum, minimum, select
 
 # By goal, the power of which the mean is least: what the smooth objective takes for a maximum is nearly one.
@@ -50,10 +49,10 @@ def step_at(codec: Codec, component: int, number):
     storage, levels = codec.storage, codec.encoding.levels_of(component)
     if levels or storage.kind != "float":
         return jnp.full_like(number, 2.0 / ((levels or storage.count(component)) - 1))
-    bits = storage.bits[component]
+    form = storage.float_form(component)
     texel = abs(number * 0.5 + 0.5) if storage.is_biased else abs(number)
-    octave = jnp.floor(jnp.log2(maximum(texel, 2.0 ** (1 - FLOAT_ONE[bits]))))
-    return (1.0 + storage.is_biased) * 2.0 ** (octave - MANTISSA[bits])
+    octave = jnp.floor(jnp.log2(maximum(texel, 2.0 ** (1 - form.one))))
+    return (1.0 + storage.is_biased) * 2.0 ** (octave - form.mantissa)
 
 
 def moved_squares(codec: Codec, values: Mapping[str, Any], code, view: Vec3) -> list[Any]:

@@ -20,7 +20,8 @@ import numpy as np
 
 from ....encodings.codecs.codec import LEAST_BITS, Codec
 from ....encodings.codecs.encoding import Encoding
-from ....encodings.storages.storage import Storage, across
+from ....encodings.storages.rules import across
+from ....encodings.storages.storage import Storage
 from ....encodings.vec import Vec3, dot, maximum, minimum
 from ...measures.metrics.meter import angle_between, readable
 from .expected_errors import Normals, moved_squares, smooth_objective
@@ -159,8 +160,8 @@ def free_components(codec: Codec) -> list[int]:
     """The components whose bits may go to another: two or more numbers in fixed point, not of few values; or none."""
     encoding = codec.encoding
     free = [i for i in range(encoding.components) if not encoding.levels_of(i)]
-    is_free = codec.storage.kind != "float" and len(free) > 1 and not encoding.look_up and not encoding.searches
-    return free if is_free else []
+    is_fixed = codec.storage.kind != "float" and not codec.storage.is_full
+    return free if is_fixed and len(free) > 1 and not encoding.look_up and not encoding.searches else []
 
 
 def spreads(codec: Codec, wanted: Mapping[int, float]) -> Iterator[Storage]:

@@ -16,9 +16,10 @@ from ....encodings.codecs.encoding import Encoding
 from ...ground.choose import choose, choose_one
 from ...ground.machine.devices import require_jax
 from ...ground.options.counts import check_seed, checked_count
+from ...ground.options.storage_names import storages_named
 from ...ground.output.errors import UsageError, tell
 from ...ground.output.writing import check_writable, whole_file
-from ...subjects.codecs.names import check_twin, storages_named
+from ...subjects.codecs.names import check_twin
 from ...subjects.codecs.tuned_names import MARK
 from ...subjects.codecs.tuned_names import TABLE as LOOK_UP
 from ...subjects.codecs.user_encodings import encodings_named

@@ -12,6 +12,7 @@ from ...ground.choose import choose
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_numbers, checked_sides, in_range
+from ...ground.options.storage_names import storages_named
 from ...ground.options.targets import that_fit
 from ..charts import one_backend
 from ..table import Measured, NoOutputs, Row, Sheet, Step, Work, each
@@ -56,11 +57,7 @@ def codecs(options: VectorsOptions) -> list[MotionCodec]:
     return that_fit(
         MotionCodec(encoding, storage)
         for encoding in choose("motion encoding", options.encoding, MOTION_ENCODINGS)
-        for storage in choose(
-            "motion storage",
-            ",".join(encoding.storages) if options.storage is None else options.storage,
-            MOTION_STORAGES,
-        )
+        for storage in storages_named(options.storage or ",".join(encoding.storages), MOTION_STORAGES, "motion storage")
     )
 
 

@@ -18,7 +18,7 @@ layout(location = 1) out vec2 stored;  // number, depth
 float stored_number(vec4 texel) {
 #if HOME == 0
     uint integer = 0u;
-    for (int c = 0; c < 4; ++c) integer |= part_of(uint(texel[c] * 255.0 + 0.5), FIRST, BITS, c);
+    for (int c = 0; c < 4; ++c) integer |= part_from(uint(texel[c] * 255.0 + 0.5), FIRST, BITS, c, 8);
     return from_fixed_code(integer, SCALE, DEPTH_SIGNED != 0);
 #else
     return texel.x;

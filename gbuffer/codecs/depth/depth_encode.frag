@@ -15,7 +15,7 @@ void main() {
     float number = number_of_depth(depth, range, OPEN != 0);
 #if HOME == 0
     uint integer = fixed_code(number, SCALE, DEPTH_SIGNED != 0);
-    for (int c = 0; c < 4; ++c) texel[c] = float(byte_of(integer, FIRST, BITS, c)) / 255.0;
+    for (int c = 0; c < 4; ++c) texel[c] = float(part_in(integer, FIRST, BITS, c, 8)) / 255.0;
 #elif HOME == 1
     texel = vec4(ROUNDS != 0 ? round_number(number, KIND, SCALE, 0, 0) : number);
 #else

@@ -19,7 +19,8 @@ from normalbench.bench.tables.tune.tuning import Measure, Tuned, fitted, spreads
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.normals import best_fit
-from normalbench.encodings.storages.storage import STORAGES, storage_of
+from normalbench.encodings.storages.rules import storage_of
+from normalbench.encodings.storages.storage import STORAGES
 
 FINE = "rgb8_12_12"
 

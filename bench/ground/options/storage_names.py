@@ -1,0 +1,94 @@
+"""Storages as they are named on the command line: by name, as APIs spell formats, or by their bits."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Mapping
+
+from ....encodings.storages.rules import BY_RULE, KINDS, storage_of
+from ....encodings.storages.storage import FORMATS, STORAGES, Storage
+from ..choose import choose
+from ..output.errors import UsageError
+from ..spelling import channels_of, spelled
+from .words import given_in
+
+# Storages by rule from some bits to some others, and what begins like one.
+BITS = r"\d{1,3}(?::\d{1,3})*"
+RANGE = re.compile(rf"(?P<kind>{'|'.join(KINDS)}):(?P<first>{BITS})\.\.(?P<last>{BITS})")
+RULE = re.compile(rf"({'|'.join(KINDS)}):", re.I)
+# As WebGPU spells the formats of vertices: unorm10-10-10-2, snorm16x2.
+VERTEX = re.compile(r"(?P<kind>unorm|snorm|float)(?:(?P<bits>\d+(?:-\d+)+)|(?P<size>\d+)x(?P<count>[2-4]))", re.I)
+
+
+def storages_named(names: str, known: Mapping[str, Storage] = STORAGES, what: str = "storage") -> list[Storage]:
+    """The storages of comma-separated names; by their bits as well, and in ranges of such: unorm:4:4..8:8.
+
+    Args:
+        known: what "all" stands for, and what messages list.
+        what: what they are called in messages.
+
+    Raises:
+        UsageError: an unknown name, or bits that cannot be; one line.
+    """
+    own = given_in(names)
+    said = storages_said(names, own)
+    chosen = choose(what, ",".join(said), {**known, **{word: one for word, one in said.items() if one}, **own})
+    return list(dict.fromkeys(chosen))
+
+
+def storages_said(names: str, own: Collection[str] = ()) -> dict[str, Storage | None]:
+    """Comma-separated names, each of a range by itself, and the storage that each says; None where it says none.
+
+    Args:
+        own: names that stand for something else.
+
+    Raises:
+        UsageError: bits that cannot be; one line.
+    """
+    words = [one for word in map(str.strip, names.split(",")) for one in _in_range(word)]
+    return {word: None if word in own else _storage_of(word) for word in words}
+
+
+def _storage_of(word: str) -> Storage | None:
+    """The storage that a word says, whatever is known by name."""
+    try:
+        return storage_of(word) or storage_of(_rule_of(word) or spelled("storage", word, FORMATS) or "")
+    except ValueError as error:
+        raise UsageError(f"--storage: {error}") from error
+
+
+def _rule_of(word: str) -> str | None:
+    """The bits of a format that an API names and the catalogue lacks: unorm:5:6:5 for B5G6R5_UNORM."""
+    if vertex := VERTEX.fullmatch(word):
+        bits = vertex["bits"].split("-") if vertex["bits"] else [vertex["size"]] * int(vertex["count"])
+        kind = vertex["kind"].lower()
+        return ":".join((kind, *bits)) if kind != "float" else _floats_of(vertex["size"], len(bits))
+    *channels, kind = channels_of(word) or ("",)
+    kind = kind or "unorm"
+    return ":".join((kind, *(channel[1:] for channel in channels))) if channels and kind in KINDS else None
+
+
+def _floats_of(size: str | None, count: int) -> str | None:
+    return f"{'rgba'[: 2 if count == 2 else 4]}{size}f" if size in ("16", "32") else None
+
+
+def _in_range(word: str) -> list[str]:
+    """The names of a range, in which numbers grow by a bit from one to the next; a name alone is its own.
+
+    Raises UsageError.
+    """
+    word = word.lower() if RULE.match(word) else word
+    found = RANGE.fullmatch(word)
+    if not found and RULE.match(word) and not BY_RULE.fullmatch(word):
+        raise UsageError(
+            f"--storage {word}: bits are said as unorm:9:7, snorm:12:12, centred:8:8, float:5:10, unorm:4:4..16:16"
+        )
+    if not found:
+        return [word]
+    first, last = ([int(bits) for bits in found[end].split(":")] for end in ("first", "last"))
+    steps = {high - low for low, high in zip(first, last, strict=False)} - {0}
+    if len(first) != len(last) or len(steps) > 1 or min(steps, default=0) < 0:
+        raise UsageError(f"--storage {word}: in a range numbers grow by as many bits, or stay, as in unorm:4:4..16:16")
+    grows = [high > low for low, high in zip(first, last, strict=True)]
+    every = ([b + step * g for b, g in zip(first, grows, strict=True)] for step in range(max(steps, default=0) + 1))
+    return [":".join((found["kind"], *map(str, bits))) for bits in every]

@@ -1,0 +1,129 @@
+"""Storages that are said by their bits: unorm:9:7, snorm:12:12, centred:8:8, float:5:10.
+
+Each is the catalogue's format that has just these bits, or numbers laid across the channels of RGBA8 or RGBA16.
+"""
+
+from __future__ import annotations
+
+import itertools
+import re
+from collections.abc import Mapping
+from dataclasses import replace
+from types import MappingProxyType
+
+from .storage import BITS_32, CENTRED, FORMATS, FORMS, RGBA8, STORAGES, FloatForm, Storage, centred_storage
+
+# Most bits of a number laid across channels, and of all numbers together.
+MOST_BITS, MOST_TOGETHER = 20, 64
+# Words for numbers by their bits, and what the names of storages end with that hold them across channels.
+ENDINGS: Mapping[str, str] = MappingProxyType({"unorm": "", "snorm": "_snorm", "snorm_full": "_snorm_full"})
+# Other words for the same numbers. SNORM of OpenGL before 4.2 is (2 i + 1) / (2^n - 1), which are UNORM's.
+SAME: Mapping[str, str] = MappingProxyType({"uint": "unorm", "sint": "snorm", "snorm_gl2": "unorm"})
+MOST_EXPONENT, MOST_MANTISSA = 8, 23
+
+
+def across(kind: str, bits: tuple[int, ...]) -> Storage:
+    """Numbers of so many bits laid across as few channels of 8 bits as hold them, or of 16: rg8_9_7.
+
+    Args:
+        kind: one of ENDINGS.
+
+    Raises:
+        ValueError: no number or a negative one, a signed one of a bit, more than MOST_BITS, or more than MOST_TOGETHER
+            altogether; a line.
+    """
+    spread = ":".join(map(str, bits))
+    if not all(1 <= b <= MOST_BITS for b in bits) or sum(bits) > MOST_TOGETHER or len(bits) not in (1, 2, 3, 4):
+        most = f"of 1 to {MOST_BITS} bits each, for a float32 has 24, and of {MOST_TOGETHER} together"
+        raise ValueError(f"{kind}:{spread}: a code is one to four numbers {most}")
+    if kind != "unorm" and 1 in bits:
+        raise ValueError(f"{kind}:{spread}: a signed number has at least 2 bits")
+    target = _target_of(sum(bits))
+    signed = {"unorm": "", "snorm": "signed ", "snorm_full": "fully signed "}[kind]
+    name, title = f"{target}_{spread.replace(':', '_')}{ENDINGS[kind]}", f"{spread} {signed}in {target.upper()}"
+    made = Storage(name, title, kind.partition("_")[0], bits, RGBA8, part=int(target.lstrip("rgba")), is_said=True)
+    return replace(made, is_full=kind == "snorm_full")
+
+
+def _target_of(bits: int) -> str:
+    """As few channels as hold so many bits: rgb8."""
+    part = 8 if bits <= 32 else 16
+    return f"{'rgba'[: -(-bits // part)]}{part}"
+
+
+# Storages by rule: unorm:9:7, float:5:10.
+KINDS = (*ENDINGS, *SAME, "centred", "float", "ufloat")
+BY_RULE = re.compile(rf"(?P<kind>{'|'.join(KINDS)}):(?P<bits>\d{{1,3}}(?::\d{{1,3}})*)")
+
+
+def by_rule(kind: str, bits: tuple[int, ...]) -> Storage:
+    """Numbers of so many bits: the catalogue's format that has just these, or laid across channels.
+
+    Args:
+        kind: "unorm", "snorm", "snorm_full", or another word for these; "uint" and "sint" are never a format's own
+            conversion. "centred" for the integers of SNORM in the channels of a UNORM format. "float" and "ufloat" have
+            the bits of exponent and mantissa, with and without a sign, and are all alike.
+
+    Raises:
+        ValueError: as `across`; centred ones that are no format of a GPU; and floats that cannot be.
+    """
+    if kind in ("float", "ufloat"):
+        return _of_floats(kind, bits)
+    if kind == "centred":
+        like = by_rule("unorm", bits)
+        if like.is_packed:
+            raise ValueError(
+                f"centred numbers lie in a format of a GPU, such as centred:8:8, not {':'.join(map(str, bits))}"
+            )
+        return centred_storage(like)
+    same = SAME.get(kind, kind)
+    alike = (s for s in FORMATS.values() if (s.kind, s.bits, s.curved) == (same, bits, 0) and s != BITS_32)
+    laid = (s for s in STORAGES.values() if s.is_packed and (s.kind, s.bits) == (same, bits))
+    found = next(laid if kind in ("uint", "sint") else itertools.chain(alike, laid), None)
+    return found or across(same, bits)
+
+
+def _of_floats(kind: str, bits: tuple[int, ...]) -> Storage:
+    """As many floats of an exponent and a mantissa as a texel of 64 bits holds, four at most; GPUs' own where they are.
+
+    Raises:
+        ValueError: no such floats; a line.
+    """
+    said = ":".join((kind, *map(str, bits)))
+    if len(bits) != 2 or not (2 <= bits[0] <= MOST_EXPONENT and 1 <= bits[1] <= MOST_MANTISSA):
+        known = f"{kind}:EXPONENT:MANTISSA, of 2 to {MOST_EXPONENT} and of 1 to {MOST_MANTISSA} bits"
+        raise ValueError(f"floats are said as {known}, such as float:5:10, not {said}")
+    form = FloatForm(*bits, is_signed=kind == "float")
+    own = {FORMS[16]: "rgba16f", FORMS[32]: "rgba32f"}
+    if form in own:
+        return STORAGES[own[form]]
+    count = min(4, MOST_TOGETHER // form.bits)
+    title = f"{count} floats of {'sign, ' if form.is_signed else ''}{bits[0]}:{bits[1]} bits"
+    part = 8 if form.bits * count <= 32 else 16
+    name = f"{kind}_{bits[0]}_{bits[1]}"
+    return Storage(name, title, "float", (form.bits,) * count, RGBA8, part=part, is_said=True, form=form)
+
+
+def storage_of(name: str) -> Storage | None:
+    """The storage of a name: one of the catalogue's, numbers by rule as in `unorm:9:7`, or laid across channels as
+    `rg8_9_7` has them; else None.
+
+    Raises:
+        ValueError: by rule or laid across channels, but not so; a line.
+    """
+    if by := BY_RULE.fullmatch(name):
+        return by_rule(by["kind"], tuple(map(int, by["bits"].split(":"))))
+    if name in STORAGES:
+        return STORAGES[name]
+    if name.endswith(CENTRED) and (like := FORMATS.get(name.removesuffix(CENTRED))):
+        return by_rule("centred", like.bits) if like.kind == "unorm" else None
+    if floats := re.fullmatch(r"(u?float)_(\d{1,2})_(\d{1,2})", name):
+        return _of_floats(floats[1], (int(floats[2]), int(floats[3])))
+    match = re.fullmatch(r"(r|rg|rgb|rgba)(8|16)((?:_\d{1,3})+)(_snorm|_snorm_full)?", name)
+    if not match:
+        return FORMATS.get(name)
+    kind = next(kind for kind, ending in ENDINGS.items() if ending == (match[4] or ""))
+    made = across(kind, tuple(map(int, match[3][1:].split("_"))))
+    if made.name != name:
+        raise ValueError(f"{name}: these bits are called {made.name}")
+    return made
