@@ -22,6 +22,9 @@ LEAST_BITS = 4
 
 def numbers_misfit(storage: Storage, levels: Sequence[int]) -> str | None:
     """Why a storage's channels cannot hold numbers of so many values, 0 for any; None where they can."""
+    if len(levels) > storage.channels:
+        has = f"{storage.channels} channel" + "s" * (storage.channels > 1)
+        return f"{len(levels)} components, but {storage.title} has {has}"
     for channel, count in enumerate(levels):
         bits = storage.bits[channel]
         if count > storage.levels(channel):
@@ -63,16 +66,16 @@ class Codec:
         encoding, storage = self.encoding, self.storage
         if encoding.before and encoding.before.misfit:
             return f"{encoding.before.name}: {encoding.before.misfit}"
-        if encoding.components > storage.channels:
-            has = f"{storage.channels} channel" + "s" * (storage.channels > 1)
-            return f"{encoding.components} components, but {storage.title} has {has}"
+        levels = [encoding.levels_of(channel) for channel in range(encoding.components)]
+        if len(levels) > storage.channels:
+            return numbers_misfit(storage, levels)
         if storage.kind == "float" and (encoding.is_precise or self.rounding == "truncate_half"):
             return f"{storage.title} is of floats, and {self._rounding_text} is for fixed point"
         if encoding.is_precise and self.rounding != "nearest":
             return "it is rounded precisely, not otherwise"
         if encoding.is_half and self._not_in_half:
             return f"{self._not_in_half} for half arithmetic"
-        return numbers_misfit(storage, [encoding.levels_of(channel) for channel in range(encoding.components)])
+        return numbers_misfit(storage, levels)
 
     @property
     def _rounding_text(self) -> str:

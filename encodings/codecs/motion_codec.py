@@ -76,8 +76,6 @@ class MotionCodec:
     @property
     def misfit(self) -> str | None:
         """Why the storage cannot hold what the encoding makes; None where it can."""
-        if self.storage.channels < NUMBERS:
-            return f"{NUMBERS} components, but {self.storage.title} has {self.storage.channels} channels"
         return numbers_misfit(self.storage, [0] * NUMBERS)
 
     @property

@@ -1,6 +1,6 @@
 // Rounding in the shader, beside rounding.py, for a device that does not round as the codec asks. The kinds of format
-// are UNORM 0, SNORM 1, half 2, small floats without a sign 3, 32-bit floats 4, which stay as they are, and floats of any
-// form across channels 5. The ways to round are nearest 0, truncate 1, and truncate_half 2.
+// are UNORM 0, SNORM 1, half 2, small floats without a sign 3, and 32-bit floats 4, which stay as they are. The ways to
+// round are nearest 0, truncate 1, and truncate_half 2.
 #include "../sign.glsl"
 
 float exact_power(int exponent) { return uintBitsToFloat(uint(exponent + 127) << 23); }
@@ -87,8 +87,8 @@ uint part_from(uint held, int first, int bits, int channel, int size) {
 #ifdef STORAGE_KIND
 // Of one storage: STORAGE_KIND is its kind, STORAGE_BIASED 1 where a number c is kept as c/2 + 1/2; by channel
 // STORAGE_SCALE, the integers that stand for 1, and STORAGE_BITS. STORAGE_PART is the bits of each channel that numbers
-// lie across as integers, or 0 where each has a channel; then STORAGE_MOST are the largest integers, and floats have
-// STORAGE_EXPONENT bits of exponent, and STORAGE_SIGNED. STORAGE_CENTRED is 1 where SNORM's integers lie in UNORM
+// lie across as integers, or 0 where each has a channel; then STORAGE_MOST are the largest integers. STORAGE_FLOATS is 1
+// where floats lie there, of STORAGE_EXPONENT bits of exponent, and STORAGE_SIGNED. STORAGE_CENTRED is 1 where SNORM's integers lie in UNORM
 // channels. SHADER_ROUNDS is 1 where the shader must round before the write, by channel as STORAGE_ROUNDING.
 const float storage_scale[] = STORAGE_SCALE;
 const int storage_bits[] = STORAGE_BITS, storage_rounding[] = STORAGE_ROUNDING;
@@ -103,9 +103,9 @@ vec4 biased(vec4 code) { return STORAGE_BIASED != 0 ? code * 0.5 + 0.5 : code; }
 vec4 unbiased(vec4 texel) { return STORAGE_BIASED != 0 ? texel * 2.0 - 1.0 : texel; }
 
 #if STORAGE_PART
-const float PART_SCALE = exp2(float(STORAGE_PART)) - 1.0;
+const float PART_SCALE = float((1 << STORAGE_PART) - 1);
 
-#if STORAGE_KIND == 5
+#if STORAGE_FLOATS
 // The bits of a float of a form, and back: they count its steps, from 0 on.
 uint integer_of(float number, int i) {
     int mantissa = storage_bits[i] - STORAGE_EXPONENT - STORAGE_SIGNED, one = (1 << (STORAGE_EXPONENT - 1)) - 1;

@@ -62,10 +62,7 @@ def levels_of(encoding: Encoding) -> tuple[int, ...]:
 
 
 def storage_kind(storage: Storage) -> int:
-    """A format's kind as `storage.glsl` counts them: UNORM 0, SNORM 1, half 2, small floats 3, 32-bit floats 4; 5 are
-    floats of another form."""
-    if storage.form:
-        return 5
+    """A format's kind as `storage.glsl` counts them: UNORM 0, SNORM 1, half 2, small floats 3, 32-bit floats 4."""
     if storage.kind == "float":
         return {16: 2, 32: 4}.get(storage.bits[0], 3)
     return KINDS.index(storage.kind)
@@ -110,7 +107,8 @@ def storage_defines(storage: Storage, roundings: Sequence[str], shader_rounds: b
 
 def _form_defines(storage: Storage) -> dict[str, object]:
     form = storage.form
-    return {"STORAGE_EXPONENT": form.exponent, "STORAGE_SIGNED": int(form.is_signed)} if form else {}
+    said = {"STORAGE_EXPONENT": form.exponent, "STORAGE_SIGNED": int(form.is_signed)} if form else {}
+    return {"STORAGE_FLOATS": int(form is not None), **said}
 
 
 @dataclass(frozen=True)

@@ -66,7 +66,7 @@ def test_linear_in_32_bit_floats_is_exact_and_needs_no_range(gl):
 
 @pytest.mark.parametrize(
     "storage, why",
-    [(FORMATS["r16f"], "R16F has 1 channels"), (STORAGES["rgb8_8_8_1"], None)],
+    [(FORMATS["r16f"], "R16F has 1 channel"), (STORAGES["rgb8_8_8_1"], None)],
     ids=lambda s: str(s)[:12],
 )
 def test_a_storage_needs_two_channels(storage: Storage, why: str | None):

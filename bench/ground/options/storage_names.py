@@ -63,7 +63,7 @@ def _rule_of(word: str) -> str | None:
         bits = vertex["bits"].split("-") if vertex["bits"] else [vertex["size"]] * int(vertex["count"])
         kind = vertex["kind"].lower()
         return ":".join((kind, *bits)) if kind != "float" else _floats_of(vertex["size"], len(bits))
-    *channels, kind = channels_of(word) or ("",)
+    *channels, kind = (channels_of(word) if "norm" in word.lower() else ()) or ("",)
     kind = kind or "unorm"
     return ":".join((kind, *(channel[1:] for channel in channels))) if channels and kind in KINDS else None
 

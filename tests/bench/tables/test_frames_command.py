@@ -170,7 +170,7 @@ def test_tangents_that_lean_or_vanish_make_frames_all_the_same():
 
 BAD = {
     "an encoding": (["--encoding", "smallest_four"], ["'smallest_four'", "smallest_three", "qtangent"]),
-    "a storage": (["--storage", "rg8"], ["'rg8'", "rgb10a2", "rgba16_snorm"]),
+    "a storage": (["--storage", "rg9"], ["'rg9'", "rgb10a2", "rgba16_snorm"]),
     "a set": (["--frames", "turns"], ["'turns'", "rotations", ".glb"]),
     "a file": (["--frames", "missing.glb"], ["missing.glb"]),
     "a back end": (["--backend", "vulkan"], ["'vulkan'", "jax", "glsl"]),
