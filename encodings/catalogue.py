@@ -61,7 +61,9 @@ MOTION_NAMES = ("linear", "sqrt", "log")
 # Of roughness, metalness, reflectance, occlusion, and the channels of colours and of emission.
 CURVE_NAMES = ("linear", "squared", "square_root", "inverted", "gamma_2_2", "srgb", "fast_srgb", "log")
 
+# The last ones are of rotations alone, which have no handedness.
 FRAME_NAMES = ("smallest_three", "octahedral_angle", "hexadecachoral", "qtangent")
+FRAME_NAMES += ("rotation_smallest_three", "rotation_vector", "rotation_rodrigues", "rotation_xyz")
 
 
 def _load(kind: Kind, names: tuple[str, ...]) -> Mapping[str, Any]:

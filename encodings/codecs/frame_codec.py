@@ -18,7 +18,7 @@ LEAST_FLOAT = {16: 2.0**-14, 32: TINY}
 
 @dataclass(frozen=True)
 class FrameCodec:
-    """A frame encoding and the storage of its four numbers."""
+    """A frame encoding and the storage of its numbers."""
 
     encoding: FrameEncoding
     storage: Storage
@@ -34,8 +34,8 @@ class FrameCodec:
 
     @property
     def bits(self) -> int:
-        """The bits it occupies: all of the texel's."""
-        return sum(self.storage.bits)
+        """The bits it occupies: of every channel that it uses, all."""
+        return sum(self.storage.bits[: self.encoding.components])
 
     @property
     def codes(self) -> int:
@@ -45,14 +45,17 @@ class FrameCodec:
     @property
     def least(self) -> float:
         """The least number above 0 that the storage holds where the encoding keeps the hand: a whole step of SNORM,
-        half of one of UNORM, which has no 0."""
+        half of one of UNORM, which has no 0. It is 0 where there is no hand."""
+        if self.encoding.hand_in is None:
+            return 0.0
         if self.storage.kind == "float":
             return LEAST_FLOAT[self.storage.bits[0]]
         return 1.0 / self.storage.scale(self.encoding.hand_in)
 
     def store(self, code: Vec4) -> Vec4:
         """A code (float32, any shape) as it comes back from the storage."""
-        return Vec4(*(store_number(c, self.storage, i) for i, c in enumerate(code)))
+        count = self.encoding.components
+        return Vec4(*(store_number(c, self.storage, i) if i < count else 0.0 * c for i, c in enumerate(code)))
 
     def stored(self, frame: Frame) -> Vec4:
         """The code of frames as it comes back from the storage."""

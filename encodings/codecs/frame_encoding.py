@@ -1,4 +1,4 @@
-"""What a frame encoding is: a pair of maps between tangent frames and four numbers, written twice."""
+"""What a frame encoding is: a pair of maps between tangent frames and up to four numbers, written twice."""
 
 from __future__ import annotations
 
@@ -22,11 +22,12 @@ class FrameEncoding:
     Attributes:
         name: the catalogue's key, the file's name and the prefix of the GLSL functions.
         title: what a reader calls it.
-        encode: (frame, least) -> four numbers in [-1, 1]. `least` is the least number above 0 that the storage holds
-            where the hand lies: what keeps a sign.
+        encode: (frame, least) -> numbers in [-1, 1], of four those that it makes and 0. `least` is the least number
+            above 0 that the storage holds where the hand lies: what keeps a sign.
         decode: (numbers, least) -> frame.
-        hand_in: which of the four numbers has the frame's hand for its sign.
-        levels: for each number how many values it may have, from -1 to 1 evenly spread; 0 for a number like any other.
+        hand_in: which of the numbers has the frame's hand for its sign; None of rotations alone, whose frames all come
+            back with hand 1.
+        levels: for each number that it makes how many values it may have, from -1 to 1 evenly spread; 0 for a number like any other.
         storages: where it usually lies, names of FRAME_STORAGES.
         citation: where it comes from.
         glsl: the GLSL twin.
@@ -42,8 +43,8 @@ class FrameEncoding:
     title: str
     encode: Callable[[Frame, Any], Vec4]
     decode: Callable[[Vec4, Any], Frame]
-    hand_in: int
-    levels: tuple[int, int, int, int]
+    hand_in: int | None
+    levels: tuple[int, ...]
     storages: tuple[str, ...]
     citation: str
     glsl: Path
@@ -51,6 +52,11 @@ class FrameEncoding:
     ulps_reason: str
     settle: Callable[[Frame, Vec4], Vec4] | None = None
     constants: Mapping[str, float | tuple[float, ...]] = field(default_factory=dict)
+
+    @property
+    def components(self) -> int:
+        """How many numbers it makes."""
+        return len(self.levels)
 
     @property
     def signatures(self) -> tuple[str, ...]:

@@ -29,7 +29,8 @@ from normalbench.encodings.storages.storage import FRAME_STORAGES
 @pytest.mark.parametrize("name", sorted(FRAME_ENCODINGS))
 def test_a_frame_encoding_is_complete(name):
     encoding = FRAME_ENCODINGS[name]
-    assert encoding.hand_in in range(4) and len(encoding.levels) == 4
+    assert encoding.components in (3, 4)
+    assert encoding.hand_in in (None, *range(encoding.components))
     assert not encoding.settle or inspect.getdoc(encoding.settle), "special cases are said"
 
 
@@ -43,9 +44,11 @@ def angles_between(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     return np.degrees(2 * np.arcsin(np.minimum(np.sqrt(squared / 8), 1)))
 
 
+# What is rebuilt as a root is off by 2^-11 by float32 alone, where it is near 0.
+OF_A_ROOT, BY_A_ROOT_DEG = "rotation_xyz", np.degrees(2.0**-10)
 # What a frame of a code is off at most, in steps of its widest number. At four equal components the sum of their
 # absolutes is 2, and half a step of three numbers moves the fourth by three halves: 2 x 2 x sqrt(3/4 + 9/4) = sqrt(48).
-STEPS = {"hexadecachoral": np.sqrt(48)}
+STEPS = {"hexadecachoral": np.sqrt(48), "rotation_rodrigues": np.sqrt(12)}
 
 
 def most(codec: FrameCodec) -> float:
@@ -55,6 +58,9 @@ def most(codec: FrameCodec) -> float:
     four are equal; 2.7 of the others. And what float32 adds.
     """
     step = max(2.0 / (codec.storage.levels(i) - 1) for i, levels in enumerate(codec.encoding.levels) if not levels)
+    if codec.encoding.name == OF_A_ROOT:
+        # A half turn has w = 0, and three numbers that are half a step too short have sqrt(sqrt(3) step).
+        return np.degrees(2 * np.sqrt(np.sqrt(3) * step + 2.0**-21) + 3 * step)
     return np.degrees(STEPS.get(codec.encoding.name, np.sqrt(11)) * step) + 1e-4
 
 
@@ -66,7 +72,9 @@ def test_no_frame_is_far_off_and_no_hand_is_lost(gl, codec):
         angles, lost = angles_between(frames, found), found[:, 3] != frames[:, 3]
         i = int(np.argmax(angles))
         assert angles[i] <= most(codec), f"{language}: {frames[i]!r} is {found[i]!r}, {angles[i]:.4g} degrees off"
-        assert not lost.any(), f"{language}: {frames[lost][0]!r} is {found[lost][0]!r}"
+        assert codec.encoding.hand_in is None or not lost.any(), (
+            f"{language}: {frames[lost][0]!r} is {found[lost][0]!r}"
+        )
 
 
 @pytest.mark.parametrize("codec", all_but(6, CODECS), ids=lambda c: c.name)
@@ -76,7 +84,7 @@ def test_what_was_stored_is_stored_again_as_it_is(codec):
     is off their steps."""
     first = trip(codec)
     second = round_trip(codec)(first)
-    moved = angles_between(first, second) > 1e-4
+    moved = angles_between(first, second) > (BY_A_ROOT_DEG if codec.encoding.name == OF_A_ROOT else 1e-4)
     settled = codec.encoding.settle is not None
     share = np.mean(moved if settled else moved[slice(*RANDOM)])
     assert share <= (0 if settled else 0.02), f"{share:.4%} of the frames have moved"

@@ -32,9 +32,10 @@ def _root_angle(function: Callable[[float], float], least: float) -> float:
     return float(root_scalar(function, bracket=(least, math.pi), method="brentq", xtol=1e-30).root)
 
 
-def frame_limit(codes: int) -> CodeLimit:
-    """The least mean, RMS and maximum of the angle that so many codes (2 or more) have over all frames."""
-    share = HANDS / codes
+def frame_limit(codes: int, hands: int = HANDS) -> CodeLimit:
+    """The least mean, RMS and maximum of the angle that so many codes (2 or more) have over all frames, or over all
+    rotations where they are of one hand."""
+    share = hands / codes
     # theta - sin theta is below theta^3 / 6.
     least = min((6 * math.pi * share) ** (1 / 3), math.pi)
     theta = _root_angle(lambda t: ball_moment(t, 0) / share - 1, least * (1 - 1e-9)) if share < 1 else math.pi
@@ -42,8 +43,9 @@ def frame_limit(codes: int) -> CodeLimit:
     return CodeLimit(math.degrees(mean), math.degrees(math.sqrt(square)), math.degrees(theta))
 
 
-def frame_effective_bits(rms_deg: float) -> float:
-    """log2 of how many codes, ideally placed, have this RMS angle over all frames; infinite for none."""
+def frame_effective_bits(rms_deg: float, hands: int = HANDS) -> float:
+    """log2 of how many codes, ideally placed, have this RMS angle over all frames, or over all rotations; infinite for
+    none."""
     if rms_deg == 0:
         return math.inf
     square = math.radians(rms_deg) ** 2
@@ -52,16 +54,16 @@ def frame_effective_bits(rms_deg: float) -> float:
         return ball_moment(theta, 2) / ball_moment(theta, 0) / square - 1
 
     if excess(math.pi) < 0:
-        return math.log2(HANDS)
+        return math.log2(hands)
     # The mean square of a ball is 3/5 theta^2 where it is small, and less where not.
     theta = _root_angle(excess, math.sqrt(square))
-    return math.log2(HANDS / ball_moment(theta, 0))
+    return math.log2(hands / ball_moment(theta, 0))
 
 
-def frames_broken(codes: int, count: int, mean_deg: float, rms_deg: float) -> str:
+def frames_broken(codes: int, count: int, mean_deg: float, rms_deg: float, hands: int = HANDS) -> str:
     """What a measurement over uniform frames says that so many codes cannot do, scatter apart; nothing where all is
     well. Then the measure is wrong, or the set is not uniform."""
-    least, spared = frame_limit(codes), 1 - SCATTER / math.sqrt(count)
+    least, spared = frame_limit(codes, hands), 1 - SCATTER / math.sqrt(count)
     for what, figure, bound in (("RMS", rms_deg, least.rms_deg), ("mean", mean_deg, least.mean_deg)):
         if figure < bound * spared:
             return f"{what} {figure:.5g} degrees, of {bound:.5g} at least"

@@ -22,7 +22,7 @@ from ....gbuffer.gl.device import FormatError, NoDeviceError, device
 from ....gbuffer.gl.shader import ShaderError
 from ...measures.metrics.code_limits import is_measurable
 from ...measures.worst_case.frame_search import worst_frame
-from .limits import frame_effective_bits, frame_limit, frames_broken
+from .limits import HANDS, frame_effective_bits, frame_limit, frames_broken
 from .sets import CHUNK, Frames, FrameSet
 from .table import TABLE
 
@@ -151,7 +151,7 @@ def measure(case: Case) -> Row:
                 total.add(given, Frames(found.normals[:count], found.tangents[:count]))
     except UNMEASURABLE as error:
         return row | {"skipped": str(error)}
-    found = _figures(total) | (_supremum_columns(case) if case.worst_case else {})
+    found = _figures(total, case.codec) | (_supremum_columns(case) if case.worst_case else {})
     return row | found | _limit_columns(case, total, found) | how
 
 
@@ -169,8 +169,9 @@ def _whole_chunk(frames: Frames) -> Frames:
     return Frames(*(np.pad(a, ((0, missing), (0, 0)), mode="edge") for a in (frames.normals, frames.tangents)))
 
 
-def _figures(total: Total) -> Row:
-    row: Row = {"count": total.count, "invalid": total.invalid, "hands_lost": total.hands_lost}
+def _figures(total: Total, codec: FrameCodec) -> Row:
+    row: Row = {"count": total.count, "invalid": total.invalid}
+    row["hands_lost"] = None if codec.encoding.hand_in is None else total.hands_lost
     for i, what in enumerate(WHAT):
         row[f"{what}_mean_deg"] = float(total.sums[i] / total.count)
         row[f"{what}_rms_deg"] = math.sqrt(total.squares[i] / total.count)
@@ -183,16 +184,17 @@ def _limit_columns(case: Case, total: Total, figures: Row) -> Row:
     frames cannot tell from none."""
     if not case.frame_set.is_uniform:
         return {}
-    least = frame_limit(case.codec.codes)
+    hands = 1 if case.codec.encoding.hand_in is None else HANDS
+    least = frame_limit(case.codec.codes, hands)
     mean, rms, met = (figures[f"rotation_{figure}_deg"] for figure in ("mean", "rms", "max"))
     largest = figures.get("rotation_sup_deg", met)
     row: Row = {"limit_mean_deg": least.mean_deg, "limit_rms_deg": least.rms_deg, "limit_max_deg": least.max_deg}
-    row["effective_bits"] = frame_effective_bits(rms)
+    row["effective_bits"] = frame_effective_bits(rms, hands)
     if not is_measurable(least):
         return row
     return row | {
         "reached_mean_percent": 100 * least.mean_deg / mean,
         "reached_rms_percent": 100 * least.rms_deg / rms,
         "reached_max_percent": 100 * least.max_deg / largest,
-        "below_limit": frames_broken(case.codec.codes, total.count, mean, rms),
+        "below_limit": frames_broken(case.codec.codes, total.count, mean, rms, hands),
     }

@@ -47,7 +47,11 @@ COLUMNS = (
     shared.BITS,
     Column("count", "How many tangent frames were measured.", HOW, drops=13),
     Column("invalid", "Decodes that were NaN or infinite; each counts as 180 degrees.", better="less", drops=17),
-    Column("hands_lost", "Tangent frames that came back with the other handedness.", better="less"),
+    Column(
+        "hands_lost",
+        "Tangent frames that came back with the other handedness. Empty for codes of rotations, which have none.",
+        better="less",
+    ),
     *_angle_columns("normal", "angle between a tangent frame's normal and its decode.", 11, 9, 16),
     *_angle_columns("tangent", "angle between a tangent and its decode.", 10, 8, 15),
     *_angle_columns("rotation", "angle of the rotation from the true tangent frame to the decoded one.", 12, 0, 0),

@@ -1,0 +1,49 @@
+"""Axis and angle of a rotation without a handedness, as one vector: along the axis, as long as the angle in half turns.
+
+Also called the exponential map. All rotations lie in the unit ball; of a half turn both ends of the axis are one.
+"""
+
+from pathlib import Path
+
+from ..codecs.frame_encoding import FrameEncoding
+from ..elementary import CONSTANTS, atan2_pi, sincos_pi
+from ..rotation import Frame, frame_of_quaternion, quaternion_of
+from ..vec import TINY, Vec3, Vec4, dot, inversesqrt, maximum, minimum, sign_not_zero
+
+
+def encode(frame: Frame, least) -> Vec4:
+    """The axis times the angle, in half turns."""
+    q = quaternion_of(frame)
+    v = q.xyz * sign_not_zero(q.w)
+    # e = axis 2 atan2(|v|, w) / pi
+    square = maximum(dot(v, v), TINY)
+    inverse = inversesqrt(square)
+    e = v * (2.0 * atan2_pi(square * inverse, abs(q.w)) * inverse)
+    return Vec4(e.x, e.y, e.z, 0.0 * e.x)
+
+
+def decode(e: Vec4, least) -> Frame:
+    """The rotation about a vector by its length in half turns, one at most."""
+    v = Vec3(e.x, e.y, e.z)
+    # q = (v / |v| sin(pi |v| / 2), cos(pi |v| / 2))
+    square = maximum(dot(v, v), TINY)
+    inverse = inversesqrt(square)
+    sine, cosine = sincos_pi(0.5 * minimum(square * inverse, 1.0))
+    v = v * (inverse * sine)
+    return frame_of_quaternion(Vec4(v.x, v.y, v.z, cosine), 0.0 * e.x + 1.0)
+
+
+ENCODING = FrameEncoding(
+    name="rotation_vector",
+    title="rotation, its axis times its angle",
+    encode=encode,
+    decode=decode,
+    hand_in=None,
+    levels=(0, 0, 0),
+    storages=("rgba8", "rgb10a2", "rgba16"),
+    citation="F. S. Grassia, Practical Parameterization of Rotations Using the Exponential Map, 1998",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(6, 10),
+    ulps_reason="a normalise, an inverse root and an arc tangent; an inverse root, two sines and products, doubled",
+    constants=CONSTANTS,
+)

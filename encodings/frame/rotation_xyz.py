@@ -1,0 +1,42 @@
+"""Three components of a quaternion, the fourth positive: a rotation without a handedness.
+
+q and -q are one rotation, so w is taken positive and is what the square of the others leaves of 1. Where w is near 0,
+steps of the others move it most: half turns are far less exact than small ones. Splats of Gaussians are stored so.
+"""
+
+from pathlib import Path
+
+from ..codecs.frame_encoding import FrameEncoding
+from ..rotation import Frame, frame_of_quaternion, quaternion_of
+from ..vec import Vec3, Vec4, dot, inversesqrt, maximum, sign_not_zero, sqrt
+
+
+def encode(frame: Frame, least) -> Vec4:
+    """x, y and z under the sign of w."""
+    q = quaternion_of(frame)
+    e = q.xyz * sign_not_zero(q.w)
+    return Vec4(e.x, e.y, e.z, 0.0 * e.x)
+
+
+def decode(e: Vec4, least) -> Frame:
+    """The rotation of three components; of some that are longer than 1 a half turn."""
+    # w = sqrt(1 - |e|^2)
+    v = Vec3(e.x, e.y, e.z)
+    square = dot(v, v)
+    v = v * inversesqrt(maximum(square, 1.0))
+    return frame_of_quaternion(Vec4(v.x, v.y, v.z, sqrt(maximum(1.0 - square, 0.0))), 0.0 * e.x + 1.0)
+
+
+ENCODING = FrameEncoding(
+    name="rotation_xyz",
+    title="rotation, three components of its quaternion",
+    encode=encode,
+    decode=decode,
+    hand_in=None,
+    levels=(0, 0, 0),
+    storages=("rgba8", "rgb10a2", "rgba16"),
+    citation="Niantic, SPZ 2, load-spz.cc, 2024: three bytes, w positive",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(16384, 8192),
+    ulps_reason="of a half turn three squares leave 2^-22 of 1 by rounding, whose root is 2^-11; doubled, and on either side",
+)
