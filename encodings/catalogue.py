@@ -56,7 +56,7 @@ LIGHT_NAMES = ("plain", "linear", "log", "rgbm", "nao32", "rgb9e5")
 # A layout keeps the first depth that has the sign its normal needs, or has none, if it names no other.
 DEPTH_NAMES = ("linear", "linear_sign", "logarithmic", "window", "reversed_window")
 
-MOTION_NAMES = ("linear", "sqrt", "log")
+MOTION_NAMES = ("linear", "sqrt", "cube_root", "log")
 
 # Of roughness, metalness, reflectance, occlusion, and the channels of colours and of emission.
 CURVE_NAMES = ("linear", "squared", "square_root", "inverted", "gamma_2_2", "srgb", "fast_srgb", "log")

@@ -27,7 +27,8 @@ class FrameEncoding:
         decode: (numbers, least) -> frame.
         hand_in: which of the numbers has the frame's hand for its sign; None of rotations alone, whose frames all come
             back with hand 1.
-        levels: for each number that it makes how many values it may have, from -1 to 1 evenly spread; 0 for a number like any other.
+        levels: for each number that it makes how many values it may have, from -1 to 1 evenly spread; 0 for a number
+            like any other.
         storages: where it usually lies, names of FRAME_STORAGES.
         citation: where it comes from.
         glsl: the GLSL twin.

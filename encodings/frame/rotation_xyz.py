@@ -38,5 +38,5 @@ ENCODING = FrameEncoding(
     citation="Niantic, SPZ 2, load-spz.cc, 2024: three bytes, w positive",
     glsl=Path(__file__).with_suffix(".glsl"),
     ulps=(16384, 8192),
-    ulps_reason="of a half turn three squares leave 2^-22 of 1 by rounding, whose root is 2^-11; doubled, and on either side",
+    ulps_reason="of a half turn three squares leave 2^-22 of 1 by rounding, whose root is 2^-11; on either side",
 )

@@ -9,6 +9,7 @@ from slowly import all_but
 from normalbench.encodings.catalogue import MOTION_ENCODINGS
 from normalbench.encodings.codecs.motion_codec import MotionCodec
 from normalbench.encodings.motion.log import OCTAVES, K
+from normalbench.encodings.storages.rules import by_rule
 from normalbench.encodings.storages.storage import FORMATS, MOTION_STORAGES, STORAGES, Storage
 from normalbench.encodings.vec import Vec2
 
@@ -24,6 +25,27 @@ def test_an_encoding_is_odd_and_rises_from_0_to_1_at_the_range(name):
     line = np.linspace(0, RANGE, 4097, dtype=np.float32)
     one, other = rows(encoding.encode(planes(Vec2, np.stack([line, -line], axis=1)), largest)).T
     assert np.array_equal(one, -other) and (np.diff(one) > 0).all()
+
+
+def test_unreals_velocity_is_linear_in_centred_bits_over_a_range_a_little_larger():
+    """0.2495 d + 32767 / 65535 of a difference d of clip space up to 2, in UNORM of 16 bits (Unreal Engine 4.27,
+    Common.ush): the clear value 0 is never met."""
+    screens = np.random.default_rng(0).uniform(-1, 1, (2**16, 2)).astype(np.float32)
+    theirs = 65535 * (0.2495 * 2 * screens.astype(np.float64)) + 32767
+    codec = MotionCodec(MOTION_ENCODINGS["linear"], MOTION_STORAGES["rg16_centred"])
+    stored = rows(codec.stored(planes(Vec2, screens), np.float32(32767 / (0.2495 * 2 * 65535))))
+    ours = np.rint(stored.astype(np.float64) * 32767) + 32767
+    # Half a step, and what float32 adds to 32767.
+    assert abs(ours - theirs).max() <= 0.5 + 2.0**-7 and ours.min() > 0
+
+
+def test_a_bias_in_half_floats_loses_slow_motion():
+    """1/2 plus half of the motion: 0.05 pixels of 1920 come back as none (ufloat:5:10 is the positive halves)."""
+    slow = planes(Vec2, np.float32([[0.05 / 1920, -0.05 / 1920]]))
+    biased = MotionCodec(MOTION_ENCODINGS["linear"], by_rule("ufloat", (5, 10)))
+    assert np.array_equal(rows(biased.round_trip(slow, np.float32(1))), [[0, 0]])
+    plain = MotionCodec(MOTION_ENCODINGS["linear"], STORAGES["rg16f"])
+    assert rows(plain.round_trip(slow, np.float32(1))) == pytest.approx(rows(slow), rel=0.001)
 
 
 def test_the_constant_of_the_logarithm_is_a_pixel_of_2047():
