@@ -15,6 +15,7 @@ from ..storages.rounding import numbers_around, store_number
 from ..storages.storage import BITS_32, FORMS, Storage, of_unit
 from ..vec import Vec3, dot, jnp, select
 from .encoding import Encoding
+from .local_range import back, bits_of_bounds, bounds, within
 
 # A number that is not one of few values is not laid into fewer bits, unless somebody said them.
 LEAST_BITS = 4
@@ -133,6 +134,11 @@ class Codec:
         return sum(self.storage.bits[: self.encoding.components]) + self.encoding.sign_bits
 
     @property
+    def bits_of_bounds(self) -> float:
+        """The bits that a patch's range adds to each of its normals; 0 without patches."""
+        return bits_of_bounds(self.encoding.components, self.encoding.patch) if self.encoding.patch else 0.0
+
+    @property
     def codes(self) -> int:
         """How many codes it has: whatever its numbers in [-1, 1] can be, used or not."""
         if self.encoding.is_packed:
@@ -169,7 +175,15 @@ class Codec:
         # A number chosen from constants has no width of its own; half arithmetic has another one.
         dtype = jnp.float16 if self.encoding.is_half else n.z.dtype
         code = type(code := self.encoding.encode(n, view))(*(jnp.asarray(c, dtype) for c in code))
+        if self.encoding.patch:
+            return self._stored_in_patches(code)
         return self.store(self._nearest_of(code, n, view) if self.encoding.is_precise else code)
+
+    def _stored_in_patches(self, code):
+        """Codes that were stored within the range of their patch, as they come back."""
+        ranges = [bounds(c, self.encoding.patch) for c in code]
+        inside = type(code)(*(within(c, *ends) for c, ends in zip(code, ranges, strict=True)))
+        return type(code)(*(back(c, *ends) for c, ends in zip(self.store(inside), ranges, strict=True)))
 
     def around(self, code) -> list:
         """The codes around a code (Vec2 or Vec3), every number rounded down or up; of fixed-point formats."""

@@ -82,6 +82,8 @@ def code_of(codec: Codec, language: str, prefix: str = "") -> Code:
     """
     if codec.encoding.before:
         raise UsageError(f"{codec.encoding.name}: a chain of codecs is not written; write each codec of it")
+    if codec.encoding.patch:
+        raise UsageError(f"{codec.encoding.name}: ranges of patches are measured, and no code is written for them")
     if what := codec.storage.only_measured:
         raise UsageError(f"{codec.name}: {what} are measured, and no code is written for them")
     prefix = prefix or identifier(codec.name)

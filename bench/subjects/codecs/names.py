@@ -25,9 +25,20 @@ from .half.compute import half_device
 from .user_encodings import encodings_named
 
 
-def codecs_named(encodings: str, storages: str, roundings: str, arithmetics: str = FLOAT) -> list[Codec]:
-    """Every combination of comma-separated names, users' encodings from files among them. Raises UsageError."""
+def codecs_named(
+    encodings: str, storages: str, roundings: str, arithmetics: str = FLOAT, has_patches: bool = False
+) -> list[Codec]:
+    """Every combination of comma-separated names, users' encodings from files among them.
+
+    Args:
+        has_patches: whether what is measured has neighbours that may share a range.
+
+    Raises:
+        UsageError: an unknown name, or codes within ranges where none are.
+    """
     named = _with_chains(encodings)
+    if not has_patches and (ranged := next((one for one in named if one.patch), None)):
+        raise UsageError(f"{ranged.name}: the ranges of patches are measured by quality alone")
     chosen = with_arithmetics(named, FLOAT if arithmetics == DECLARED and not _computes_halves(named) else arithmetics)
     made = (
         Codec(encoding, storage, rounding)

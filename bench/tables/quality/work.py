@@ -53,7 +53,7 @@ def cases(options: QualityOptions) -> list[measure.Case]:
     """
     count = checked_count(options.count)
     check_seed(options.seed)
-    codecs = codecs_named(options.encoding, options.storage, options.rounding, options.arithmetic)
+    codecs = codecs_named(options.encoding, options.storage, options.rounding, options.arithmetic, has_patches=True)
     backends = backends_named(options.backend, measure.BACKENDS)
     codecs, left_out = fitting(codecs)
     require_jax()
