@@ -189,7 +189,9 @@ def to_terminal(rows: Sequence[dict[str, Any]], width: int, expendable: Sequence
     for row in shown:
         table.add_row(*(escape(text_of(row[column])) for column in columns))
     stream = StringIO()
-    console = Console(file=stream, width=max(width, sum(widths) + GAP * len(columns)), highlight=False)
+    # Two colons around a letter are no emoji: octahedral:B:...
+    wide = max(width, sum(widths) + GAP * len(columns))
+    console = Console(file=stream, width=wide, highlight=False, emoji=False)
     console.print(table)
     left_out = [column for column in shown[0] if column not in columns]
     notes = [caption, f"not shown in this width: {', '.join(left_out)}" if left_out else ""]

@@ -104,6 +104,16 @@ def _of_floats(kind: str, bits: tuple[int, ...]) -> Storage:
     return Storage(name, title, "float", (form.bits,) * count, RGBA8, part=part, is_said=True, form=form)
 
 
+def rule_of(storage: Storage) -> str:
+    """The bits of a storage as they are said: snorm:16:16; of floats what each channel has."""
+    if storage.kind != "float":
+        kind = "centred" if storage.is_centred else "snorm_full" if storage.is_full else storage.kind
+        return ":".join((kind, *map(str, storage.bits)))
+    forms = [storage.float_form(channel) for channel in range(storage.channels)]
+    said = dict.fromkeys(f"{form.exponent}:{form.mantissa}" for form in forms)
+    return f"{'float' if forms[0].is_signed else 'ufloat'}:{' and '.join(said)}"
+
+
 def storage_of(name: str) -> Storage | None:
     """The storage of a name: one of the catalogue's, numbers by rule as in `unorm:9:7`, or laid across channels as
     `rg8_9_7` has them; else None.

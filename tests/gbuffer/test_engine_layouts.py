@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import cache
+from itertools import accumulate
 
 import numpy as np
 import pytest
@@ -93,6 +94,18 @@ def image_of(gl, pipeline: str, layout: str) -> np.ndarray:
     with rendering(gl, PIPELINES[pipeline], GLOSS, one) as made:
         made.draw()
         return made.image()
+
+
+@pytest.mark.parametrize("name", LAYOUTS)
+def test_a_presets_fields_take_all_bits_of_their_formats(name):
+    """Nothing of a texel is left unsaid: what holds nothing is free."""
+    for target in LAYOUTS[name].targets:
+        bits, taken = target.storage.bits, 0
+        ends = list(accumulate(bits))
+        for word in target.holds.split():
+            size = word.rpartition(":")[2]
+            taken += int(size) if size.isdecimal() else bits[ends.index(taken) + 1 if taken else 0]
+        assert taken == sum(bits), f"{name}, {target.format}: {target.holds}"
 
 
 @pytest.mark.slow

@@ -13,7 +13,8 @@ from ....encodings.catalogue import (
 from ....encodings.codecs.encoding import Encoding
 from ....encodings.codecs.variants import known_settings
 from ....encodings.storages.depth_storage import DEPTH_STORAGES
-from ....encodings.storages.storage import FRAME_STORAGES, MOTION_STORAGES, STORAGES
+from ....encodings.storages.rules import rule_of
+from ....encodings.storages.storage import FRAME_STORAGES, MOTION_STORAGES, STORAGES, Storage
 from ....gbuffer.effects.catalogue import EFFECTS
 from ....gbuffer.effects.effect import Choice, Number
 from ....gbuffer.environment.catalogue import ENVIRONMENTS
@@ -56,12 +57,28 @@ def _settings_of(encoding: Encoding) -> str | None:
     return f"settings: {found}" if found else None
 
 
+# Storages by their bits, and what each holds; B are bits of a number, E and M of exponent and mantissa.
+BY_BITS = {
+    "unorm:B:...": "c/2+1/2 is i/(2^B-1), i from 0 to 2^B-1",
+    "snorm:B:...": "c is i/(2^(B-1)-1), exact at -1, 0 and 1",
+    "snorm_full:B:...": "c is i/2^(B-1), exact at -1, 0, not at 1",
+    "snorm_gl2:B:...": "c is (2i+1)/(2^B-1): unorm's numbers",
+    "centred:B:...": "snorm's integers and a half, in UNORM",
+    "uint:B:... sint:B:...": "as unorm and snorm; the shader rounds",
+    "float:E:M ufloat:E:M": "exponent, mantissa; with a sign, without",
+    "unorm:4:4..16:16": "each, from some bits to some others",
+}
+
+
 def _storages() -> list[Row]:
-    return [
-        _row("storage", s.name, f"{s.title}, {s.kind}", components=str(s.channels))
-        | {"holds": f"{':'.join(map(str, s.bits))} bits"}
-        for s in STORAGES.values()
-    ]
+    named = [_row("storage", s.name, rule_of(s), holds=_texel_text(s)) for s in STORAGES.values()]
+    return named + [_row("storage by bits", name, holds) for name, holds in BY_BITS.items()]
+
+
+def _texel_text(storage: Storage) -> str:
+    """Where the numbers of a storage lie."""
+    texel = f"{storage.texel_bytes} bytes"
+    return f"{texel}, across channels" if storage.is_packed else f"{texel}, a channel each"
 
 
 def _depths() -> list[Row]:
@@ -80,10 +97,7 @@ def _frames() -> list[Row]:
             _row("frame", f.name, f.title, holds=f"usually in {', '.join(f.storages)}") | {"from": f.citation}
             for f in FRAME_ENCODINGS.values()
         ),
-        *(
-            _row("frame storage", s.name, f"{s.title}, {s.kind}", holds=f"{':'.join(map(str, s.bits))} bits")
-            for s in FRAME_STORAGES.values()
-        ),
+        *(_row("frame storage", s.name, rule_of(s), holds=_texel_text(s)) for s in FRAME_STORAGES.values()),
         *(_row("frame set", name, title) for name, title in FRAME_SETS.items()),
     ]
 
@@ -94,10 +108,7 @@ def _vectors() -> list[Row]:
             _row("motion", m.name, m.title, holds=f"usually in {', '.join(m.storages)}") | {"from": m.citation}
             for m in MOTION_ENCODINGS.values()
         ),
-        *(
-            _row("motion storage", s.name, f"{s.title}, {s.kind}", holds=f"{':'.join(map(str, s.bits))} bits")
-            for s in MOTION_STORAGES.values()
-        ),
+        *(_row("motion storage", s.name, rule_of(s), holds=_texel_text(s)) for s in MOTION_STORAGES.values()),
     ]
 
 

@@ -366,6 +366,8 @@ def test_a_list_fits_the_terminal_with_a_table_for_each_kind(run, monkeypatch, w
     status, out, _ = run("list", what)
     assert status == 0 and max(map(len, out.splitlines())) <= 80
     assert out.count("name ") >= {"all": 12, "storages": 1, "layouts": 1}[what]
+    # A letter between two colons is no emoji, and of a storage nothing is left out.
+    assert what != "storages" or ("unorm:B:..." in out and "across channels" in out and "not shown" not in out)
 
 
 def test_doctor_ends_in_what_can_be_measured(run, monkeypatch):

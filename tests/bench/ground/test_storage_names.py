@@ -1,0 +1,89 @@
+"""Storages by rule: the catalogue's where there is one, ranges, and what cannot be."""
+
+import json
+
+import pytest
+
+from normalbench.bench.door.python.codecs import codec_of
+from normalbench.bench.ground.options.storage_names import storages_named
+from normalbench.bench.ground.output.errors import UsageError
+from normalbench.encodings.storages.rules import rule_of, storage_of
+from normalbench.encodings.storages.storage import MOTION_STORAGES, STORAGES
+
+
+@pytest.mark.parametrize(
+    "said, names",
+    [
+        ("unorm:8:8,snorm:16:16,unorm:10:10:10:2", "rg8 rg16_snorm rgb10a2"),
+        ("unorm:9:7", "rg8_9_7"),
+        ("snorm:7:7", "rg8_7_7_snorm"),
+        ("unorm:12:12:7:1", "rgba8_12_12_7_1"),
+        ("unorm:6:6..9:9", "rg8_6_6 rg8_7_7 rg8 rgb8_9_9"),
+        ("unorm:10:10:2..12:12:4", "rgb8_10_10_2 rgba8_11_11_3 rgba8_12_12_4"),
+        ("rg8,unorm:8:8", "rg8"),
+        ("centred:8:8,rg16_centred", "rg8_centred rg16_centred"),
+        ("UNORM:9:7", "rg8_9_7"),
+        ("unorm:8:8:4..10:10:4", "rgb8_8_8_4 rgb8_9_9_4 rgb8_10_10_4"),
+        ("unorm:8,unorm:5", "r8 r8_5"),
+        ("unorm:20:20:20:4", "rgba16_20_20_20_4"),
+        ("uint:8:8,sint:8:8", "rg8_8_8 rg8_8_8_snorm"),
+        ("snorm_full:8:8,snorm_gl2:8:8", "rg8_8_8_snorm_full rg8"),
+        ("float:5:10,float:8:23,float:8:7,ufloat:5:6", "rgba16f rgba32f float_8_7 ufloat_5_6"),
+        ("float:5:2..5:4", "float_5_2 float_5_3 float_5_4"),
+        # As APIs print formats, also such that the catalogue has no name for.
+        ("R16G16_SNORM,DXGI_FORMAT_R10G10B10A2_UNORM", "rg16_snorm rgb10a2"),
+        ("snorm10-10-10-2,unorm10-10-10-2", "rgba8_10_10_10_2_snorm rgb10a2"),
+        ("unorm8x4,snorm16x2,float16x2,float32x4", "rgba8 rg16_snorm rg16f rgba32f"),
+        ("B5G6R5_UNORM_PACK16", "rg8_5_6_5"),
+    ],
+)
+def test_bits_name_a_storage(said, names):
+    assert " ".join(storage.name for storage in storages_named(said)) == names
+
+
+@pytest.mark.parametrize("storage", [*STORAGES.values(), *MOTION_STORAGES.values()], ids=lambda s: s.name)
+def test_every_storage_is_said_by_its_bits(storage):
+    """What `list storages` says of it names it, or another one with these numbers: rg16f has two of rgba16f's four."""
+    if storage.name != "r11g11b10f":
+        said = storage_of(rule_of(storage))
+        assert said.is_centred == storage.is_centred and said.bits[: storage.channels] == storage.bits
+
+
+@pytest.mark.parametrize(
+    "said, message",
+    [
+        ("unorm:0:8", "unorm:0:8: a code is one to four numbers of 1 to 20 bits each"),
+        ("unorm:33:2", "unorm:33:2: a code is one to four numbers of 1 to 20 bits each"),
+        ("unorm:20:20:20:20", "and of 64 together"),
+        ("unorm:8:8..6:6", "numbers grow by as many bits, or stay, as in unorm:4:4..16:16"),
+        ("unorm:8:8..10:12", "numbers grow by as many bits"),
+        ("unorm:8:8..10", "numbers grow by as many bits"),
+        ("centred:9:7", "centred numbers lie in a format of a GPU, such as centred:8:8, not 9:7"),
+        ("unorms:8:8", "unknown storage 'unorms:8:8'"),
+        ("snorm:1:8", "snorm:1:8: a signed number has at least 2 bits"),
+        ("unorm:8:8..", "bits are said as unorm:9:7"),
+        ("float:5", "float:EXPONENT:MANTISSA, of 2 to 8 and of 1 to 23 bits, such as float:5:10, not float:5"),
+        ("float:9:10", "not float:9:10"),
+        ("rg9", "unknown storage 'rg9'"),
+    ],
+)
+def test_what_cannot_be_is_a_line(said, message):
+    with pytest.raises(UsageError, match=message):
+        storages_named(said)
+
+
+def test_centred_numbers_are_measured_and_not_written_or_laid_out(run):
+    """In both languages: axes are exact, as in SNORM, and in a UNORM target. What cannot have them says so."""
+    words = ("--encoding", "octahedral", "--storage", "centred:8:8", "--format", "json")
+    status, out, err = run("quality", *words, "--normals", "axes")
+    assert status == 0 and {row["backend"] for row in json.loads(out)} == {"jax", "glsl"}, err
+    assert all(row["angle_max_deg"] < 1e-4 and row["storage"] == "rg8_centred" for row in json.loads(out))
+    status, _, err = run("render", "--scene", "gloss", *words)
+    assert status == 2 and err == "normalbench: layout fp32: RG8 centred: a layout does not keep centred numbers\n"
+    status, _, err = run("code", "octahedral", "--storage", "centred:8:8")
+    assert status == 2 and err.count("\n") == 1 and "no code is written for them" in err
+
+
+def test_python_takes_one_codec_at_a_time():
+    with pytest.raises(UsageError, match="one codec at a time, not 3"):
+        codec_of("octahedral/unorm:4:4..6:6")
