@@ -58,6 +58,7 @@ def users_files(folder: Path) -> None:
     (folder / "mask.png").write_bytes(png_bytes(np.full((*n.shape[:2], 1), 255, np.uint8)))
     np.savetxt(folder / "view.txt", np.eye(4))
     as_document([sphere(1.0, 16, 8)]).write(folder / "scene.glb")
+    shutil.copy(ROOT / "tests" / "inputs" / "normals" / "points.ply", folder)
 
 
 def readers_devices(folder: Path) -> None:

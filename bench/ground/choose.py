@@ -13,6 +13,8 @@ from .spelling import meant, spelled
 T = TypeVar("T")
 # In the name of a file.
 MOST_COMMAS = 4
+# Behind the name of a mesh file: mesh.glb#vertices is the normals of its vertices.
+PART, VERTICES = "#", "vertices"
 
 
 def choose(what: str, names: str, known: Mapping[str, T]) -> list[T]:
@@ -92,7 +94,12 @@ def split(names: str, is_whole: Callable[[str], bool]) -> list[str]:
 
 def file_names(names: str) -> list[str]:
     """Comma-separated names, each once; a comma in a file's name is a part of it."""
-    return split(names, names_a_file)
+    return split(names, lambda word: names_a_file(whole_file_of(word)))
+
+
+def whole_file_of(word: str) -> str:
+    """The file of a word that names a part of it, mesh.glb of mesh.glb#vertices; any other word as it is."""
+    return word.removesuffix(f"{PART}{VERTICES}")
 
 
 def names_a_file(word: str) -> bool:

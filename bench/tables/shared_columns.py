@@ -14,7 +14,10 @@ BITS = Column(
     "Bits that the code occupies: all bits of the channels that it uses, and a bit for each sign kept elsewhere.",
 )
 CODE_SPACE = Column(
-    "code_space", "The space that a captured frame's normals were encoded in: view or world.", Role.HOW, drops=9
+    "code_space",
+    "The space that a file's normals were encoded in: view, world, or object, as those of vertices and points are.",
+    Role.HOW,
+    drops=9,
 )
 PIPELINE = Column("pipeline", "The order of passes that rendered it.", Role.KEY)
 LIGHT_TARGETS = Column(

@@ -131,7 +131,7 @@ def quality(
 ) -> Rows:
     """What each codec loses of the normals of a set: MSE, PSNR, angles, effective bits.
 
-    A set may be a file: a captured frame (EXR, PNG, TIFF, DDS, HDR, WebP, NPY) or a mesh seen by a camera (glTF, GLB, OBJ, PLY, STL, OFF).
+    A set may be a file: a captured frame (EXR, PNG, TIFF, DDS, HDR, WebP, NPY), a mesh seen by a camera (glTF, GLB, OBJ, PLY, STL, OFF), its vertex normals in object space (mesh.glb#vertices), or a point cloud (PLY).
 
     Args:
         encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.

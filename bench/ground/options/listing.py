@@ -32,6 +32,14 @@ NORMAL_SETS = {
     "playground": "the scene of Pranckevicius' article rendered at 640 x 480, with four lamp arms like its own",
 }
 
+# Sets that users' files are, by how they are named.
+FILES_OF_NORMALS = {
+    "FRAME.exr": "a captured frame, also .png, .tif, .dds, .hdr, .webp and .npy",
+    "MESH.glb": "what a camera sees of a mesh, also .gltf, .obj, .ply, .stl and .off",
+    "MESH.glb#vertices": "its vertex normals in object space, each vertex once, also .gltf, .obj, .ply and .stl",
+    "POINTS.ply": "the normals of a point cloud in object space: nx, ny, nz and no faces",
+}
+
 FRAME_SETS = {"rotations": "rotations spread evenly, of either hand, seeded"}
 
 HOW = {"add": "adding", "multiply": "multiplying", "read": "reading and writing"}
@@ -120,7 +128,7 @@ def _curves() -> list[Row]:
 
 
 def _normal_sets() -> list[Row]:
-    return [_row("normals", name, title) for name, title in NORMAL_SETS.items()]
+    return [_row("normals", name, title) for name, title in {**NORMAL_SETS, **FILES_OF_NORMALS}.items()]
 
 
 def _layouts() -> list[Row]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
+from typing import TypeVar
 
 from ....encodings.codecs.files import called
 from ....gbuffer.scenes.catalogue import SCENES, SceneMaker
@@ -14,6 +15,7 @@ from ....gbuffer.scenes.files.source import MissingPackageError, SceneFileError
 from ..choose import choose_or_read
 from ..output.errors import MissingError, UsageError, tell
 
+T = TypeVar("T")
 MAX_POWER = 2048
 
 
@@ -53,8 +55,13 @@ def powers_named(numbers: str) -> list[float]:
 
 def mesh_file(path: Path) -> MeshFile:
     """A mesh file. Raises UsageError, and MissingError where a package that would unpack it is not installed."""
+    return read_or_refused(lambda: read_mesh_file(path))
+
+
+def read_or_refused(read: Callable[[], T]) -> T:
+    """What is read of a mesh file. Raises as `mesh_file` does."""
     try:
-        return read_mesh_file(path)
+        return read()
     except MissingPackageError as error:
         raise MissingError(str(error)) from error
     except SceneFileError as error:

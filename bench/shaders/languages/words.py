@@ -12,7 +12,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple
 
-from ...ground.choose import split
+from ...ground.choose import PART, split, whole_file_of
 from ...ground.options.words import Words, given_in
 from ...ground.output.errors import UsageError
 
@@ -172,9 +172,9 @@ def _is_only_an_ending(word: str) -> bool:
 
 
 def file_of(word: str | Path) -> Path:
-    """The file of a word: mine.hlsl of mine.hlsl:EncodeNormal:DecodeNormal."""
+    """The file of a word: mine.hlsl of mine.hlsl:EncodeNormal:DecodeNormal, mesh.glb of mesh.glb#vertices."""
     match = _match(word)
-    return Path(match["file"] if match else word)
+    return Path(match["file"] if match else whole_file_of(str(word)))
 
 
 def files_of(word: str | Path) -> list[Path]:
@@ -197,7 +197,7 @@ def files_in(word: str, folder: Path = Path()) -> list[str]:
         folder: where they are looked for.
     """
     match = _match(word)
-    whole = match["file"] if match else word
+    whole = match["file"] if match else whole_file_of(word)
     if is_file(folder, whole):
         settings = settings_of(word)
         others = [one for one in (*map(str, files_of(word)[1:]), *settings.preludes) if is_file(folder, one)]
@@ -223,7 +223,7 @@ def with_files(word: str, others: Mapping[str, str]) -> str:
     if not others:
         return word
     known = "|".join(map(re.escape, sorted(others, key=len, reverse=True)))
-    return re.sub(rf"(?<![^+=,])(?:{known})(?![^:/+])", lambda match: others[match[0]], word)
+    return re.sub(rf"(?<![^+=,])(?:{known})(?![^:/+{PART}])", lambda match: others[match[0]], word)
 
 
 def lacks_a_function(word: str) -> bool:

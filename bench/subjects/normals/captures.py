@@ -15,12 +15,14 @@ import numpy as np
 
 from ....encodings.codecs.files import called, file_text
 from ....encodings.storages.rounding import from_srgb, to_srgb
+from ....gbuffer.scenes.files.mesh_file import Rounding
 from ...ground.choose import choose_one
 from ...ground.options.option import Reading
 from ...ground.output.errors import UsageError
 from .capture_diagnoses import MIRRORED, SWAPPED, some_pixels, which_way
-from .normal_sets import NormalSet, from_arrays
-from .pixel_files import READERS, Pixels, read_pixels, refused
+from .normal_sets import OBJECT, NormalSet, from_arrays
+from .own_errors import FINE, bits_text, own_error_deg, own_error_note
+from .pixel_files import CLOUDS, READERS, Pixels, read_pixels, refused
 
 # Shorter is not a direction: background. Whole numbers have no 0 within [-1, 1]; 8 bits come within 0.007 of it.
 BACKGROUND = 0.02
@@ -71,7 +73,13 @@ def capture(path: Path, reading: Reading) -> tuple[NormalSet, list[str]]:
     n, covered, of_lengths = _directions_and_remarks(path, pixels, surface, reading)
     not_finite = int((surface & ~np.isfinite(n).all(axis=0)).sum())
     n = np.where(covered, n, 0)
-    notes += of_lengths + _which_way(n, covered, turns.to_view, reading, chosen)
+    is_object = is_in_object_space(path, reading)
+    notes += of_lengths
+    if not is_object:
+        notes += _which_way(n, covered, turns.to_view, reading, chosen)
+    own = _own_error_deg(n, covered, pixels, reading)
+    if pixels.full is None and own is not None and own >= FINE:
+        notes.append(own_error_note(f"its normals have {bits_text(pixels.roundings)} and", own))
     if pixels.full == EIGHT_BITS:
         notes.append(
             "8 bits a channel, off by about 0.2 degrees themselves: storages of 8 bits look better on them than "
@@ -84,7 +92,21 @@ def capture(path: Path, reading: Reading) -> tuple[NormalSet, list[str]]:
     name = called(path.name)
     rays = (_rays(n, reading.fov) @ turns.of_rays.T).astype(np.float32)
     made = from_arrays(name, f"normals of {name}", n, rays, covered, shape, not_finite)
-    return replace(made, code_space=reading.code_space), notes
+    return replace(made, code_space=OBJECT if is_object else reading.code_space, own_error_deg=own), notes
+
+
+def is_in_object_space(path: Path, reading: Reading) -> bool:
+    """Whether a file is a cloud of points of which nothing says that a camera saw them."""
+    usual = Reading()
+    said = (reading.space, reading.code_space, reading.view_matrix, reading.fov)
+    return path.suffix.lower() in CLOUDS and said == (usual.space, usual.code_space, usual.view_matrix, usual.fov)
+
+
+def _own_error_deg(n: np.ndarray, covered: np.ndarray, pixels: Pixels, reading: Reading) -> float | None:
+    """By how much normals, (3, ...), are off themselves; None where nothing is known of it, as under a curve."""
+    whole = () if pixels.full is None or reading.curve != "linear" else (Rounding(pixels.full / 2),)
+    known = pixels.roundings or whole
+    return own_error_deg(np.moveaxis(n, 0, -1)[covered], known) if known else None
 
 
 def checked(reading: Reading) -> Reading:

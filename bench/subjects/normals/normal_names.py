@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
@@ -17,17 +17,17 @@ from ...ground.options.option import Count, Reading, fields_of
 from ...ground.options.scene_names import mesh_file, say_notes
 from ...ground.options.words import given_in
 from ...ground.output.errors import UsageError, tell
+from . import vertices
 from .captures import CODE_SPACES, capture
-from .normal_sets import NORMAL_SETS, NormalSet, from_arrays
+from .normal_sets import LACKS_RAYS, NORMAL_SETS, NormalSet, from_arrays
+from .own_errors import own_error_note
 from .pixel_files import MAX_PIXELS, has_normals_alone
 from .pixel_files import READERS as IMAGES
 
 WORLD = CODE_SPACES[1]
 SEES_NOTHING = "its camera sees nothing; move it, or leave it out to have everything framed"
 MAX_SIDE = 16384
-# The share of a source's own error below which a code adds next to nothing: errors add up as squares do, by 6 %.
-WASTED = 1 / 3
-ENDINGS = (*IMAGES, *files.READERS)
+ENDINGS = (*IMAGES, *files.READERS, *vertices.ENDINGS)
 JPEG = "JPEG changes normals; save the frame as EXR or PNG"
 # By its ending, why a file of another kind is not read, and what is.
 OTHERS: Mapping[str, str] = MappingProxyType(
@@ -52,11 +52,13 @@ def normal_sets_named(names: str, count: int, seed: int, reading: Reading, needs
     notes: dict[Path, list[str]] = {}
 
     def read(path: Path) -> Callable[[int, int], NormalSet]:
-        if has_normals_alone(path):
+        if path.suffix.lower() in vertices.ENDINGS:
+            made, notes[path] = vertices.vertex_set(path)
+        elif has_normals_alone(path):
             made, notes[path] = capture(path, reading)
             if needs_rays and reading.code_space == WORLD and reading.view_matrix is None:
                 raise UsageError("codes that need the view ray need --view-matrix where they are in world space")
-            if needs_rays and reading.fov is None:
+            if needs_rays and reading.fov is None and made.has_rays:
                 notes[path].append("without --fov, rays are parallel for codes that need them")
         else:
             made, notes[path] = mesh_set(path, reading.size)
@@ -68,8 +70,15 @@ def normal_sets_named(names: str, count: int, seed: int, reading: Reading, needs
     return made
 
 
+def check_rays(sets: Iterable[NormalSet], needs_rays: bool) -> None:
+    """Raises UsageError where something to be measured needs rays that a set has not."""
+    if needs_rays and (lacking := next((made for made in sets if not made.has_rays), None)):
+        raise UsageError(f"--normals {lacking.name}: a code cannot be measured of it: {LACKS_RAYS}")
+
+
 def _check_kind(word: str) -> None:
-    """Raises UsageError for a file of a kind that is not read, and for a folder."""
+    """Raises UsageError for a file of a kind that is not read, for a folder, and for a part that no file has."""
+    vertices.check_part(word)
     if (ending := Path(word).suffix.lower()) in OTHERS:
         raise UsageError(f"{word}: {OTHERS[ending]}")
     if names_a_folder(word) and word not in NORMAL_SETS and ending not in ENDINGS:
@@ -112,10 +121,9 @@ def mesh_set(path: Path, size: str) -> tuple[NormalSet, list[str]]:
         raise UsageError(f"{path}: {SEES_NOTHING}")
     notes = [*file.notes, *([] if file.view else ["no camera in it: seen from aside, all of it in the picture"])]
     if (own := seen.map_error_deg) is not None:
-        notes.append(
-            f"its normal maps have 8 bits a channel and are off by about {own:.2g} degrees themselves: a code with "
-            f"a mean below {own * WASTED:.1g} spends bits that these normals do not have"
-        )
+        notes.append(own_error_note("its normal maps have 8 bits a channel and", own))
+    of_vertices, said = vertices.drawn_error(path)
     name = called(path.name)
     made = from_arrays(name, f"the meshes of {name}", seen.normals, seen.positions, seen.covered, sides[::-1])
-    return replace(made, map_error_deg=seen.map_error_deg), notes
+    own = math.hypot(seen.map_error_deg or 0.0, of_vertices)
+    return replace(made, own_error_deg=own or None), notes + said

@@ -21,6 +21,9 @@ from ...ground.native.library import LARGE, NoCompilerError
 from ...ground.options.counts import DEFAULT_COUNT
 from .fill import Fill
 
+# The space of vertices and points, which no camera sees.
+OBJECT = "object"
+LACKS_RAYS = "it needs the view ray, and normals in object space have none"
 CHUNK_WIDTH = 512
 CHUNK = CHUNK_WIDTH * CHUNK_WIDTH
 # Larger sets are measured and kept in parts of so many normals, by several workers where there are some.
@@ -56,10 +59,10 @@ class NormalSet:
         shape: (height, width) of a set that is an image, else None.
         seed: what the set was made with.
         chunk: start index -> Chunk.
-        background: how many of them are of no surface and do not count; None where there can be none.
+        background: how many of them are of no surface and do not count; None where nothing is to be said of that.
         not_finite: how many of a file's were NaN or infinite, which do not count either.
-        code_space: of a captured frame the space that its normals are in: "view" or "world".
-        map_error_deg: of a scene whose normal maps have 8 bits, the mean angle by which its normals are off themselves.
+        code_space: of a file the space that its normals are in: "view", "world" or "object".
+        own_error_deg: of a file whose normals are rounded, the mean angle by which they are off themselves.
         of: by number the chunks that are meant where this is a part of a set; None for all.
     """
 
@@ -73,8 +76,13 @@ class NormalSet:
     background: int | None = None
     not_finite: int | None = None
     code_space: str | None = None
-    map_error_deg: float | None = None
+    own_error_deg: float | None = None
     of: range | None = None
+
+    @property
+    def has_rays(self) -> bool:
+        """Whether its normals have a view ray; those in object space have none."""
+        return self.code_space != OBJECT
 
     @property
     def starts(self) -> range:
@@ -203,7 +211,7 @@ def from_arrays(name: str, title: str, n, view, covered, shape=None, not_finite:
         shape,
         0,
         lambda start: chunks[start // CHUNK],
-        background if shape else None,
+        background if shape or background else None,
         not_finite,
     )
 

@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 
 from ....gbuffer.scenes.files import ply
+from ....gbuffer.scenes.files.mesh_file import Rounding
 from ....gbuffer.scenes.files.source import SceneFileError, file_bytes
 from ...ground.machine.children import environment, python
 from ...ground.output.errors import UsageError
@@ -69,10 +70,12 @@ class Pixels:
     Attributes:
         planes: (channels, height, width) or (channels, count), float32; float64 where the file has that.
         full: what stands for 1 in a file of whole numbers, None in one of floats.
+        roundings: what normals that are meant already were rounded to.
     """
 
     planes: np.ndarray
     full: int | None
+    roundings: tuple[Rounding, ...] = ()
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -207,8 +210,10 @@ def _read_cloud(path: Path, choose: Choice) -> Pixels:
         found = ply.read_cloud(path)
     except SceneFileError as error:
         raise UsageError(str(error)) from error
-    check_pixels(path, *found.shape)
-    return Pixels(_planes(found, [ply.NORMAL.index(name) for name in choose(ply.NORMAL)]), None)
+    assert found.normals is not None
+    check_pixels(path, *found.normals.shape)
+    chosen = [ply.NORMAL.index(name) for name in choose(ply.NORMAL)]
+    return Pixels(_planes(found.normals, chosen), None, found.roundings)
 
 
 # NPY

@@ -12,7 +12,7 @@ from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_numbers, in_range
 from ...ground.output.errors import UsageError, leave_out
 from ...subjects.codecs.names import check_twin, codecs_named, fitting
-from ...subjects.normals.normal_names import normal_sets_named
+from ...subjects.normals.normal_names import check_rays, normal_sets_named
 from ..charts import one_backend
 from ..table import Measured, Row, Sheet, Step, Work, each
 from . import measure
@@ -75,7 +75,9 @@ def _patches(
 ) -> list[Patches]:
     angles, edges = apart
     made: list[Patches] = []
-    for normals in normal_sets_named(options.normals, options.count, options.seed, options.reading, needs_rays):
+    sets = normal_sets_named(options.normals, options.count, options.seed, options.reading, needs_rays)
+    check_rays(sets, needs_rays)
+    for normals in sets:
         found = list(patches_of(normals, angles, options.count, options.seed, edges))
         if not found:
             raise UsageError(f"--normals {normals.name}: no square of 4 x 4 pixels of it is covered")

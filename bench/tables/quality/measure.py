@@ -277,7 +277,7 @@ def _case_columns(case: Case) -> Row:
         "bits": case.codec.bits,
         "bounds_bits": case.codec.bits_of_bounds or None,
         "background": case.normal_set.background,
-        "map_error_deg": case.normal_set.map_error_deg,
+        "own_error_deg": case.normal_set.own_error_deg,
         "not_finite": case.normal_set.not_finite,
         "code_space": case.normal_set.code_space,
         "domain": case.domain,

@@ -93,11 +93,13 @@ COLUMNS = (
         unit="bits",
     ),
     Column("count", "How many normals were measured.", HOW, drops=13),
-    Column("background", "Pixels without a surface; they do not count.", HOW, drops=3),
     Column(
-        "map_error_deg",
-        "Mean angle by which the normals of a scene's own maps are off, where these have 8 bits: as far as the same "
-        "maps of 6 bits are off from them, over 4.",
+        "background", "Pixels without a surface, and vertices without a direction; they do not count.", HOW, drops=3
+    ),
+    Column(
+        "own_error_deg",
+        "Mean angle by which the normals of a file are off themselves, where its vertices, maps or pixels are rounded: "
+        "as far as the same normals with steps four times as wide are off from them, over 4.",
         HOW,
         "degrees",
         drops=12,
@@ -260,8 +262,9 @@ TABLE = Table(
     is_usual=True,
     package=__package__ or "",
     help="What each codec loses of the normals of a set: MSE, PSNR, angles, effective bits.\n\n"
-    "A set may be a file: a captured frame (EXR, PNG, TIFF, DDS, HDR, WebP, NPY) or a mesh seen by "
-    "a camera (glTF, GLB, OBJ, PLY, STL, OFF).",
+    "A set may be a file: a captured frame (EXR, PNG, TIFF, DDS, HDR, WebP, NPY), a mesh seen by "
+    "a camera (glTF, GLB, OBJ, PLY, STL, OFF), its vertex normals in object space (mesh.glb#vertices), or a point "
+    "cloud (PLY).",
     example="normalbench quality --encoding octahedral,spheremap --storage rg8,rgb10a2 --normals sphere",
     options=QualityOptions,
     outputs=QualityOutputs,

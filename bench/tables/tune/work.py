@@ -23,7 +23,7 @@ from ...subjects.codecs.names import check_twin
 from ...subjects.codecs.tuned_names import MARK
 from ...subjects.codecs.tuned_names import TABLE as LOOK_UP
 from ...subjects.codecs.user_encodings import encodings_named
-from ...subjects.normals.normal_names import normal_sets_named
+from ...subjects.normals.normal_names import check_rays, normal_sets_named
 from ...subjects.normals.normal_sets import NormalSet
 from ..quality import measure as quality
 from ..table import Measured, Sheet, Step, Tick, Work, each
@@ -156,7 +156,9 @@ def _halves(chosen: Chosen, options: TuneOptions) -> Halves:
     count = checked_count(options.count)
 
     def named(text: str) -> list[NormalSet]:
-        return normal_sets_named(text, count, options.seed, options.reading, needs_rays)
+        found = normal_sets_named(text, count, options.seed, options.reading, needs_rays)
+        check_rays(found, needs_rays)
+        return found
 
     return halves_of(_one("normal set", named, options.normals), options.seed, by_tiles=chosen.has_table)
 

@@ -19,11 +19,11 @@ from ..mesh import Mesh, laid_by
 from ..metal_rough import MetalRough
 from ..sampled import placed_uv
 from ..scene import View
-from .gltf_data import Gltf, Object, meant_numbers
+from .gltf_data import COMPONENTS, Gltf, Object, meant_numbers
 from .gltf_lights import lights_of
 from .gltf_materials import DEFAULT, Materials
 from .gltf_packed import DRACO, draco_primitive
-from .mesh_file import MeshFile, Piece, checked_pieces, mesh_of
+from .mesh_file import MeshFile, Piece, Rounding, Stored, checked_pieces, mesh_of
 from .source import MAX_TRIANGLES, checked_indices, checked_size
 
 TRIANGLES, STRIP, FAN = 4, 5, 6
@@ -62,6 +62,24 @@ def read_gltf(path: Path) -> MeshFile:
     lights = lights_of(gltf, nodes, kept, notes)
     said = tuple(dict.fromkeys([*notes, *read.notes]))
     return MeshFile(path, kept, materials, two_sided, view, said, lights)
+
+
+def gltf_meshes(path: Path) -> list[Stored]:
+    """What the meshes of the default scene say, each mesh once and in its own space, points and lines among them.
+
+    Raises:
+        SceneFileError: see `read_gltf`; a file may have no triangles.
+    """
+    gltf = Gltf(path)
+    # A mesh in several places is read once.
+    nodes = {str(node["mesh"]): (node, model) for node, model in _placed_nodes(gltf) if "mesh" in node}
+    _check_sizes(gltf, list(nodes.values()))
+    places = [(gltf.entry("meshes", node["mesh"], "a node"), f"meshes[{node['mesh']}]") for node, _ in nodes.values()]
+    return [
+        _stored(gltf, primitive, gltf.whole(primitive, "mode", where, TRIANGLES), where)
+        for mesh, place in places
+        for primitive, where in _mesh_primitives(gltf, mesh, place)
+    ]
 
 
 def _children(gltf: Gltf, index: int) -> list[int]:
@@ -160,8 +178,7 @@ def _check_sizes(gltf: Gltf, nodes: list[tuple[Object, np.ndarray]]) -> None:
 def _size(gltf: Gltf, mesh: Object, place: str) -> tuple[int, int]:
     """Vertices and, at most, triangles of a mesh."""
     vertices = triangles = 0
-    for number, primitive in enumerate(_mesh_primitives(gltf, mesh, place)):
-        where = f"{place}.primitives[{number}]"
+    for primitive, where in _mesh_primitives(gltf, mesh, place):
         attributes = gltf.child(primitive, "attributes", where)
         count = gltf.count(attributes.get("POSITION"), f"{where}.POSITION")
         corners = gltf.count(primitive["indices"], f"{where}.indices") if "indices" in primitive else count
@@ -170,19 +187,19 @@ def _size(gltf: Gltf, mesh: Object, place: str) -> tuple[int, int]:
     return vertices, triangles
 
 
-def _mesh_primitives(gltf: Gltf, mesh: Object, place: str) -> list[Object]:
+def _mesh_primitives(gltf: Gltf, mesh: Object, place: str) -> list[tuple[Object, str]]:
+    """The primitives of a mesh, and where each is."""
     primitives = gltf.list_of(mesh, "primitives", place)
     if not all(isinstance(primitive, dict) for primitive in primitives):
         raise gltf.error(f"{place}.primitives", "holds what is not an object")
-    return primitives
+    return [(primitive, f"{place}.primitives[{number}]") for number, primitive in enumerate(primitives)]
 
 
 def _primitives(
     gltf: Gltf, mesh: Object, place: str, materials: tuple[MetalRough, ...], notes: list[str]
 ) -> Iterator[tuple[Mesh, int]]:
     """The triangle meshes of a mesh, each with its material's index."""
-    for number, primitive in enumerate(_mesh_primitives(gltf, mesh, place)):
-        where = f"{place}.primitives[{number}]"
+    for primitive, where in _mesh_primitives(gltf, mesh, place):
         mode = gltf.whole(primitive, "mode", where, TRIANGLES)
         if mode not in (TRIANGLES, STRIP, FAN):
             notes.append("points and lines are not drawn")
@@ -195,15 +212,13 @@ def _primitives(
 
 
 def _primitive(gltf: Gltf, primitive: Object, mode: int, material: MetalRough, where: str, notes: list[str]) -> Mesh:
-    triangles, found = _stored(gltf, primitive, mode, where)
-    if len(triangles) > MAX_TRIANGLES:
-        raise gltf.error(where, f"has {len(triangles)} triangles; the most is {MAX_TRIANGLES}", "export fewer objects")
-    normals, uv, second = (found.get(name) for name in ("NORMAL", "TEXCOORD_0", "TEXCOORD_1"))
-    # Tangents without normals say nothing (glTF 2.0, 3.7.2.1).
-    tangents = found["TANGENT"] * ALONG_V if normals is not None and "TANGENT" in found else None
-    made, said = mesh_of(gltf.path, where, found["POSITION"], triangles, normals, uv, tangents, second)
+    stored = _stored(gltf, primitive, mode, where)
+    if len(stored.corners) > MAX_TRIANGLES:
+        many = f"has {len(stored.corners)} triangles; the most is {MAX_TRIANGLES}"
+        raise gltf.error(where, many, "export fewer objects")
+    made, said = mesh_of(gltf.path, stored)
     notes += said
-    notes += _lacking_uv(material, uv, second)
+    notes += _lacking_uv(material, stored.uv, stored.second_uv)
     normal_map = material.normal_map
     return made if normal_map is None or made.authored is not None else laid_by(made, placed_uv(made, normal_map))
 
@@ -215,8 +230,28 @@ def _lacking_uv(material: MetalRough, *sets: np.ndarray | None) -> list[str]:
     return [f"there are meshes without TEXCOORD_{one}: {said[one]}" for one in sorted(lacking)]
 
 
-def _stored(gltf: Gltf, primitive: Object, mode: int, where: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """A primitive's triangles, and its attributes by name; POSITION is one of them."""
+def _stored(gltf: Gltf, primitive: Object, mode: int, where: str) -> Stored:
+    """What a primitive says; its points, where it has no triangles."""
+    corners, found = _stored_numbers(gltf, primitive, mode, where)
+    normals, uv, second = (found.get(name) for name in ("NORMAL", "TEXCOORD_0", "TEXCOORD_1"))
+    # Tangents without normals say nothing (glTF 2.0, 3.7.2.1).
+    tangents = found["TANGENT"] * ALONG_V if normals is not None and "TANGENT" in found else None
+    roundings = () if normals is None else _roundings(gltf, primitive["attributes"]["NORMAL"], where)
+    return Stored(where, found["POSITION"], corners, normals, uv, tangents, second, roundings)
+
+
+def _roundings(gltf: Gltf, index: object, where: str) -> tuple[Rounding, ...]:
+    """What an accessor's normals were rounded to: their own whole numbers, and the map that EXT_meshopt_compression
+    packed them by."""
+    accessor = gltf.entry("accessors", index, where)
+    kind = np.dtype(COMPONENTS[accessor["componentType"]])
+    bits = gltf.octahedral_bits.get(accessor.get("bufferView"))
+    packed = () if bits is None else (Rounding(2 ** (bits - 1) - 1, is_octahedral=True),)
+    return packed + ((Rounding(np.iinfo(kind).max),) if kind.kind == "i" else ())
+
+
+def _stored_numbers(gltf: Gltf, primitive: Object, mode: int, where: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """A primitive's triangles or points, and its attributes by name; POSITION is one of them."""
     attributes = gltf.child(primitive, "attributes", where)
     position = gltf.entry("accessors", attributes.get("POSITION"), f"{where}.POSITION")
     extension = gltf.extension(primitive, DRACO, where)
@@ -248,7 +283,10 @@ def _unpacked(gltf: Gltf, index: object, stored: np.ndarray, width: int, place: 
 
 
 def _triangles(corners: np.ndarray, mode: int) -> np.ndarray:
-    """Triangles of a list, strip or fan of corners, (triangles, 3), all wound one way."""
+    """Triangles of a list, strip or fan of corners, (triangles, 3), all wound one way; of points and lines the points,
+    (points, 1)."""
+    if mode not in (TRIANGLES, STRIP, FAN):
+        return corners[:, None]
     if mode == TRIANGLES:
         return corners[: len(corners) // 3 * 3].reshape(-1, 3)
     count = max(len(corners) - 2, 0)

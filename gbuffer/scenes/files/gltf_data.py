@@ -48,6 +48,8 @@ class Gltf:
     Attributes:
         path: where it lies; what it names lies beside it.
         json: its document.
+        octahedral_bits: by the index of a buffer view that was unpacked, the bits of the octahedral map that it is
+            packed by.
     """
 
     def __init__(self, path: Path):
@@ -63,6 +65,7 @@ class Gltf:
             raise self.error("its JSON", "is not an object")
         self._buffers: dict[int, bytes] = {}
         self._unpacked: dict[int, bytes] = {}
+        self.octahedral_bits: dict[object, int] = {}
         self._check_version()
         for index in range(len(self.list_of(self.json, "images", "the file"))):
             image = self.entry("images", index, f"images[{index}]")
@@ -235,7 +238,9 @@ class Gltf:
             return self._slice(view, where)
         if index not in self._unpacked:
             most = MAX_BYTES - sum(map(len, self._unpacked.values()))
-            self._unpacked[index] = unpacked_view(self, packed, self._slice(packed, where), most, where)
+            self._unpacked[index], bits = unpacked_view(self, packed, self._slice(packed, where), most, where)
+            if bits is not None:
+                self.octahedral_bits[index] = bits
         return self._unpacked[index]
 
     def _is_packed(self, view: Object, where: str) -> bool:

@@ -37,8 +37,8 @@ def _package(gltf: Gltf, name: str, place: str) -> Any:
 # EXT_meshopt_compression
 
 
-def unpacked_view(gltf: Gltf, packed: Object, data: memoryview, most: int, place: str) -> bytes:
-    """A buffer view's bytes.
+def unpacked_view(gltf: Gltf, packed: Object, data: memoryview, most: int, place: str) -> tuple[bytes, int | None]:
+    """A buffer view's bytes, and the bits of the octahedral map that they were packed by, None for no such map.
 
     Args:
         packed: the extension of the view.
@@ -60,11 +60,21 @@ def unpacked_view(gltf: Gltf, packed: Object, data: memoryview, most: int, place
     try:
         if mode == "ATTRIBUTES":
             found = package.decode_vertex_buffer(count, stride, data, np.dtype((np.void, stride))).view(np.uint8)
-            return (getattr(package, f"decode_filter_{name}")(found, count, stride) if name else found).tobytes()
+            bits = _octahedral_bits(found, count, stride) if name == "oct" else None
+            made = getattr(package, f"decode_filter_{name}")(found, count, stride) if name else found
+            return made.tobytes(), bits
         decode = package.decode_index_buffer if mode == "TRIANGLES" else package.decode_index_sequence
-        return decode(count, 4, data).astype(f"<u{stride}").tobytes()
+        return decode(count, 4, data).astype(f"<u{stride}").tobytes(), None
     except (ValueError, RuntimeError) as error:
         raise gltf.error(place, f"cannot be unpacked by {MESHOPT}") from error
+
+
+def _octahedral_bits(packed: np.ndarray, count: int, stride: int) -> int | None:
+    """The bits of a map's numbers: the third number of an element is what stands for 1 in it, 2^(bits - 1) - 1."""
+    if not count:
+        return None
+    ones = np.frombuffer(packed.tobytes(), f"<i{stride // 4}").reshape(count, 4)[:, 2]
+    return int(ones.max()).bit_length() + 1 if ones.max() > 0 else None
 
 
 # KHR_draco_mesh_compression

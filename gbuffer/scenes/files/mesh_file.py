@@ -19,6 +19,42 @@ NOTHING = 1e-12
 
 
 @dataclass(frozen=True)
+class Rounding:
+    """How coarsely normals are stored.
+
+    Attributes:
+        most: steps from 0 to 1 of a number: 127 of 8 bits with a sign, 127.5 of 8 bits that stand for [-1, 1].
+        is_octahedral: whether these are the numbers of an octahedral map, and not x, y and z.
+    """
+
+    most: float
+    is_octahedral: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Stored:
+    """What a file says of one mesh, unchecked.
+
+    Attributes:
+        place: where in the file it is said.
+        positions: (vertices, 3).
+        corners: vertex indices: of triangles, (triangles, 3), or of points, (points, 1).
+        normals: (vertices, 3), of any length; None where there are none.
+        uv, tangents, second_uv: as `Mesh` has them, tangents as `authored`, of any length.
+        roundings: what the normals were rounded to, as far as the file says.
+    """
+
+    place: str
+    positions: np.ndarray
+    corners: np.ndarray
+    normals: np.ndarray | None = None
+    uv: np.ndarray | None = None
+    tangents: np.ndarray | None = None
+    second_uv: np.ndarray | None = None
+    roundings: tuple[Rounding, ...] = ()
+
+
+@dataclass(frozen=True)
 class Piece:
     """One mesh in one place.
 
@@ -98,9 +134,7 @@ def of_one_mesh(path: Path, mesh: Mesh, notes: Iterable[str]) -> MeshFile:
     return MeshFile(path, (Piece(mesh, np.eye(4), 0),), (Material(),), (True,), None, tuple(notes))
 
 
-def mesh_of(
-    path: Path, place: str, positions, triangles, normals=None, uv=None, tangents=None, second_uv=None
-) -> tuple[Mesh, list[str]]:
+def mesh_of(path: Path, stored: Stored) -> tuple[Mesh, list[str]]:
     """A mesh of what a file holds, and what had to be made up.
 
     Normals are brought to unit length; where there are none, or one is of no length, smooth ones stand in. Triangles
@@ -109,8 +143,9 @@ def mesh_of(
     Raises:
         SceneFileError: an index out of range, a number that is none, or no triangle left.
     """
-    positions = checked_numbers(path, np.asarray(positions, np.float64), f"{place}: the position")
-    triangles = checked_indices(path, np.asarray(triangles, np.int64), len(positions), place).reshape(-1, 3)
+    place, normals, tangents = stored.place, stored.normals, stored.tangents
+    positions = checked_numbers(path, np.asarray(stored.positions, np.float64), f"{place}: the position")
+    triangles = checked_indices(path, np.asarray(stored.corners, np.int64), len(positions), place).reshape(-1, 3)
     corners = positions[triangles]
     triangles = triangles[np.any(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) != 0, axis=1)]
     if not len(triangles):
@@ -123,7 +158,7 @@ def mesh_of(
         notes.append("there are normals of no length: smooth ones stand in")
     uv, second_uv = (
         None if given is None else checked_numbers(path, np.asarray(given, np.float64), f"{place}: the uv")
-        for given in (uv, second_uv)
+        for given in (stored.uv, stored.second_uv)
     )
     mesh = Mesh(positions, normals, triangles, np.zeros((len(positions), 2)) if uv is None else uv, second_uv=second_uv)
     return (mesh if tangents is None else replace(mesh, authored=_tangents(path, place, tangents))), notes

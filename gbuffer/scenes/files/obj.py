@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from ..scene import Material
-from .mesh_file import MeshFile, Piece, checked_pieces, mesh_of
+from .mesh_file import MeshFile, Piece, Stored, checked_pieces, mesh_of
 from .source import MAX_TEXT_BYTES, MAX_TRIANGLES, SceneFileError, checked_size, file_bytes, resource
 
 # Numbers a line needs; more (a weight, a colour) are passed over.
@@ -61,6 +61,25 @@ def read_obj(path: Path) -> MeshFile:
     Raises:
         SceneFileError: it is damaged, too large, has no faces, or names a file outside its folder.
     """
+    obj = _obj_of(path)
+    notes: list[str] = []
+    known = _materials(path, obj.libraries, notes)
+    pieces = []
+    for index, stored in enumerate(_stored(path, obj)):
+        mesh, made_up = mesh_of(path, stored)
+        notes += made_up
+        pieces.append(Piece(mesh, np.eye(4), index))
+    materials = tuple(known.get(name, Material()) for name in obj.corners)
+    kept = checked_pieces(path, pieces, notes)
+    return MeshFile(path, kept, materials, (True,) * len(materials), None, tuple(dict.fromkeys(notes)))
+
+
+def obj_meshes(path: Path) -> list[Stored]:
+    """What an OBJ file says of its meshes, one for each material. Raises SceneFileError."""
+    return list(_stored(path, _obj_of(path)))
+
+
+def _obj_of(path: Path) -> _Obj:
     obj = _Obj()
     for number, words in _lines(file_bytes(path, MAX_TEXT_BYTES)):
         try:
@@ -68,18 +87,14 @@ def read_obj(path: Path) -> MeshFile:
         except (ValueError, IndexError) as error:
             shown = " ".join(words)[:60]
             raise SceneFileError(f"{path}: line {number}: {shown!r}: {error}; export it again") from error
-    notes: list[str] = []
-    known = _materials(path, obj.libraries, notes)
+    return obj
+
+
+def _stored(path: Path, obj: _Obj) -> Iterator[Stored]:
     tables = {kind: _table(rows, VERTEX_DATA[kind]) for kind, rows in obj.data.items()}
     vertices = np.array(obj.vertices, np.int64).reshape(-1, 3)
-    pieces = []
-    for index, (name, corners) in enumerate(obj.corners.items()):
-        mesh, made_up = _mesh(path, f"material {name!r}" if name else "the mesh", tables, vertices, corners)
-        notes += made_up
-        pieces.append(Piece(mesh, np.eye(4), index))
-    materials = tuple(known.get(name, Material()) for name in obj.corners)
-    kept = checked_pieces(path, pieces, notes)
-    return MeshFile(path, kept, materials, (True,) * len(materials), None, tuple(dict.fromkeys(notes)))
+    for name, corners in obj.corners.items():
+        yield _mesh(path, f"material {name!r}" if name else "the mesh", tables, vertices, corners)
 
 
 def _lines(data: bytes) -> Iterator[tuple[int, list[str]]]:
@@ -147,13 +162,13 @@ def _checked_index(word: str, count: int) -> int:
     return index
 
 
-def _mesh(path: Path, place: str, tables: dict[str, np.ndarray], vertices: np.ndarray, corners: list[int]):
+def _mesh(path: Path, place: str, tables: dict[str, np.ndarray], vertices: np.ndarray, corners: list[int]) -> Stored:
     """A mesh whose vertices are the corners that differ; normals where any corner has one."""
     used, triangles = np.unique(np.array(corners, np.int64), return_inverse=True)
     checked_size(path, len(used), len(triangles) // 3, place)
     position, uv, normal = vertices[used].T
     normals = tables["vn"][normal] if (normal >= 0).any() else None
-    return mesh_of(path, place, tables["v"][position], triangles.reshape(-1, 3), normals, tables["vt"][uv])
+    return Stored(place, tables["v"][position], triangles.reshape(-1, 3), normals, tables["vt"][uv])
 
 
 def _table(rows: list[tuple[float, ...]], width: int) -> np.ndarray:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .mesh_file import MeshFile, mesh_of, of_one_mesh
+from .mesh_file import MeshFile, Stored, mesh_of, of_one_mesh
 from .source import MAX_TEXT_BYTES, SceneFileError, checked_size, file_bytes
 
 
@@ -38,7 +38,7 @@ def read_off(path: Path) -> MeshFile:
         raise
     except (ValueError, Warning) as error:
         raise SceneFileError(f"{path}: no OFF file, cut off or damaged; export it again") from error
-    mesh, notes = mesh_of(path, "the mesh", positions, triangles)
+    mesh, notes = mesh_of(path, Stored("the mesh", positions, triangles))
     return of_one_mesh(path, mesh, notes)
 
 

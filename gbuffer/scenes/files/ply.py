@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .mesh_file import MeshFile, mesh_of, of_one_mesh
+from .mesh_file import MeshFile, Rounding, Stored, mesh_of, of_one_mesh
 from .source import MAX_TEXT_BYTES, SceneFileError, checked_size, file_bytes
 
 SIZES = {"i1": "char int8", "u1": "uchar uint8", "i2": "short int16", "u2": "ushort uint16"}
@@ -20,7 +20,7 @@ SIZES |= {"i4": "int int32", "u4": "uint uint32", "f4": "float float32", "f8": "
 TYPES = {name: kind for kind, names in SIZES.items() for name in names.split()}
 ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 UV = (("u", "v"), ("s", "t"), ("texture_u", "texture_v"))
-NORMAL = ("nx", "ny", "nz")
+POSITION, NORMAL = ("x", "y", "z"), ("nx", "ny", "nz")
 FACES = ("vertex_indices", "vertex_index")
 MAX_HEADER = 1 << 16
 MAX_CORNERS = 255
@@ -56,8 +56,13 @@ def read_ply(path: Path) -> MeshFile:
     Raises:
         SceneFileError: it is no PLY file, damaged, too large, or has no faces.
     """
-    mesh, notes = _mesh(path, _tables(path))
+    mesh, notes = mesh_of(path, _mesh(path, *_tables(path)))
     return of_one_mesh(path, mesh, notes)
+
+
+def ply_meshes(path: Path) -> list[Stored]:
+    """What a PLY file says of its mesh, or of its points. Raises SceneFileError."""
+    return [read_cloud(path) if is_cloud(path) else _mesh(path, *_tables(path))]
 
 
 def is_cloud(path: Path) -> bool:
@@ -68,15 +73,33 @@ def is_cloud(path: Path) -> bool:
     return not has_faces and "vertex" in of and {*NORMAL} <= {p.name for p in of["vertex"].properties}
 
 
-def read_cloud(path: Path) -> np.ndarray:
-    """The normals of a point cloud, float64 of shape (count, 3). Raises SceneFileError."""
-    found = _columns(_tables(path)["vertex"], NORMAL)
-    if found is None or not len(found):
+def read_cloud(path: Path) -> Stored:
+    """The points of a cloud, with their normals. Raises SceneFileError."""
+    tables, types = _tables(path)
+    normals, roundings = _normals(tables["vertex"], types["vertex"])
+    if normals is None or not len(normals):
         raise SceneFileError(f"{path}: points with the numbers nx, ny, nz are read; export it again")
-    return found
+    positions = _columns(tables["vertex"], POSITION)
+    # Points without places are told apart by their numbers.
+    places = np.arange(3.0 * len(normals)).reshape(-1, 3) if positions is None else positions
+    return Stored("the points", places, np.arange(len(normals))[:, None], normals, roundings=roundings)
 
 
-def _tables(path: Path) -> dict[str, Table]:
+def _normals(vertex: Table, types: dict[str, str]) -> tuple[np.ndarray | None, tuple[Rounding, ...]]:
+    """Normals as they are meant: whole numbers with a sign stand for [-1, 1] around 0, those without one from end to
+    end; and what they are rounded to."""
+    found, kinds = _columns(vertex, NORMAL), {types[name] for name in NORMAL if name in types}
+    kind = np.dtype(kinds.pop() if len(kinds) == 1 else "f8")
+    if found is None or kind.kind == "f":
+        return found, ()
+    full = np.iinfo(kind).max
+    if kind.kind == "i":
+        return np.maximum(found / full, -1.0), (Rounding(full),)
+    return found / full * 2 - 1, (Rounding(full / 2),)
+
+
+def _tables(path: Path) -> tuple[dict[str, Table], dict[str, dict[str, str]]]:
+    """By element its columns, and their types as the header has them."""
     data = file_bytes(path)
     order, elements, start = _header(path, data)
     tables: dict[str, Table] = {}
@@ -89,7 +112,7 @@ def _tables(path: Path) -> dict[str, Table]:
             tables[element.name], at = _binary(path, data, at, element, order)
         else:
             tables[element.name], at = _ascii(path, tokens, at, element)
-    return tables
+    return tables, {element.name: {p.name: p.type for p in element.properties} for element in elements}
 
 
 def _header(path: Path, data: bytes) -> tuple[str, list[Element], int]:
@@ -247,18 +270,20 @@ def _columns(table: Table, names: tuple[str, ...]) -> np.ndarray | None:
         return np.stack([np.asarray(column, np.float64) for column in columns], axis=1)
 
 
-def _mesh(path: Path, tables: dict[str, Table]):
+def _mesh(path: Path, tables: dict[str, Table], types: dict[str, dict[str, str]]) -> Stored:
     vertex, face = tables.get("vertex", {}), tables.get("face", {})
-    positions = _columns(vertex, ("x", "y", "z"))
+    positions = _columns(vertex, POSITION)
     faces = next((face[name] for name in FACES if name in face), None)
     if positions is None or faces is None or not len(faces):
         raise SceneFileError(
-            f"{path}: vertices with x, y, z and faces with vertex_indices are read; export a mesh of them"
+            f"{path}: vertices with x, y, z and faces with vertex_indices are read, or points with nx, ny, nz; export "
+            "one of them"
         )
     uv = next((found for names in UV if (found := _columns(vertex, names)) is not None), None)
     triangles = _fans(path, faces)
     checked_size(path, len(positions), len(triangles), "faces")
-    return mesh_of(path, "the mesh", positions, triangles, _columns(vertex, NORMAL), uv)
+    normals, roundings = _normals(vertex, types["vertex"])
+    return Stored("the mesh", positions, triangles, normals, uv, roundings=roundings)
 
 
 def _fans(path: Path, faces: np.ndarray | list[np.ndarray]) -> np.ndarray:

@@ -15,12 +15,12 @@ from ..rasterise import Camera, Rendered, rasterise
 from ..sampled import COARSENED, coarser, cut_out, mapped_normals
 from ..scene import Light, Part, Scene, View
 from ..setting import Setting, coloured
-from .gltf import read_gltf
-from .mesh_file import MeshFile, Piece
-from .obj import read_obj
+from .gltf import gltf_meshes, read_gltf
+from .mesh_file import MeshFile, Piece, Stored
+from .obj import obj_meshes, read_obj
 from .off import read_off
-from .ply import read_ply
-from .stl import read_stl
+from .ply import ply_meshes, read_ply
+from .stl import read_stl, stl_meshes
 
 READERS: Mapping[str, Callable[[Path], MeshFile]] = MappingProxyType(
     {
@@ -30,6 +30,16 @@ READERS: Mapping[str, Callable[[Path], MeshFile]] = MappingProxyType(
         ".off": read_off,
         ".ply": read_ply,
         ".stl": read_stl,
+    }
+)
+# What files say of their meshes, before anything is made up for a picture; OFF has no normals.
+MESHES: Mapping[str, Callable[[Path], list[Stored]]] = MappingProxyType(
+    {
+        ".glb": gltf_meshes,
+        ".gltf": gltf_meshes,
+        ".obj": obj_meshes,
+        ".ply": ply_meshes,
+        ".stl": stl_meshes,
     }
 )
 FRAMES = 1

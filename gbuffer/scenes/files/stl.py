@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .mesh_file import MeshFile, mesh_of, of_one_mesh
+from .mesh_file import MeshFile, Stored, mesh_of, of_one_mesh
 from .source import MAX_TEXT_BYTES, SceneFileError, checked_size, file_bytes
 
 # Of a binary file: 80 bytes of anything, how many facets there are, and the facets.
@@ -29,13 +29,19 @@ def read_stl(path: Path) -> MeshFile:
     Raises:
         SceneFileError: it is damaged, too large, or has no faces.
     """
+    (stored,) = stl_meshes(path)
+    mesh, notes = mesh_of(path, stored)
+    return of_one_mesh(path, mesh, notes)
+
+
+def stl_meshes(path: Path) -> list[Stored]:
+    """What an STL file says. Raises SceneFileError."""
     data = file_bytes(path)
     count = int.from_bytes(data[COUNT_AT:HEAD], "little")
     is_binary = len(data) == HEAD + FACET.itemsize * count
     normals, corners = _binary_facets(path, data, count) if is_binary else _text_facets(path)
     faces = np.arange(len(corners)).reshape(-1, 3)
-    mesh, notes = mesh_of(path, "the mesh", corners, faces, np.repeat(normals, 3, axis=0))
-    return of_one_mesh(path, mesh, notes)
+    return [Stored("the mesh", corners, faces, np.repeat(normals, 3, axis=0))]
 
 
 def _binary_facets(path: Path, data: bytes, count: int) -> Facets:

@@ -1,0 +1,172 @@
+"""The normals of a mesh's vertices as a set: in object space, as vertex buffers hold them, without a camera."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from ....encodings.codecs.files import called
+from ....gbuffer.scenes.files.mesh_file import NOTHING, Rounding, Stored
+from ....gbuffer.scenes.files.read import MESHES
+from ....gbuffer.scenes.files.source import checked_indices
+from ...ground.choose import PART, VERTICES, whole_file_of
+from ...ground.options.scene_names import read_or_refused
+from ...ground.output.errors import UsageError
+from .normal_sets import OBJECT, NormalSet, from_arrays
+from .own_errors import FINE, all_roundings, bits_text, own_error_deg, own_error_note
+
+# What such a set is called by: mesh.glb#vertices.
+ENDINGS = tuple(f"{ending}{PART}{VERTICES}" for ending in MESHES)
+
+
+# Files whose normals may be rounded so that it is worth to read them once more for it.
+MAY_BE_ROUNDED = (".glb", ".gltf", ".ply")
+
+
+@dataclass(frozen=True)
+class OwnRounding:
+    """How a file's normals are rounded.
+
+    Attributes:
+        roundings: all that its meshes have.
+        error_deg: the mean angle by which that has turned its vertices; None where nothing is known.
+    """
+
+    roundings: tuple[Rounding, ...]
+    error_deg: float | None
+
+    @property
+    def notes(self) -> list[str]:
+        """What is to be said of it; nothing where no code of 24 bits is as fine."""
+        own = self.error_deg
+        if own is None or own < FINE:
+            return []
+        return [own_error_note(f"its vertex normals have {bits_text(self.roundings)} and", own)]
+
+
+@dataclass(frozen=True, eq=False)
+class Vertices:
+    """The vertices of a file.
+
+    Attributes:
+        normals: those that point somewhere, each different vertex once: unit, (count, 3), object space.
+        zero, not_finite: how many others have no length, and how many are NaN or infinite.
+        own: what they were rounded to.
+        notes: what was left out.
+    """
+
+    normals: np.ndarray
+    zero: int
+    not_finite: int
+    own: OwnRounding
+    notes: tuple[str, ...]
+
+
+def check_part(word: str) -> None:
+    """Raises UsageError where what stands behind a mesh file is no part that can be named."""
+    file, mark, part = word.rpartition(PART)
+    if mark and part != VERTICES and Path(file).suffix.lower() in MESHES:
+        raise UsageError(f"{word}: unknown part {part!r} of a mesh file; known: {file}{PART}{VERTICES}")
+
+
+def vertex_set(path: Path) -> tuple[NormalSet, list[str]]:
+    """The vertex normals of a mesh file, and what is to be said of them. Raises UsageError."""
+    file = Path(whole_file_of(str(path)))
+    found = vertices_of(file)
+    lost = found.zero + found.not_finite
+    name = f"{called(file.name)}{PART}{VERTICES}"
+    # What does not count stands at the end: it is counted as pixels of a frame are.
+    n = np.concatenate([found.normals, np.zeros((lost, 3))]).astype(np.float32)
+    covered = np.arange(len(n)) < len(found.normals)
+    ahead = np.broadcast_to(np.array([0, 0, -1], np.float32), n.shape)
+    made = from_arrays(
+        name, f"vertex normals of {called(file.name)}", n, ahead, covered, None, found.not_finite or None
+    )
+    return replace(made, code_space=OBJECT, own_error_deg=found.own.error_deg), [*found.notes, *found.own.notes]
+
+
+def drawn_error(path: Path) -> tuple[float, list[str]]:
+    """By how many degrees the vertex normals of a mesh file are off in the mean, and what is to be said of that; 0
+    where nothing is known. What is drawn between them is off by less, where they are off to different sides.
+
+    Raises UsageError.
+    """
+    said = _said(path) if path.suffix.lower() in MAY_BE_ROUNDED else []
+    meshes = [one for one in said if one.normals is not None]
+    own = _own_rounding(_all_used(path, meshes), meshes)
+    return own.error_deg or 0.0, own.notes
+
+
+def vertices_of(path: Path) -> Vertices:
+    """The vertices that triangles or points of a mesh file use. Raises UsageError."""
+    said = _said(path)
+    meshes = [one for one in said if one.normals is not None]
+    if not meshes:
+        raise UsageError(f"{path}: no vertex normals in it; export it with normals")
+    used = _all_used(path, meshes)
+    rows = np.concatenate(used)
+    # A vertex may stand in a file several times, as at a seam of its uv.
+    _, first = np.unique(rows.view(np.dtype((np.void, rows.itemsize * rows.shape[1])))[:, 0], return_index=True)
+    normals = rows[np.sort(first), 3:]
+    finite, length = _lengths(normals)
+    points = finite & (length >= min(_least(one.roundings) for one in meshes))
+    if not points.any():
+        raise UsageError(f"{path}: none of its {len(normals)} vertex normals has a direction; export it with normals")
+    zero, not_finite = int((finite & ~points).sum()), int((~finite).sum())
+    notes = tuple(_left_out(zero, not_finite, len(said) - len(meshes)))
+    own = _own_rounding(used, meshes)
+    return Vertices(normals[points] / length[points, None], zero, not_finite, own, notes)
+
+
+def _said(path: Path) -> list[Stored]:
+    return read_or_refused(lambda: MESHES[path.suffix.lower()](path))
+
+
+def _all_used(path: Path, meshes: Sequence[Stored]) -> list[np.ndarray]:
+    return read_or_refused(lambda: [_used(path, one) for one in meshes])
+
+
+def _used(path: Path, stored: Stored) -> np.ndarray:
+    """Positions and normals of the vertices that are used, (count, 6). Raises SceneFileError."""
+    corners = np.asarray(stored.corners, np.int64).ravel()
+    used = np.unique(checked_indices(path, corners, len(stored.positions), stored.place))
+    both = (np.asarray(numbers, np.float64)[used] for numbers in (stored.positions, stored.normals))
+    # 0 is added, so that -0 is 0.
+    return np.concatenate(list(both), axis=1) + 0.0
+
+
+def _lengths(normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Which normals are finite, and how long these are; (count,) each."""
+    finite = np.asarray(np.isfinite(normals).all(axis=1))
+    with np.errstate(over="ignore"):
+        return finite, np.linalg.norm(np.where(finite[:, None], normals, 0), axis=1)
+
+
+def _least(roundings: Sequence[Rounding]) -> float:
+    """What is shorter has no direction. Whole numbers without a sign have no 0: the nearest is half a step away."""
+    return max([NOTHING, *(1 / one.most for one in roundings if not one.is_octahedral)])
+
+
+def _own_rounding(used: Sequence[np.ndarray], meshes: Sequence[Stored]) -> OwnRounding:
+    """What all meshes' normals were rounded to; in the mean over all vertices, of which some may be exact."""
+    found: dict[Rounding, None] = {}
+    turned, known = 0.0, False
+    for rows, mesh in zip(used, meshes, strict=True):
+        finite, length = _lengths(rows[:, 3:])
+        points = finite & (length >= _least(mesh.roundings))
+        unit = rows[points, 3:] / length[points, None]
+        roundings = all_roundings(unit, mesh.roundings)
+        own = own_error_deg(unit, roundings)
+        found |= dict.fromkeys(roundings)
+        turned, known = turned + len(rows) * (own or 0.0), known or own is not None
+    return OwnRounding(tuple(found), turned / sum(map(len, used)) if known else None)
+
+
+def _left_out(zero: int, not_finite: int, without: int) -> list[str]:
+    said = [f"{zero} vertex normals of no length"] * bool(zero)
+    said += [f"{not_finite} that are NaN or infinite"] * bool(not_finite)
+    notes = [f"{' and '.join(said)} are left out"] if said else []
+    return notes + [f"{without} of its meshes have no normals and are left out"] * bool(without)

@@ -1,0 +1,318 @@
+"""The normals of a mesh's vertices as a set: which there are, once each, and what their file's rounding has cost."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from manual import ROOT
+from written import OBJ, TRIANGLE, Document, given, ply
+
+from normalbench.bench.ground.options.option import Reading
+from normalbench.bench.subjects.codecs.names import storages_named
+from normalbench.bench.subjects.normals import own_errors
+from normalbench.bench.subjects.normals.normal_names import normal_sets_named
+from normalbench.bench.subjects.normals.own_errors import all_roundings, own_error_deg
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.vec import Vec3
+from normalbench.gbuffer.scenes.files.mesh_file import Rounding
+from normalbench.gbuffer.scenes.mesh import Mesh, sphere
+
+ROUND = sphere(1.0, 24, 16)
+# At a pole all slices have one normal, to the bit.
+BALL = replace(ROUND, positions=ROUND.positions.round(9), normals=ROUND.normals.round(9))
+CLOUD = ROOT / "tests" / "inputs" / "normals" / "points.ply"
+
+
+def vertices(path, said=""):
+    """The set of a file's vertices, and their normals."""
+    (made,) = normal_sets_named(f"{path}#vertices{said}", 0, 0, Reading())
+    n, covered = given(made)
+    return made, n[covered]
+
+
+def sorted_rows(n) -> np.ndarray:
+    return np.array(sorted(np.round(np.asarray(n, np.float64), 5).tolist()))
+
+
+def unit(n) -> np.ndarray:
+    return n / np.linalg.norm(n, axis=-1, keepdims=True)
+
+
+def directions(count: int) -> np.ndarray:
+    return unit(np.random.default_rng(5).normal(size=(count, 3)))
+
+
+def ball_of(normals: np.ndarray, normalized: bool = True) -> Document:
+    """A glTF of points whose exact normals are given in another type."""
+    document = Document()
+    mesh = document.mesh(np.arange(3.0 * len(normals)).reshape(-1, 3), mode=0)
+    attributes = document.json["meshes"][mesh]["primitives"][0]["attributes"]
+    attributes["NORMAL"] = document.accessor(normals, normalized)
+    document.node(mesh=mesh)
+    document.json["extensionsRequired"] = ["KHR_mesh_quantization"]
+    return document
+
+
+# Which there are
+
+
+@pytest.mark.parametrize("how", ["glb", "data"])
+def test_normals_are_those_of_the_file_in_object_space_and_once_for_all_places(tmp_path, how):
+    """A mesh in two places, each mirrored and turned; a camera and a normal map would change nothing."""
+    document = Document()
+    n = unit(np.array([(1, 2, 2), (0, 3, 4), (-2, 1, 2)], float))
+    mesh = document.mesh(TRIANGLE, n, [(0, 1, 2)])
+    document.node(mesh=mesh, scale=[-2, 1, 0.5])
+    document.node(mesh=mesh, rotation=[0, 0, 0.5**0.5, 0.5**0.5])
+    made, found = vertices(document.write(tmp_path / ("a.glb" if how == "glb" else "a.gltf"), how))
+    assert sorted_rows(found) == pytest.approx(sorted_rows(n), abs=1e-6)
+    assert made.name.endswith("#vertices") and made.code_space == "object" and made.own_error_deg is None
+
+
+def test_a_vertex_that_stands_twice_counts_once_and_one_without_a_triangle_not_at_all(tmp_path):
+    """Of six vertices one is unused, one repeats another with other uv, and one has its normal in another place."""
+    positions = [*TRIANGLE, (1, 0, 0), (0, 0, 9), (5, 5, 5)]
+    normals = unit(np.array([(0, 0, 1), (0, 1, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1)], float))
+    document = Document()
+    uv = np.arange(12.0).reshape(6, 2)
+    document.node(mesh=document.mesh(positions, normals, [(0, 1, 2), (0, 3, 4)], TEXCOORD_0=uv))
+    _, found = vertices(document.write(tmp_path / "a.glb"))
+    assert sorted_rows(found).tolist() == sorted_rows([(0, 0, 1), (0, 1, 0), (1, 0, 0), (0, 0, 1)]).tolist()
+
+
+def test_normals_of_no_length_and_nan_are_left_out_and_counted(tmp_path, run):
+    document = Document()
+    n = [(0, 0, 2), (0, 0, 0), (np.nan, 0, 1), (0, -np.inf, 1), (0.1, 0, 0)]
+    document.node(mesh=document.mesh(np.arange(15.0).reshape(5, 3), n, mode=0))
+    path = document.write(tmp_path / "a.glb")
+    made, found = vertices(path)
+    assert (made.count, made.background, made.not_finite) == (5, 1, 2)
+    assert sorted_rows(found) == pytest.approx(np.array([(0, 0, 1), (1, 0, 0)]))
+    status, out, err = run(
+        *("quality", "--encoding", "octahedral", "--normals", f"{path}#vertices", "--backend", "jax"),
+        *("--format", "json"),
+    )
+    assert status == 0 and "1 vertex normals of no length and 2 that are NaN or infinite are left out" in err
+    (row,) = json.loads(out)
+    assert (row["count"], row["background"], row["not_finite"]) == (2, 1, 2)
+    assert (row["normals"], row["code_space"]) == ("a.glb#vertices", "object")
+
+
+def test_each_kind_of_mesh_file_gives_its_normals(tmp_path):
+    """An OBJ file's two materials share vertices; an STL file's are of its facets; PLY in any order of bytes."""
+    (tmp_path / "a.obj").write_text(OBJ.replace("vn 0 0 2", "vn 0 3 4"))
+    assert sorted_rows(vertices(tmp_path / "a.obj")[1]).tolist() == [[0, 0.6, 0.8]] * 4
+    square = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+    (tmp_path / "a.stl").write_text(f"solid a\n{square}{square}endsolid a\n")
+    assert vertices(tmp_path / "a.stl")[1].tolist() == [[0, 0, 1]] * 3
+    for order in ("ascii", "binary_little_endian", "binary_big_endian"):
+        (tmp_path / "a.ply").write_bytes(ply(order, BALL.triangles.tolist(), BALL.positions, BALL.normals))
+        # The poles are one vertex for all slices, and the last meridian is the first.
+        assert len(vertices(tmp_path / "a.ply")[1]) == 24 * 15 + 2
+    assert vertices(CLOUD)[1].tolist() == [[0, 0, 1], [0, 1, 0]]
+
+
+def test_a_code_that_needs_a_view_ray_is_left_out_in_a_line(tmp_path, run):
+    path = as_glb(tmp_path / "a.glb", BALL)
+    words = ("quality", "--normals", f"{path}#vertices", "--backend", "jax", "--format", "json")
+    status, out, err = run(*words, "--encoding", "octahedral,per_pixel_view")
+    said = "per_pixel_view of a.glb#vertices: it needs the view ray, and normals in object space have none"
+    assert status == 0 and [row["encoding"] for row in json.loads(out)] == ["octahedral"]
+    assert err == f"normalbench: left out: {said}\n"
+    status, out, err = run(*words, "--encoding", "per_pixel_view")
+    assert (status, out, err) == (2, "", f"normalbench: {said}\n")
+    for words in (("mix", "--encoding", "per_pixel_view"), ("tune", "per_pixel_view")):
+        status, out, err = run(*words, "--normals", f"{path}#vertices")
+        assert status == 2 and len(err.splitlines()) == 1 and "needs the view ray" in err, err
+
+
+def as_glb(path, mesh: Mesh):
+    document = Document()
+    document.node(mesh=document.mesh(mesh.positions, mesh.normals, mesh.triangles))
+    return document.write(path)
+
+
+BAD = {
+    "a part that no file has": ("ball.glb#normals", "unknown part 'normals' of a mesh file; known: ball.glb#vertices"),
+    "a file that is not there": ("lost.glb#vertices", "lost.glb: there is no such file"),
+    "an image": ("frame.png#vertices", "unknown normal set 'frame.png#vertices'"),
+    "no normals": ("bare.glb#vertices", "bare.glb: no vertex normals in it; export it with normals"),
+    "no mesh": ("empty.glb#vertices", "empty.glb: no vertex normals in it; export it with normals"),
+    "zeros alone": ("zeros.glb#vertices", "zeros.glb: none of its 3 vertex normals has a direction"),
+    "no triangle": ("none.ply#vertices", "none.ply: vertices with x, y, z and faces with vertex_indices are read"),
+    "an index too large": ("beyond.ply#vertices", "beyond.ply: the mesh: index 2 names vertex 9, but there are 3"),
+    "options of captures": (
+        "ball.glb#vertices --fov 60",
+        "options of captures are given, but --normals ball.glb#vertices names none",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", BAD)
+def test_bad_input_is_one_line(run, tmp_path, monkeypatch, what):
+    monkeypatch.chdir(tmp_path)
+    as_glb(tmp_path / "ball.glb", BALL)
+    for name, normals in (("bare", None), ("zeros", np.zeros((3, 3)))):
+        document = Document()
+        document.node(mesh=document.mesh(TRIANGLE, normals, [(0, 1, 2)]))
+        document.write(tmp_path / f"{name}.glb")
+    Document().write(tmp_path / "empty.glb")
+    (tmp_path / "none.ply").write_text(CLOUD.read_text().replace(" nx", " ax"))
+    (tmp_path / "beyond.ply").write_bytes(ply("ascii", [[0, 1, 9]]))
+    words, said = BAD[what]
+    status, out, err = run("quality", "--encoding", "octahedral", "--normals", *words.split())
+    assert (status, out) == (2, "") and len(err.splitlines()) == 1 and said in err, err
+
+
+def test_gates_and_workers_find_the_file(tmp_path, monkeypatch, run):
+    """The word is a file wherever files are looked for: next to the gates, among what a step is known by."""
+    from normalbench.bench.run.measuring import files_of
+    from normalbench.bench.shaders.languages.words import file_of, files_in, with_files
+    from normalbench.bench.tables.quality.table import QualityOptions
+
+    as_glb(tmp_path / "ball.glb", BALL)
+    gate = '[[gate]]\nencoding = "octahedral"\nstorage = "rg8"\nnormals = "ball.glb#vertices"\n'
+    (tmp_path / "gates.toml").write_text(gate + 'angle_mean_deg = "at most 0.4"\n')
+    status, out, err = run("check", str(tmp_path / "gates.toml"))
+    assert status == 0, out + err
+    monkeypatch.chdir(tmp_path)
+    word = "ball.glb#vertices"
+    assert str(file_of(word)) == "ball.glb" and files_in(word) == ["ball.glb"]
+    assert with_files(word, {"ball.glb": "there/x.glb"}) == "there/x.glb#vertices"
+    before = files_of(QualityOptions(normals=word))
+    as_glb(tmp_path / "ball.glb", sphere(2.0, 5, 4))
+    assert list(before["files"]) == [word] and files_of(QualityOptions(normals=word)) != before
+
+
+def test_python_has_them_too(tmp_path):
+    import normalbench
+
+    path = as_glb(tmp_path / "a,b.glb", BALL)
+    made = normalbench.quality(encoding="octahedral", storage="rg8", normals=f"{path}#vertices", backend="jax")
+    (row,) = made.to_dict("records")
+    assert row["count"] == 24 * 15 + 2 and row["normals"] == "a,b.glb#vertices"
+
+
+# What the file's own rounding has cost
+
+
+def turned_deg(exact: np.ndarray, found: np.ndarray) -> float:
+    """The mean angle between unit normals."""
+    return float(np.degrees(2 * np.arcsin(np.minimum(np.linalg.norm(exact - found, axis=1) / 2, 1))).mean())
+
+
+@pytest.mark.parametrize("kind, noted", [(np.int8, True), (np.int16, False)])
+def test_whole_numbers_of_gltf_say_by_how_much_they_are_off(tmp_path, capsys, kind, noted):
+    """Against the exact normals, which the file does not have: 0.17 degrees in 8 bits, 1/258 of that in 16."""
+    exact, full = directions(3000), np.iinfo(kind).max
+    path = ball_of(np.round(exact * full).astype(kind)).write(tmp_path / "a.glb")
+    made, found = vertices(path)
+    right = turned_deg(exact, found)
+    assert right == pytest.approx(0.17 * 127 / full, rel=0.05)
+    assert made.own_error_deg == pytest.approx(right, rel=0.05)
+    err = capsys.readouterr().err
+    said = "its vertex normals have 8 bits and are off by about 0.17 degrees themselves: a code with a mean below 0.06"
+    assert (said in err) == noted and len(err.splitlines()) == noted, err
+
+
+@pytest.mark.parametrize("bits", [6, 8, 10, 12])
+def test_an_octahedral_map_is_found_and_its_error_known(bits):
+    """Normals that a map of few bits packed, as Draco's and meshoptimizer's do; exact ones have no such grid."""
+    exact = directions(2000)
+    (storage,) = storages_named(f"snorm:{bits}:{bits}")
+    codec = Codec(ENCODINGS["octahedral"], storage)
+    decoded = codec.round_trip(Vec3(*exact.T.astype(np.float32)), Vec3(*np.zeros((3, 2000), np.float32)))
+    packed = np.stack([np.asarray(one) for one in decoded], axis=1).astype(np.float64)
+    (found,) = all_roundings(packed, ())
+    assert found == Rounding(2 ** (bits - 1) - 1, is_octahedral=True)
+    assert own_error_deg(packed, [found]) == pytest.approx(turned_deg(exact, packed), rel=0.05)
+    short = unit(np.round(packed * 32767) / 32767)
+    assert all_roundings(short, [Rounding(32767)]) == (found, Rounding(32767))
+    assert all_roundings(exact, ()) == ()
+
+
+def test_few_normals_and_those_along_axes_show_no_map():
+    """A box lies on every grid, and is exact: nothing is said of it."""
+    box = np.repeat(np.concatenate([np.eye(3), -np.eye(3)]), 100, axis=0)
+    assert all_roundings(box, ()) == () and own_error_deg(box, [Rounding(127)]) == 0
+    few = unit(np.array([(a, b, 7 - abs(a) - abs(b)) for a in range(-3, 4) for b in range(-3, 4)], float))
+    assert len(few) < own_errors.DIFFERENT and all_roundings(few, ()) == ()
+
+
+def test_meshopts_map_is_read_from_the_file(tmp_path):
+    """8 bits of a map in bytes: neither number alone says all of the error."""
+    pytest.importorskip("meshoptimizer")
+    exact = directions(3000)
+    square = np.stack([*ENCODINGS["octahedral"].encode(Vec3(*exact.T), Vec3(*exact.T))], axis=1)
+    for bits, stride in ((8, 4), (6, 4), (10, 8)):
+        one = 2 ** (bits - 1) - 1
+        rows = np.concatenate([np.round(square * one), np.full((3000, 1), one), np.zeros((3000, 1))], axis=1)
+        stored = rows.astype(np.int8 if stride == 4 else np.int16)
+        made, found = vertices(meshopt(stored, stride).write(tmp_path / f"{bits}.glb"))
+        right = turned_deg(exact, found)
+        assert made.own_error_deg == pytest.approx(right, rel=0.06), (bits, made.own_error_deg, right)
+
+
+def meshopt(stored: np.ndarray, stride: int) -> Document:
+    """Points whose normals lie in a file by EXT_meshopt_compression's octahedral filter."""
+    import meshoptimizer
+
+    count = len(stored)
+    data = bytes(meshoptimizer.encode_vertex_buffer(stored, count, stride))
+    document = ball_of(np.zeros((count, 3), np.int8 if stride == 4 else np.int16))
+    at = document.view(data)
+    view = document.json["bufferViews"].pop(at)
+    packed = {"buffer": 0, "byteOffset": view["byteOffset"], "byteLength": len(data), "count": count}
+    packed |= {"byteStride": stride, "mode": "ATTRIBUTES", "filter": "OCTAHEDRAL"}
+    plain = {"buffer": 1, "byteLength": stride * count, "byteStride": stride}
+    document.json["bufferViews"].append(plain | {"extensions": {"EXT_meshopt_compression": packed}})
+    document.json["accessors"][-1]["bufferView"] = at
+    document.others = [{"byteLength": stride * count}]
+    document.json["extensionsRequired"].append("EXT_meshopt_compression")
+    return document
+
+
+@pytest.mark.parametrize(
+    "kind, order", [("char", "ascii"), ("uchar", "ascii"), ("char", "binary_big_endian"), ("short", "ascii")]
+)
+def test_whole_numbers_of_points_are_read_and_their_error_is_said(tmp_path, run, kind, order):
+    """With a sign 127 stands for 1; without one 0 to 255 stand for -1 to 1. By name alone and as vertices."""
+    exact = directions(2000)
+    full = {"char": 127, "uchar": 255, "short": 32767}[kind]
+    stored = np.round((exact + 1) / 2 * 255) if kind == "uchar" else np.round(exact * full)
+    head = f"ply\nformat {order} 1.0\nelement vertex 2000\n"
+    head += "".join(f"property {kind} {name}\n" for name in ("nx", "ny", "nz")) + "end_header\n"
+    text = "\n".join(" ".join(map(str, row)) for row in stored.astype(int)).encode() + b"\n"
+    path = tmp_path / "points.ply"
+    path.write_bytes(head.encode() + (text if order == "ascii" else stored.astype(">i1").tobytes()))
+    (cloud,) = normal_sets_named(str(path), 0, 0, Reading())
+    for made in (cloud, vertices(path)[0]):
+        n, covered = given(made)
+        right = turned_deg(exact, unit(n[covered].astype(float)))
+        assert right == pytest.approx(0.17 * 127 / min(full, 32767) * (2 if kind == "uchar" else 1), rel=0.06)
+        assert made.own_error_deg == pytest.approx(right, rel=0.06) and made.code_space == "object"
+    _, _, err = run("quality", "--encoding", "octahedral", "--normals", str(path), "--backend", "jax")
+    assert ("its normals have 8 bits and are off by about 0.17 degrees" in err) == (kind != "short"), err
+
+
+def test_a_mesh_that_a_camera_sees_says_its_vertices_error(tmp_path):
+    """Between the corners of a triangle their errors cancel in part, by at most the root of 1/2 in the mean of many:
+    measured against the same picture of floats."""
+    ball = sphere(1.0, 48, 32)
+    exact, coarse = Document(), Document()
+    for document, kind in ((exact, None), (coarse, np.int8)):
+        mesh = document.mesh(ball.positions, ball.normals, ball.triangles)
+        if kind:
+            stored = np.round(ball.normals * 127).astype(kind)
+            at = document.accessor(stored, True)
+            document.json["meshes"][mesh]["primitives"][0]["attributes"]["NORMAL"] = at
+        document.node(mesh=mesh)
+    coarse.json["extensionsRequired"] = ["KHR_mesh_quantization"]
+    paths = [d.write(tmp_path / f"{name}.glb") for d, name in ((exact, "exact"), (coarse, "coarse"))]
+    sets = normal_sets_named(",".join(map(str, paths)), 0, 0, Reading(size="160x120"))
+    (right, covered), (found, _) = map(given, sets)
+    off = turned_deg(right[covered].astype(float), found[covered].astype(float))
+    assert sets[0].own_error_deg is None and sets[1].own_error_deg is not None
+    assert 0.7 < off / sets[1].own_error_deg < 1.05, (off, sets[1].own_error_deg)
