@@ -218,7 +218,7 @@ def test_the_list_command_knows_everything_there_is():
     }
     there |= {*FRAME_ENCODINGS, *FRAME_STORAGES, *frame_sets.FRAME_SETS, *EFFECTS}
     there |= {*MOTION_ENCODINGS, *MOTION_STORAGES, *CURVE_ENCODINGS}
-    assert listed == there | {*DEPTH_ENCODINGS, *DEPTH_STORAGES, *listing.FILES_OF_NORMALS}
+    assert listed == there | {*DEPTH_ENCODINGS, *DEPTH_STORAGES, *listing.FILES_OF_NORMALS, *listing.FILES_OF_DEPTHS}
     assert set(listing.FRAME_SETS) == set(frame_sets.FRAME_SETS)
 
 

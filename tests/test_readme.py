@@ -57,6 +57,10 @@ def users_files(folder: Path) -> None:
     (folder / "frame.png").write_bytes(png_bytes(packed(n, np.uint16)))
     (folder / "mask.png").write_bytes(png_bytes(np.full((*n.shape[:2], 1), 255, np.uint8)))
     np.savetxt(folder / "view.txt", np.eye(4))
+    depths = np.linspace(1, 20, n.shape[0] * n.shape[1], dtype=np.float32).reshape(n.shape[:2])
+    write_exr(folder / "frame-depth.exr", {"Z": depths})
+    np.save(folder / "device-depth.npy", 1 - 0.1 / depths)
+    (folder / "millimetres.png").write_bytes(png_bytes((depths[..., None] * 1000).astype(np.uint16)))
     as_document([sphere(1.0, 16, 8)]).write(folder / "scene.glb")
     shutil.copy(ROOT / "tests" / "inputs" / "normals" / "points.ply", folder)
 

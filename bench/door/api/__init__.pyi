@@ -637,7 +637,11 @@ def depth(
     near: Names = ...,
     far: Names = ...,
     distance: Names | None = ...,
-    fov: float = ...,
+    fov: float | None = ...,
+    depths: Names | None = ...,
+    channel: Names | None = ...,
+    depths_are: Names = ...,
+    depth_unit: float = ...,
     backend: Names = ...,
     count: int = ...,
     seed: int = ...,
@@ -645,7 +649,7 @@ def depth(
 ) -> Rows:
     """How far off a position is that was rebuilt from a stored depth, at distances and over the whole range.
 
-    Errors are distances in the unit of --near and --far, of points anywhere on the screen; a distance stands for depths up to a sixteenth of it nearer or farther.
+    Errors are distances in the unit of --near and --far, of points anywhere on the screen; a distance stands for depths up to a sixteenth of it nearer or farther. --depths measures the depths of your own image.
 
     Args:
         depth: Depth codes, comma-separated, or all; `normalbench list` shows them.
@@ -654,7 +658,11 @@ def depth(
         near: Near planes, comma-separated.
         far: Far planes, comma-separated.
         distance: Distances, comma-separated. Default: every power of ten.
-        fov: Vertical field of view in degrees, of a 16:9 image.
+        fov: Vertical field of view in degrees. Default: 60, of a 16:9 image; of --depths none, points lie on the view axis.
+        depths: Images of depths to measure, in place of made ones: EXR, TIFF, PNG, NPY.
+        channel: Depth images: the channel. Default: the one called so, or the only one.
+        depths_are: Depth images: view (along the view axis), or the depth code that they are in: window, reversed_window, linear.
+        depth_unit: Depth images: what 1 is in the unit of --near; 0.001 for millimetres.
         backend: jax, glsl; comma-separated, or all.
         count: Points at each distance.
         seed: The random seed of uniform sets, points and scenes.

@@ -40,6 +40,8 @@ FILES_OF_NORMALS = {
     "POINTS.ply": "the normals of a point cloud in object space: nx, ny, nz and no faces",
 }
 
+FILES_OF_DEPTHS = {"DEPTH.exr": "the depths of a frame, also .png, .tif and .npy: `depth --depths`"}
+
 FRAME_SETS = {"rotations": "rotations spread evenly, of either hand, seeded"}
 
 HOW = {"add": "adding", "multiply": "multiplying", "read": "reading and writing"}
@@ -96,6 +98,7 @@ def _depths() -> list[Row]:
             for d in DEPTH_ENCODINGS.values()
         ),
         *(_row("depth storage", s.name, s.title, holds=f"{s.bits} bits") for s in DEPTH_STORAGES.values()),
+        *(_row("depth set", name, title) for name, title in FILES_OF_DEPTHS.items()),
     ]
 
 

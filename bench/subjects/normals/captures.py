@@ -22,7 +22,7 @@ from ...ground.output.errors import UsageError
 from .capture_diagnoses import MIRRORED, SWAPPED, some_pixels, which_way
 from .normal_sets import OBJECT, NormalSet, from_arrays
 from .own_errors import FINE, bits_text, own_error_deg, own_error_note
-from .pixel_files import CLOUDS, READERS, Pixels, read_pixels, refused
+from .pixel_files import CLOUDS, READERS, Pixels, read_pixels, read_plane, refused
 
 # Shorter is not a direction: background. Whole numbers have no 0 within [-1, 1]; 8 bits come within 0.007 of it.
 BACKGROUND = 0.02
@@ -184,11 +184,7 @@ def _mask(path: Path, reading: Reading, shape: tuple[int, ...]) -> np.ndarray:
 
 def _mask_of_file(path: Path) -> np.ndarray:
     """The first channel of an image, (height, width)."""
-    if path.suffix.lower() != ".npy":
-        return read_pixels(path, lambda names: names[:1]).planes[0]
-    found = read_pixels(path, lambda names: names).planes
-    # An array of (height, width) comes as `width` channels of `height` numbers.
-    return found[0] if found.ndim == 3 else found.T
+    return read_plane(path, lambda names: names[:1]).planes[0]
 
 
 def _one_channel(path: Path, names: Sequence[str], asked: str) -> list[str]:

@@ -220,6 +220,35 @@ def _read_cloud(path: Path, choose: Choice) -> Pixels:
 
 
 def _read_npy(path: Path, choose: Choice) -> Pixels:
+    found = _npy_array(path)
+    shape = found.shape
+    if len(shape) == 3 and shape[0] in (3, 4) < (shape[-1],):
+        raise refused(path, f"an array of shape {shape}", "channels come last: save np.moveaxis(array, 0, -1)")
+    return _npy_pixels(path, found, choose)
+
+
+def read_plane(path: Path, choose: Choice) -> Pixels:
+    """One channel of an image, as `read_pixels` gives it; an array of (height, width) is one.
+
+    Raises:
+        UsageError: see `read_pixels`.
+    """
+    if path.suffix.lower() != ".npy":
+        return read_pixels(path, choose)
+    found = _npy_array(path)
+    return _npy_pixels(path, found if found.ndim == 3 else found[..., None], choose)
+
+
+def _npy_pixels(path: Path, found: np.ndarray, choose: Choice) -> Pixels:
+    """Channels of an array of (..., channels)."""
+    check_pixels(path, math.prod(found.shape[:-1]), found.shape[-1])
+    names = [str(channel) for channel in range(found.shape[-1])]
+    chosen = [names.index(name) for name in choose(names)]
+    return Pixels(_planes(found, chosen), np.iinfo(found.dtype).max if found.dtype.kind == "u" else None)
+
+
+def _npy_array(path: Path) -> np.ndarray:
+    """The array of an NPY file, of two or three sides; it lies in the file's bytes."""
     stream = io.BytesIO(_bytes(path))
     shape, in_columns, kind = _npy_header(path, stream)
     if kind.kind not in "fub" or kind.itemsize > 8 or (kind.kind == "u" and kind.itemsize > 2):
@@ -231,14 +260,8 @@ def _read_npy(path: Path, choose: Choice) -> Pixels:
     left = len(stream.getbuffer()) - stream.tell()
     if count * kind.itemsize > left:
         raise refused(path, f"shape {shape} needs {count * kind.itemsize} bytes, the file has {left}: it is cut off")
-    check_pixels(path, math.prod(shape[:-1]), shape[-1])
     flat = np.frombuffer(stream.getbuffer(), kind, count, stream.tell())
-    found = flat.reshape(shape, order="F" if in_columns else "C")
-    names = [str(channel) for channel in range(shape[-1])]
-    if len(shape) == 3 and shape[0] in (3, 4) < (shape[-1],):
-        raise refused(path, f"an array of shape {shape}", "channels come last: save np.moveaxis(array, 0, -1)")
-    chosen = [names.index(name) for name in choose(names)]
-    return Pixels(_planes(found, chosen), np.iinfo(kind).max if kind.kind == "u" else None)
+    return flat.reshape(shape, order="F" if in_columns else "C")
 
 
 def _npy_header(path: Path, stream: io.BytesIO) -> tuple[tuple[int, ...], bool, np.dtype]:

@@ -18,6 +18,8 @@ from ....encodings.vec import Vec2
 from ....gbuffer.codecs.depth.depth_passes import DepthPasses, Rebuilt
 from ....gbuffer.gl.device import FormatError, NoDeviceError, device
 from ....gbuffer.gl.shader import ShaderError
+from .frames import Frame, seen
+from .points import Points
 from .table import TABLE
 
 # Why a device may not be able to give a row.
@@ -29,28 +31,6 @@ WIDTH = 4096
 BLOCK = 2**14
 
 Row = dict[str, Any]
-
-
-@dataclass(frozen=True, eq=False)
-class Points:
-    """Places on the screen and depths to measure on.
-
-    Attributes:
-        places: from -1 to 1, right and up; float32 of shape (count, 2).
-        depths: view depth, float32 of shape (count,).
-    """
-
-    places: np.ndarray
-    depths: np.ndarray
-
-    def positions(self, camera: Camera) -> np.ndarray:
-        """Where they truly are, view space, float64 of shape (count, 3)."""
-        return self.rays(camera) * self.depths[:, None].astype(np.float64)
-
-    def rays(self, camera: Camera) -> np.ndarray:
-        """The eye's rays at depth 1, float64 of shape (count, 3)."""
-        straight = np.full((len(self.places), 1), -1.0)
-        return np.concatenate([self.places.astype(np.float64) * camera.rays, straight], axis=1)
 
 
 def points(camera: Camera, distance: float | None, count: int, seed: int) -> Points:
@@ -86,6 +66,7 @@ class Case:
         distances: in the unit of near and far.
         count: points of each row.
         seed: what they are made with.
+        frame: whose depths are measured in one row, if any; `distances` is (None,) and `count` is of no use.
     """
 
     codec: DepthCodec
@@ -95,10 +76,19 @@ class Case:
     distances: tuple[float | None, ...]
     count: int
     seed: int
+    frame: Frame | None = None
 
     @property
     def name(self) -> str:
-        return f"{self.codec.name} {self.camera.near:g} to {self.camera.far:g} {self.backend}"
+        of = f" {self.frame.name}" if self.frame else ""
+        return f"{self.codec.name}{of} {self.camera.near:g} to {self.camera.far:g} {self.backend}"
+
+    @property
+    def points(self) -> Points:
+        """What it is measured on: the points of every distance, one after the other, or the frame's."""
+        if self.frame:
+            return seen(self.frame, self.camera).points
+        return all_points(self.camera, self.distances, self.count, self.seed)
 
 
 def ways(codec: DepthCodec) -> list[str]:
@@ -159,6 +149,7 @@ class Measured:
         errors: between the true position and the rebuilt one; infinite where that is not a position.
         half_steps: how far half a step of the storage may move the position.
         bounds: the same with float32 arithmetic.
+        relative: how far the depth along the axis is off, as a share of it; infinite likewise.
         lost: bool, whether the depth's sign came back as the other; never where the encoding keeps none.
         positions: as rebuilt, of shape (count, 3).
         how: the device, and who rounded.
@@ -167,6 +158,7 @@ class Measured:
     errors: np.ndarray
     half_steps: np.ndarray
     bounds: np.ndarray
+    relative: np.ndarray
     lost: np.ndarray
     positions: np.ndarray
     how: dict[str, str]
@@ -194,7 +186,9 @@ def through(case: Case, on: Points) -> Measured:
     half_steps, bounds = _limits(case.codec, case.camera, on)
     lost = (np.signbit(rebuilt.depths) != away) & case.codec.encoding.signed
     errors = np.where(np.isfinite(apart), apart, np.inf)
-    return Measured(errors, half_steps, bounds, lost, rebuilt.positions, how)
+    depths = on.depths.astype(np.float64)
+    relative = np.where(np.isfinite(apart), np.abs(-rebuilt.positions[:, 2] - depths) / depths, np.inf)
+    return Measured(errors, half_steps, bounds, relative, lost, rebuilt.positions, how)
 
 
 def measure(case: Case) -> list[Row]:
@@ -213,19 +207,37 @@ def measure(case: Case) -> list[Row]:
         "count": case.count,
         "seed": case.seed,
     }
+    on, count = case.points, case.count
+    if case.frame:
+        count = len(on.depths)
+        shared |= _frame_columns(case.frame, camera) | {"count": count}
     try:
-        found = through(case, all_points(camera, case.distances, case.count, case.seed))
+        found = through(case, on)
     except UNMEASURABLE as error:
         return [shared | {"distance": distance, "skipped": str(error)} for distance in case.distances]
-    parts = [slice(i * case.count, (i + 1) * case.count) for i in range(len(case.distances))]
+    parts = [slice(i * count, (i + 1) * count) for i in range(len(case.distances))]
     return [
         shared | found.how | {"distance": distance} | _figures(case, found, part)
         for distance, part in zip(case.distances, parts, strict=True)
     ]
 
 
+def _frame_columns(frame: Frame, camera: Camera) -> Row:
+    """What is said of a frame in place of points that are made."""
+    background = seen(frame, camera).background
+    return {
+        "depths": frame.name,
+        "fov": frame.fov,
+        "background": background,
+        "not_finite": frame.not_finite,
+        "seed": None,
+    }
+
+
 def _figures(case: Case, found: Measured, part: slice) -> Row:
     return {
+        "relative_mean": float(found.relative[part].mean()),
+        "relative_max": float(found.relative[part].max()),
         "error_mean": float(found.errors[part].mean()),
         "error_max": float(found.errors[part].max()),
         "half_step": float(found.half_steps[part].max()),

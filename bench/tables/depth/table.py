@@ -30,7 +30,33 @@ class DepthOptions:
     distance: Annotated[
         str | None, Option("--distance", "Distances, comma-separated. Default: every power of ten.")
     ] = None
-    fov: Annotated[float, Option("--fov", "Vertical field of view in degrees, of a 16:9 image.")] = 60.0
+    fov: Annotated[
+        float | None,
+        Option(
+            "--fov",
+            "Vertical field of view in degrees. Default: 60, of a 16:9 image; of --depths none, points lie on the view "
+            "axis.",
+        ),
+    ] = None
+    depths: Annotated[
+        str | None,
+        Option("--depths", "Images of depths to measure, in place of made ones: EXR, TIFF, PNG, NPY.", files=True),
+    ] = None
+    channel: Annotated[
+        str | None,
+        Option("--channel", "Depth images: the channel. Default: the one called so, or the only one."),
+    ] = None
+    depths_are: Annotated[
+        str,
+        Option(
+            "--depths-are",
+            "Depth images: view (along the view axis), or the depth code that they are in: window, reversed_window, "
+            "linear.",
+        ),
+    ] = "view"
+    depth_unit: Annotated[
+        float, Option("--depth-unit", "Depth images: what 1 is in the unit of --near; 0.001 for millimetres.")
+    ] = 1.0
     backend: Backends = "jax,glsl"
     count: Annotated[int, Option("--count", "Points at each distance.")] = 2**14
     seed: Seed = 0
@@ -59,9 +85,18 @@ COLUMNS = (
     Column("near", "The near plane.", KEY),
     Column("far", "The far plane.", KEY, drops=7),
     Column("ratio", "Far over near.", HOW),
-    Column("fov", "Vertical field of view.", HOW, "degrees"),
-    Column("distance", "Depths within a sixteenth of it; empty: spread evenly over the range.", KEY),
+    Column("fov", "Vertical field of view; empty where points lie on the view axis.", HOW, "degrees"),
+    Column("depths", "The image whose depths were measured; empty: points were made.", KEY),
+    Column("distance", "Depths within a sixteenth of it; empty: spread evenly over the range, or an image's.", KEY),
     Column("count", "How many points were measured.", HOW),
+    Column("background", "Pixels of the image that are not between near and far; they do not count.", HOW, drops=8),
+    Column("not_finite", "Pixels of the image that are NaN; they do not count.", HOW, drops=8),
+    Column(
+        "relative_mean",
+        "Mean error of the depth along the view axis, as a share of the depth.",
+        better="less",
+    ),
+    Column("relative_max", "The largest such error.", better="less"),
     Column(
         "error_mean", "Mean distance between true and rebuilt position, in the unit of near and far.", better="less"
     ),
@@ -86,7 +121,7 @@ TABLE = Table(
     package=__package__ or "",
     help="How far off a position is that was rebuilt from a stored depth, at distances and over the whole range.\n\n"
     "Errors are distances in the unit of --near and --far, of points anywhere on the screen; a distance stands for "
-    "depths up to a sixteenth of it nearer or farther.",
+    "depths up to a sixteenth of it nearer or farther. --depths measures the depths of your own image.",
     example="normalbench depth --depth reversed_window,logarithmic --near 0.1 --far 1000",
     options=DepthOptions,
     outputs=DepthOutputs,

@@ -35,6 +35,7 @@ from ..charts import having
 from ..table import Measured, Row, Sheet, Step, Tick, Work, each
 from . import measure
 from .charts import charts, depth_chart
+from .frames import check_and_say, frames_named
 from .table import TABLE, DepthOptions, DepthOutputs
 
 # Nothing nearer or farther; float32 has room on both sides.
@@ -45,6 +46,7 @@ LEAST_RATIO = 1.01
 MAX_POINTS = 2**22
 CURVE, CURVE_COUNT = 33, 2**11
 SCENE, SIZE = SCENES["room"], (640, 480)
+USUAL_FOV = 60.0
 
 
 def cases(options: DepthOptions) -> list[measure.Case]:
@@ -55,9 +57,10 @@ def cases(options: DepthOptions) -> list[measure.Case]:
         MissingError: only GLSL is asked for and there is no GL device.
     """
     check_seed(options.seed)
-    if not 1 <= options.fov <= 170:
-        raise UsageError(f"--fov {options.fov:g}: degrees from 1 to 170")
-    cameras = [Camera(near, far, options.fov, measure.ASPECT) for near, far in _ranges(options)]
+    fov = USUAL_FOV if options.fov is None else options.fov
+    if not 1 <= fov <= 170:
+        raise UsageError(f"--fov {fov:g}: degrees from 1 to 170")
+    cameras = [Camera(near, far, fov, measure.ASPECT) for near, far in _ranges(options)]
     distances = {camera: _distances(options, camera) for camera in cameras}
     in_range("--count", options.count, 2, MAX_POINTS // max(map(len, distances.values())))
     backends = backends_named(options.backend, measure.BACKENDS)
@@ -65,9 +68,13 @@ def cases(options: DepthOptions) -> list[measure.Case]:
     require_jax()
     if backends == ["glsl"]:
         require_device()
+    made = [(camera, distances[camera], None) for camera in cameras]
+    if frames := frames_named(options):
+        check_and_say(frames, cameras)
+        made = [(replace(camera, aspect=one.aspect), (None,), one) for one in frames for camera in cameras]
     return [
-        measure.Case(codec, way, backend, camera, distances[camera], options.count, options.seed)
-        for camera in cameras
+        measure.Case(codec, way, backend, camera, at, options.count, options.seed, frame)
+        for camera, at, frame in made
         for codec, way in chosen
         for backend in backends
     ]
@@ -121,13 +128,21 @@ def _numbers(option: str, text: str) -> tuple[float, ...]:
 
 
 def _steps(options: DepthOptions, outputs: DepthOutputs) -> list[Step]:
+    if options.depths is not None and outputs.plot:
+        raise UsageError("--plot draws errors over distances, and depths of an image have none; leave one out")
+    if options.depths is not None and outputs.images and options.fov is None:
+        raise UsageError("--images of depth images needs --fov, the vertical angle, which gives surfaces their slope")
     made = cases(options)
     if outputs.images:
-        _scene(outputs.images, made)
+        _pictured(outputs.images, made)
     return [Step(_key(case), case, case.name) for case in made]
 
 
 def _key(case: measure.Case) -> Row:
+    if frame := case.frame:
+        key = {"codec": case.codec.name, "rebuilt": case.rebuilt, "backend": case.backend, "depths": frame.name}
+        key |= {"depths_are": frame.code, "depth_unit": frame.unit, "channel": frame.channel, "fov": frame.fov}
+        return key | {"near": case.camera.near, "far": case.camera.far}
     key: Row = {"codec": case.codec.name, "rebuilt": case.rebuilt, "backend": case.backend, "seed": case.seed}
     key |= {"near": case.camera.near, "far": case.camera.far, "fov": case.camera.fov, "count": case.count}
     return key | {"distances": list(case.distances)}
@@ -137,17 +152,18 @@ def _write(done: Measured, tick: Tick) -> None:
     """The pictures, where they were asked for."""
     made, folder = [step.case for step in done.steps], done.outputs.images
     if folder:
-        _write_pictures(_for_drawing(made), _scene(folder, made), folder, tick)
+        _write_pictures(_for_drawing(made), _pictured(folder, made), folder, tick)
 
 
 def _plotted(done: Measured) -> list[Chart]:
     """The chart of many distances, close to each other."""
-    rows = [row for case in _for_drawing([step.case for step in done.steps]) for row in _curve(case)]
+    made = [step.case for step in done.steps if not step.case.frame]
+    rows = [row for case in _for_drawing(made) for row in _curve(case)]
     return [depth_chart(usable)] if (usable := having(rows, "distance", "error_max")) else []
 
 
 def _shown(done: Measured) -> Iterator[Sheet]:
-    rows = _beside(done.rows)
+    rows = _of_frames(done.rows) if any(step.case.frame for step in done.steps) else _beside(done.rows)
     yield Sheet("", rows, TABLE.drops(rows))
 
 
@@ -186,6 +202,14 @@ def _beside(rows: Sequence[Row]) -> list[Row]:
     return [{column: line.get(column) for column in columns} for line in lines.values()]
 
 
+def _of_frames(rows: Sequence[Row]) -> list[Row]:
+    """A line for each row of a frame."""
+    names = ("depth", "storage", "bits", "rebuilt", "backend", "depths", "near", "far", "fov")
+    figures = ("relative_mean", "relative_max", "error_mean", "error_max", "signs_lost")
+    how = ("count", "background", "not_finite", "rounded_by", "device")
+    return [{name: _said(row[name]) for name in names} | {name: row[name] for name in (*figures, *how)} for row in rows]
+
+
 def _said(value: object) -> object:
     """What was asked for as it was typed, where a figure would have its digits."""
     return f"{value:g}" if isinstance(value, float) else value
@@ -193,7 +217,7 @@ def _said(value: object) -> object:
 
 def _for_drawing(cases: Iterable[measure.Case]) -> list[measure.Case]:
     """One case for each code, camera and way to the position: by GLSL where that was asked for."""
-    chosen = {(c.codec, c.camera, c.rebuilt): c for c in sorted(cases, key=lambda c: c.backend, reverse=True)}
+    chosen = {(c.codec, c.camera, c.rebuilt, c.frame): c for c in sorted(cases, key=lambda c: c.backend, reverse=True)}
     return [case for case in cases if case in chosen.values()]
 
 
@@ -207,15 +231,23 @@ def _curve(case: measure.Case) -> list[Row]:
 
 @dataclass(frozen=True)
 class Seen:
-    """A scene's depths.
+    """A scene's depths, or a frame's.
 
     Attributes:
+        name: what pictures are called by.
         depths: view depth, float32 of shape (height, width), row 0 on top; 0 where there is nothing.
         fov: the camera's vertical field of view in degrees.
     """
 
+    name: str
     depths: np.ndarray
     fov: float
+
+    @property
+    def aspect(self) -> float:
+        """Width over height."""
+        height, width = self.depths.shape
+        return width / height
 
     def within(self, camera: Camera) -> np.ndarray:
         """Which pixels lie between near and far, bool of shape (height, width)."""
@@ -237,7 +269,23 @@ def _seen(device: Device) -> Seen:
     scene = SCENE.make(Setting())
     with rendering(device, PIPELINES["prepass"], scene, plan) as made:
         made.draw()
-        return Seen(-made.gbuffer()[0][..., 2], scene.view.fov)
+        return Seen(SCENE.name, -made.gbuffer()[0][..., 2], scene.view.fov)
+
+
+def _pictured(folder: Path, cases: Iterable[measure.Case]) -> Seen | None:
+    """What the pictures show: the scene, or None where each case has a frame of its own. Raises as `_scene`."""
+    if not any(case.frame for case in cases):
+        return _scene(folder, cases)
+    check_folder(folder)
+    return None
+
+
+def _seen_by(case: measure.Case, scene: Seen | None) -> Seen:
+    """What the pictures of a case show."""
+    if case.frame:
+        return Seen(case.frame.name, case.frame.surface(case.camera), case.camera.fov)
+    assert scene
+    return scene
 
 
 def _scene(folder: Path, cases: Iterable[measure.Case]) -> Seen:
@@ -260,16 +308,19 @@ def _scene(folder: Path, cases: Iterable[measure.Case]) -> Seen:
     return seen
 
 
-def _write_pictures(cases: Iterable[measure.Case], scene: Seen, folder: Path, tick: Callable[[str], None]) -> None:
+def _write_pictures(
+    cases: Iterable[measure.Case], pictured: Seen | None, folder: Path, tick: Callable[[str], None]
+) -> None:
     """Two pictures of each case, and for each range a sheet of them all."""
     sheets: dict[str, dict[str, dict[str, np.ndarray]]] = {}
     for case in cases:
-        camera = replace(case.camera, fov=scene.fov, aspect=SIZE[0] / SIZE[1])
+        scene = _seen_by(case, pictured)
+        camera = replace(case.camera, fov=scene.fov, aspect=scene.aspect)
         points, covered = scene.points(camera), scene.within(camera)
         found = _through(replace(case, camera=camera), points)
         errors, positions = found.errors.reshape(covered.shape), found.positions.reshape(*covered.shape, 3)
         two = pictures.depth_pictures(errors, positions, covered)
-        where = f"{SCENE.name}-{camera.near:g}-{camera.far:g}"
+        where = f"{scene.name}-{camera.near:g}-{camera.far:g}"
         for kind, pixels in two.items():
             name = f"{where}-{case.codec.name.replace('/', '-')}-{case.rebuilt}-{kind}.png"
             with whole_file(folder / name) as partial:

@@ -1,0 +1,31 @@
+"""Where depths are measured."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ....encodings.shared.position import Camera
+
+
+@dataclass(frozen=True, eq=False)
+class Points:
+    """Places on the screen and depths to measure on.
+
+    Attributes:
+        places: from -1 to 1, right and up; float32 of shape (count, 2).
+        depths: view depth, float32 of shape (count,).
+    """
+
+    places: np.ndarray
+    depths: np.ndarray
+
+    def positions(self, camera: Camera) -> np.ndarray:
+        """Where they truly are, view space, float64 of shape (count, 3)."""
+        return self.rays(camera) * self.depths[:, None].astype(np.float64)
+
+    def rays(self, camera: Camera) -> np.ndarray:
+        """The eye's rays at depth 1, float64 of shape (count, 3)."""
+        straight = np.full((len(self.places), 1), -1.0)
+        return np.concatenate([self.places.astype(np.float64) * camera.rays, straight], axis=1)
