@@ -34,7 +34,9 @@ from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.subjects.codecs.tuned_names import tuned
 from normalbench.bench.subjects.normals import pixel_files
 from normalbench.bench.subjects.normals.captures import Reading, capture
+from normalbench.bench.subjects.normals.vertices import vertices_of
 from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.gbuffer.scenes.files.read import MESHES as MESHES_BY_ENDING
 from normalbench.gbuffer.scenes.files.read import file_scene, read_mesh_file, seen
 from normalbench.gbuffer.scenes.files.source import SceneFileError
 from normalbench.gbuffer.scenes.mesh import sphere
@@ -161,6 +163,7 @@ def meshes(kind: str, folder: Path) -> Attack:
     def case(seed: int) -> str:
         path.write_text(OBJ)
         target.write_bytes(change(data, np.random.default_rng(seed)))
+        look_at_vertices(path)
         try:
             file = read_mesh_file(path)
             assert np.isfinite(seen(file, (16, 12)).normals).all()
@@ -171,6 +174,18 @@ def meshes(kind: str, folder: Path) -> Attack:
         return MEASURED
 
     return case
+
+
+def look_at_vertices(path: Path) -> None:
+    """Vertex normals are unit whatever a file says, or it is refused in one line."""
+    if path.suffix not in MESHES_BY_ENDING:
+        return
+    try:
+        lengths = np.linalg.norm(vertices_of(path).normals, axis=1)
+        assert len(lengths) and np.allclose(lengths, 1), lengths
+    except UsageError as error:
+        assert str(error).startswith(str(path)), str(error)
+        one_line(error)
 
 
 ARRAYS = {"mean": np.arange(24, dtype=np.float32).reshape(2, 3, 4), "count": np.array(7)}

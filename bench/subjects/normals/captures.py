@@ -207,6 +207,8 @@ def _directions_and_remarks(
     n = stored * 2 - 1 if unpack else stored
     length = _plane_lengths(n)
     covered = surface & finite & (length >= BACKGROUND)
+    if not covered.any() and path.suffix.lower() in CLOUDS:
+        raise refused(path, "none of its points has a normal: nx, ny, nz are 0, as splats have them", "export normals")
     if not covered.any():
         raise refused(path, "no normals: every pixel is background", "see --channels, --mask and --unpack")
     notes = _checked_unit(path, stored, length, covered, reading, unpack)

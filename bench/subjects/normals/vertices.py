@@ -11,7 +11,7 @@ import numpy as np
 from ....encodings.codecs.files import called
 from ....gbuffer.scenes.files.mesh_file import NOTHING, Rounding, Stored
 from ....gbuffer.scenes.files.read import MESHES
-from ....gbuffer.scenes.files.source import checked_indices
+from ....gbuffer.scenes.files.source import TOO_LARGE, checked_indices
 from ...ground.choose import PART, VERTICES, whole_file_of
 from ...ground.options.scene_names import read_or_refused
 from ...ground.output.errors import UsageError
@@ -139,10 +139,10 @@ def _used(path: Path, stored: Stored) -> np.ndarray:
 
 
 def _lengths(normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Which normals are finite, and how long these are; (count,) each."""
-    finite = np.asarray(np.isfinite(normals).all(axis=1))
-    with np.errstate(over="ignore"):
-        return finite, np.linalg.norm(np.where(finite[:, None], normals, 0), axis=1)
+    """Which normals are finite, as far as their squares are, and how long these are; (count,) each."""
+    with np.errstate(invalid="ignore"):
+        finite = np.asarray((np.abs(normals) < TOO_LARGE).all(axis=1))
+    return finite, np.linalg.norm(np.where(finite[:, None], normals, 0), axis=1)
 
 
 def _least(roundings: Sequence[Rounding]) -> float:

@@ -18,6 +18,8 @@ MAX_BYTES = 2**30
 MAX_TEXT_BYTES = 2**28
 # Of all meshes in all the places they stand in.
 MAX_VERTICES = MAX_TRIANGLES = 2**22
+# Numbers from here on are not read: their squares are near the end of float32.
+TOO_LARGE = 1e15
 
 
 class SceneFileError(ValueError):
@@ -110,10 +112,10 @@ def checked_indices(path: Path, indices: np.ndarray, count: int, place: str) -> 
 
 def checked_numbers(path: Path, numbers: np.ndarray, place: str) -> np.ndarray:
     """Vertex data as they are. Raises SceneFileError where one is NaN, infinite, or too large to be squared."""
-    bad = np.flatnonzero(~(np.abs(numbers) < 1e15).all(axis=1))
+    bad = np.flatnonzero(~(np.abs(numbers) < TOO_LARGE).all(axis=1))
     if len(bad):
         raise SceneFileError(
-            f"{path}: {place} of vertex {bad[0]}: {numbers[bad[0]].tolist()}; numbers below 1e15 are read"
+            f"{path}: {place} of vertex {bad[0]}: {numbers[bad[0]].tolist()}; numbers below {TOO_LARGE:g} are read"
         )
     return numbers
 

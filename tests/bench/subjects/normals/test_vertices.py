@@ -84,7 +84,7 @@ def test_a_vertex_that_stands_twice_counts_once_and_one_without_a_triangle_not_a
 
 def test_normals_of_no_length_and_nan_are_left_out_and_counted(tmp_path, run):
     document = Document()
-    n = [(0, 0, 2), (0, 0, 0), (np.nan, 0, 1), (0, -np.inf, 1), (0.1, 0, 0)]
+    n = [(0, 0, 2), (0, 0, 0), (np.nan, 0, 1), (0, -1e30, 1), (0.1, 0, 0)]
     document.node(mesh=document.mesh(np.arange(15.0).reshape(5, 3), n, mode=0))
     path = document.write(tmp_path / "a.glb")
     made, found = vertices(path)
@@ -112,6 +112,20 @@ def test_each_kind_of_mesh_file_gives_its_normals(tmp_path):
         # The poles are one vertex for all slices, and the last meridian is the first.
         assert len(vertices(tmp_path / "a.ply")[1]) == 24 * 15 + 2
     assert vertices(CLOUD)[1].tolist() == [[0, 0, 1], [0, 1, 0]]
+
+
+def test_a_clouds_normals_of_no_length_are_counted_and_splats_have_none(tmp_path, run):
+    """Gaussian splats have nx, ny, nz, and all of them are 0."""
+    path = tmp_path / "a.ply"
+    path.write_text(CLOUD.read_text().replace("vertex 2", "vertex 3") + "2 0 0 0 0 0\n")
+    (made,) = normal_sets_named(str(path), 0, 0, Reading())
+    assert (made.count, made.background, made.code_space, made.has_rays) == (3, 1, "object", False)
+    (seen,) = normal_sets_named(str(path), 0, 0, Reading(fov=60.0))
+    assert (seen.code_space, seen.has_rays) == ("view", True)
+    path.write_text(CLOUD.read_text().replace("0 0 1", "0 0 0").replace("0 1 0", "0 0 0"))
+    for name, said in ((path, "none of its points has a normal"), (f"{path}#vertices", "none of its 2 vertex normals")):
+        status, out, err = run("quality", "--encoding", "octahedral", "--normals", str(name))
+        assert (status, out) == (2, "") and len(err.splitlines()) == 1 and said in err, err
 
 
 def test_a_code_that_needs_a_view_ray_is_left_out_in_a_line(tmp_path, run):
