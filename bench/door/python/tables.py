@@ -123,9 +123,18 @@ def _check_unit(name: str, array: np.ndarray) -> None:
         raise UsageError(f"normals: {off:.1%} of {name} are not unit vectors; divide by their lengths, or unpack them")
 
 
+def _depths(name: str, array: np.ndarray) -> np.ndarray:
+    if array.ndim != 2 or not array.size or not (np.issubdtype(array.dtype, np.floating) or array.dtype.kind == "u"):
+        said = f"of {array.dtype} and shape {array.shape}"
+        raise UsageError(f"depths: {name} is {said}; give floats or unsigned whole numbers of shape (height, width)")
+    return array
+
+
 def _value(key: str, name: str, value: Any) -> Any:
-    """An array of normals under a name, as a set to measure on: shape (..., 3)."""
+    """An array under a name: of normals, (..., 3), as a set to measure on; of depths, (height, width), as it is."""
     array = np.asarray(value)
+    if key == "depths":
+        return _depths(name, array)
     if key != "normals" or array.ndim < 2 or array.shape[-1] != 3 or not array.size:
         raise UsageError(f"{key}: {name} stands for an array of normals of shape (count, 3) or (height, width, 3)")
     if name in NORMAL_SETS:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -16,6 +16,7 @@ from ....encodings.codecs.files import called
 from ....encodings.shared.position import Camera
 from ...ground.choose import choose_one, file_names
 from ...ground.options.scene_names import say_notes
+from ...ground.options.words import given_in
 from ...ground.output.errors import UsageError, tell
 from ...subjects.normals.pixel_files import READERS, Pixels, read_plane, refused
 from .points import Points
@@ -116,13 +117,20 @@ def frames_named(options: DepthOptions) -> list[Frame]:
         _check_unused(options)
         return []
     words = [word for word in file_names(options.depths) if word]
+    options, own = _checked(words, options), given_in(options.depths)
+    found = {word: _pixels_of(own[word]) if word in own else _read(Path(word), options) for word in words}
+    return [_frame(word, pixels, options) for word, pixels in found.items()]
+
+
+def _checked(words: Sequence[str], options: DepthOptions) -> DepthOptions:
+    """The options with what the numbers are by its known name. Raises UsageError."""
+    names = [Path(word).name for word in words]
     if not words:
         raise UsageError("--depths names no file")
-    if options.distance is not None:
-        raise UsageError("--distance is of points that are made; --depths has depths of its own")
-    names = [Path(word).name for word in words]
     if twice := next((name for name in names if names.count(name) > 1), None):
         raise UsageError(f"two files are called {twice}, which is how rows name them; rename one")
+    if options.distance is not None:
+        raise UsageError("--distance is of points that are made; --depths has depths of its own")
     code = choose_one("code of --depths-are", options.depths_are, (VIEW, *CODES))
     if not LEAST_UNIT <= abs(options.depth_unit) <= MOST_UNIT:
         raise UsageError(f"--depth-unit {options.depth_unit:g}: {LEAST_UNIT:g} to {MOST_UNIT:g}, or less than 0")
@@ -130,7 +138,7 @@ def frames_named(options: DepthOptions) -> list[Frame]:
         raise UsageError(f"--depth-unit is of view depths; --depths-are {code} has the unit of --near and --far")
     if options.count != DepthOptions.count:
         tell("--count has no effect on depth images: every pixel between near and far is measured")
-    return [_read(Path(word), code, options) for word in words]
+    return replace(options, depths_are=code)
 
 
 def _check_unused(options: DepthOptions) -> None:
@@ -141,13 +149,20 @@ def _check_unused(options: DepthOptions) -> None:
             raise UsageError(f"{flag} is of depth images, and --depths names none")
 
 
-def _read(path: Path, code: str, options: DepthOptions) -> Frame:
+def _pixels_of(array: np.ndarray) -> Pixels:
+    """A caller's own array, (height, width), as what is read of a file."""
+    return Pixels(array[None], np.iinfo(array.dtype).max if array.dtype.kind == "u" else None)
+
+
+def _read(path: Path, options: DepthOptions) -> Pixels:
     if path.suffix.lower() not in READERS:
         raise UsageError(f"{path}: not an image of depths; {', '.join(READERS)} are read")
-    pixels = read_plane(path, lambda names: [_channel(path, names, options.channel)])
+    return read_plane(path, lambda names: [_channel(path, names, options.channel)])
+
+
+def _frame(word: str, pixels: Pixels, options: DepthOptions) -> Frame:
+    path, code = Path(word), options.depths_are
     numbers = pixels.planes[0].astype(np.float64)
-    if numbers.ndim != 2:
-        raise refused(path, "not an image", "an array of (height, width) is read")
     if code != VIEW:
         numbers = numbers / (pixels.full or 1)
         _check_code(path, numbers, code)

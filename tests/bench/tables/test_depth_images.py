@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from written import png_bytes, write_exr
 
+from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.tables.depth import frames
 from normalbench.encodings.catalogue import DEPTH_ENCODINGS
 
@@ -170,6 +171,10 @@ def test_the_table_names_each_way_and_gates_and_python_take_images(run, tmp_path
     assert run("check", str(tmp_path / "gates.toml"))[0] == 1
     found = normalbench.depth(depths=tmp_path / "a.npy", near=0.5, far=80, depth="linear", backend="jax")
     assert set(found["depths"]) == {"a.npy"} and (found["relative_max"] < 0.01).all()
+    own = normalbench.depth(depths={"mine": SLOPE}, near=0.5, far=80, depth="linear", backend="jax")
+    assert set(own["depths"]) == {"mine"} and own["error_max"].tolist() == found["error_max"].tolist()
+    with pytest.raises(UsageError, match=r"mine is of int64 and shape \(24, 32\); give floats or unsigned"):
+        normalbench.depth(depths={"mine": SLOPE.astype(int)})
 
 
 def test_pictures_are_of_the_frame(run, tmp_path, gl):  # noqa: ARG001 # its driver is asked for by the table
