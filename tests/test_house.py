@@ -217,7 +217,7 @@ def test_the_list_command_knows_everything_there_is():
         *LIGHT_BUFFERS,
     }
     there |= {*FRAME_ENCODINGS, *FRAME_STORAGES, *frame_sets.FRAME_SETS, *EFFECTS}
-    there |= {*MOTION_ENCODINGS, *MOTION_STORAGES, *CURVE_ENCODINGS}
+    there |= {*MOTION_ENCODINGS, *MOTION_STORAGES, *CURVE_ENCODINGS, *listing.BY_BITS}
     assert listed == there | {*DEPTH_ENCODINGS, *DEPTH_STORAGES, *listing.FILES_OF_NORMALS, *listing.FILES_OF_DEPTHS}
     assert set(listing.FRAME_SETS) == set(frame_sets.FRAME_SETS)
 

@@ -23,6 +23,7 @@ FOLDERS = (
     "depth",
     "tangent_frames",
     "vectors",
+    "curves",
     "sweep",
     "tune",
     "published",

@@ -61,20 +61,37 @@ class CurveEncoding:
 
 @dataclass(frozen=True)
 class CurveCodec:
-    """A curve over a range, and the storage of its number, which lies in the first of the storage's channels."""
+    """A curve over a range, and the storage of its number, which lies in the first of the storage's channels.
+
+    Attributes:
+        range: the largest quantity that is kept.
+        rounding: one of `storage.ROUNDINGS`.
+        is_dithered: noise of a step is added to the number before it is rounded.
+    """
 
     encoding: CurveEncoding
     storage: Storage
     range: float = 1.0
+    rounding: str = "nearest"
+    is_dithered: bool = False
 
     @property
     def name(self) -> str:
         return f"{self.encoding.name}/{self.storage.name}"
 
     @property
-    def misfit(self) -> None:
-        """Every storage has a channel for one number."""
+    def misfit(self) -> str | None:
+        """Why the storage cannot hold what the encoding makes; None where it can: every one has a channel."""
+        if self.storage.is_centred:
+            return "centred numbers have a sign, and a curve's are from 0 to 1"
+        if self.is_dithered and self.storage.kind == "float":
+            return f"{self.storage.title} is of floats, whose steps are not even: noise is for fixed point"
         return None
+
+    @property
+    def step(self) -> float:
+        """How far apart the numbers are that a fixed-point channel tells apart."""
+        return 1.0 / self.storage.scale(0)
 
     @property
     def bits(self) -> int:
@@ -88,10 +105,14 @@ class CurveCodec:
         count = self.storage.count(0)
         return count if self.storage.is_biased else count // 2 + 1
 
-    def stored(self, x: Any) -> Any:
-        """The number of a quantity (float32, any shape, not negative) as it comes back from the storage."""
-        return store_texel(self.encoding.encode(x, self.range), self.storage, 0)
+    def stored(self, x: Any, noise: Any = 0.0) -> Any:
+        """The number of a quantity (float32, any shape, not negative) as it comes back from the storage.
 
-    def round_trip(self, x: Any) -> Any:
-        """Quantities encoded, stored and decoded."""
-        return self.encoding.decode(self.stored(x), self.range)
+        Args:
+            noise: what is added to the number before it is rounded, of the same shape.
+        """
+        return store_texel(self.encoding.encode(x, self.range) + noise, self.storage, 0, self.rounding)
+
+    def round_trip(self, x: Any, noise: Any = 0.0) -> Any:
+        """Quantities encoded, stored and decoded; see `stored`."""
+        return self.encoding.decode(self.stored(x, noise), self.range)

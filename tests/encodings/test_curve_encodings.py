@@ -5,6 +5,7 @@ import pytest
 from parity.comparison import ULP
 from parity.curves import range_of, shares
 
+from normalbench.bench.ground.options.storage_names import storages_named
 from normalbench.encodings.catalogue import CURVE_ENCODINGS
 from normalbench.encodings.codecs.curve_codec import CurveCodec
 from normalbench.encodings.storages.storage import CURVE_STORAGES
@@ -42,6 +43,8 @@ def test_a_curve_leads_from_nothing_to_the_range_and_back(name):
         ("fast_srgb", 1, 0.0, 0.0),
         ("log", 31, 1.0, 0.2),
         ("log", 31, 31.0, 1.0),
+        ("ray_bits", 1, 0.5, 15 / 255),
+        ("ray_bits", 1, 1.0, 1.0),
     ],
 )
 def test_a_curve_has_the_values_of_its_source(name, limit, quantity, number):
@@ -66,6 +69,27 @@ def test_the_first_step_from_nothing_is_the_curves(name, first):
     codec = CurveCodec(CURVE_ENCODINGS[name], CURVE_STORAGES["r8"])
     found = np.asarray(codec.round_trip(np.linspace(0, 0.1, 200_001, dtype=np.float32)))
     assert found[0] == 0 and found[found > 0].min() == pytest.approx(first, rel=1e-5)
+
+
+# A number f in [0, 1] and an integer in one byte, as engines write them: the byte of f and of an integer, and back.
+MIXED = {
+    "Unity HDRP: f (256 / 8 - 1) / 255 + i 256 / 8 / 255": (5, lambda f, i: (f * 31 + i * 32) / 255),
+    "Unreal's Encode71: f 127 / 255 + i 128 / 255": (7, lambda f, i: (f * 127 + i * 128) / 255),
+    "Godot: f 127 / 255, and 1 less that where a bit is set": (7, lambda f, i: abs(i - f * 127 / 255)),
+}
+
+
+@pytest.mark.parametrize("bits, written", MIXED.values(), ids=MIXED)
+@pytest.mark.parametrize("integer", [0, 1])
+def test_a_number_that_shares_a_byte_is_one_of_fewer_bits(bits, written, integer):
+    """The hardware rounds the sum to a byte, in which the number has the steps of `unorm:7` or `unorm:5`."""
+    f = np.random.default_rng(0).random(2**14)
+    byte = np.rint(255 * written(f, integer))
+    of_number = 255 - byte if "abs" in written.__code__.co_names and integer else byte % 2**bits
+    (storage,) = storages_named(f"unorm:{bits}")
+    by_fields = np.asarray(CurveCodec(CURVE_ENCODINGS["linear"], storage).round_trip(f.astype(np.float32)))
+    differs = abs(of_number / (2**bits - 1) - by_fields) > 1e-6
+    assert differs.mean() < 1e-3, f[differs][:3]
 
 
 def test_more_than_the_range_is_cut_off_by_fixed_point_and_kept_by_floats():

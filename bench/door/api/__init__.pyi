@@ -723,6 +723,32 @@ def vectors(
         on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
+def curves(
+    *,
+    encoding: Names = ...,
+    storage: Names | None = ...,
+    rounding: Names = ...,
+    backend: Names = ...,
+    range: Names | None = ...,
+    count: int = ...,
+    seed: int = ...,
+    on: str | None = ...,
+) -> Rows:
+    """How exact roughness, metalness, occlusion and channels of colours are in few bits: on a curve, over a range, rounded, cut off or dithered.
+
+    A curve lies in the first channel of a storage. `unorm:5` is five bits.
+
+    Args:
+        encoding: Curves, comma-separated, or all; `normalbench list` shows them.
+        storage: Storages, comma-separated, or all; `normalbench list` shows them. Default: each curve's usual.
+        rounding: nearest, truncate or dithered, comma-separated, or all; `normalbench list` shows them.
+        backend: jax, glsl; comma-separated, or all.
+        range: Largest quantities that are kept, comma-separated. Default: each curve's usual.
+        count: Quantities, evenly spread from 0 to the range.
+        seed: The random seed of uniform sets, points and scenes.
+        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
+    """
+
 def sweep(
     *,
     pipeline: Names = ...,

@@ -30,25 +30,38 @@ def _curve_defines(encoding: CurveEncoding) -> dict[str, object]:
 class CurvePasses(Passes):
     """A curve codec on a GL device; a context manager that releases what it holds there.
 
+    Attributes:
+        rounded_by: "device" where the format's own conversion rounds as the codec asks, else "shader".
+
     Raises:
         ShaderError: the curve's GLSL does not compile.
         FormatError: the device cannot render to the storage's format.
     """
 
     def __init__(self, device: Device, codec: CurveCodec):
-        _, rounds = rounding_defines(device, codec.storage)
+        self.rounded_by, rounds = rounding_defines(device, codec.storage, codec.rounding)
+        # A curve's number is a texel's, whatever its format.
+        rounds["STORAGE_BIASED"] = 0
         shaders, names = ("curve_encode.frag", "curve_decode.frag"), {"CURVE_ENCODING": codec.encoding.glsl}
-        super().__init__(device, shaders, _curve_defines(codec.encoding) | rounds, names, {"texels": codec.storage})
+        super().__init__(
+            device, shaders, _curve_defines(codec.encoding) | rounds, names, {"texels": codec.storage.target}
+        )
         for program in (self._encode.program, self._decode.program):
             set_uniforms(program, {"range": codec.range})
 
     def round_trip(self, quantities: np.ndarray) -> np.ndarray:
-        """Quantities, float32 of shape (height, width), encoded, stored and decoded.
+        """Quantities encoded, stored and decoded.
+
+        Args:
+            quantities: float32 of shape (height, width, 2): each, and what is added to its number before it is rounded.
+
+        Returns:
+            float32 of shape (height, width).
 
         Raises:
             FormatError: the device cannot render to the storage's format.
         """
-        (found,) = self._through([STORAGES["rgba32f"]], quantities=quantities[..., None])
+        (found,) = self._through([STORAGES["rgba32f"]], quantities=quantities)
         return found[..., 0]
 
 

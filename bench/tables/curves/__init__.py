@@ -1,0 +1,1 @@
+"""How exact roughness, metalness, occlusion and the channels of colours are."""

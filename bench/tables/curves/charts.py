@@ -1,0 +1,48 @@
+"""The chart of curves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from ....reports.charts.chart import Axis, Chart, Kind, Mark, Names, Scale, distinct
+from ..charts import having, one_backend
+from ..table import Row
+
+
+def charts(rows: Sequence[Row]) -> Iterator[Chart]:
+    """The largest distance that a viewer sees over the bits, a line for each curve, where there are several bits."""
+    usable = [row for row in one_backend(having(rows, "bits", "display_max")) if row["display_max"] > 0]
+    if len({row["bits"] for row in usable}) > 1:
+        yield curves_chart(sorted(usable, key=lambda row: row["bits"]))
+
+
+def curves_chart(rows: Sequence[Row]) -> Chart:
+    """The largest distance on the sRGB curve over the bits.
+
+    Args:
+        rows: of the curves table, one back end: encoding, rounding, range, bits, display_max.
+    """
+    points = [{"line": _called(row), "x": row["bits"], "y": row["display_max"]} for row in rows]
+    least = min(row["bits"] for row in rows)
+    best = min((row for row in rows if row["bits"] == least), key=lambda row: row["display_max"])
+    return Chart(
+        name="curves",
+        title=f"In {least} bits {_called(best)} is least wrong to a viewer: {best['display_max']:.3g} steps of 255",
+        subtitle="Largest distance of a colour's channel on the sRGB curve, over the bits of its code",
+        description="The largest distance of a channel from its decode on the sRGB curve, in 255ths, logarithmic, over "
+        "the bits of the code; a line for each curve and way to round. The figures are in the table.",
+        x=Axis(title="bits", scale=Scale.LINEAR),
+        y=Axis(title="largest distance, steps of 8-bit sRGB", scale=Scale.LOG),
+        rows=tuple(points),
+        colour=Names("line", distinct(points, "line")),
+        marks=(
+            Mark(kind=Kind.LINES, by=("line",), colour="line", tips=(("line", "curve"), ("x", "bits"), ("y", "steps"))),
+            Mark(kind=Kind.ENDS, by=("line",), colour="line", text="line"),
+        ),
+    )
+
+
+def _called(row: Row) -> str:
+    """A curve, and how it is rounded where that is not to the nearest."""
+    way = "" if row["rounding"] == "nearest" else f", {row['rounding']}"
+    return f"{row['encoding']}{way}" + ("" if row["range"] == 1 else f", range {row['range']:g}")

@@ -1,0 +1,148 @@
+"""The curves table: what quantities of a material come back as from a storage, by JAX and by GLSL."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+import jax
+import numpy as np
+
+from ....encodings.codecs.curve_codec import CurveCodec
+from ....encodings.storages.dither import Dither
+from ....encodings.storages.rounding import from_srgb, to_srgb
+from ....gbuffer.codecs.curve.curve_passes import CurvePasses
+from ....gbuffer.gl.device import FormatError, NoDeviceError, device
+from ....gbuffer.gl.shader import ShaderError
+from ...shaders.code.twin import NoTwinError
+from .table import TABLE
+
+# Why a device may not be able to give a row.
+UNMEASURABLE = (NoDeviceError, ShaderError, FormatError, NoTwinError)
+WIDTH = 256
+DITHERED, NEAREST = "dithered", "nearest"
+# The share of the range from which on relative errors count, and the steps of colours that a viewer sees.
+FROM, STEPS = 0.01, 255.0
+# Quantities that are just told from 0 are looked for from this share of the range on.
+LEAST = 1e-9
+
+Row = dict[str, Any]
+# float32 quantities of shape (count,), and what is added to their numbers, to what they come back as.
+Trip = Callable[[np.ndarray, np.ndarray], np.ndarray]
+How = dict[str, str]
+
+
+@dataclass(frozen=True)
+class Case:
+    """One row to measure.
+
+    Attributes:
+        rounding: one of `storage.ROUNDINGS`, or dithered.
+    """
+
+    codec: CurveCodec
+    rounding: str
+    backend: str
+    count: int
+    seed: int
+
+    @property
+    def name(self) -> str:
+        return f"{self.codec.name} {self.rounding} {self.codec.range:g} {self.backend}"
+
+
+@contextmanager
+def _trip_by_jax(codec: CurveCodec) -> Iterator[tuple[Trip, How]]:
+    compiled = jax.jit(codec.round_trip)
+    how = {"device": jax.devices()[0].device_kind, "rounded_by": "emulation"}
+    yield lambda x, noise: np.asarray(compiled(x, noise)), how
+
+
+@contextmanager
+def _trip_by_glsl(codec: CurveCodec) -> Iterator[tuple[Trip, How]]:
+    gl = device()
+    with CurvePasses(gl, codec) as passes:
+
+        def trip(x: np.ndarray, noise: np.ndarray) -> np.ndarray:
+            given = np.pad(np.stack([x, noise], axis=1), ((0, -len(x) % WIDTH), (0, 0)), mode="edge")
+            return passes.round_trip(given.reshape(-1, WIDTH, 2)).ravel()[: len(x)]
+
+        yield trip, {"device": gl.renderer, "rounded_by": passes.rounded_by}
+
+
+Backend = Callable[[CurveCodec], AbstractContextManager[tuple[Trip, How]]]
+BACKENDS: Mapping[str, Backend] = MappingProxyType({"jax": _trip_by_jax, "glsl": _trip_by_glsl})
+
+
+def measure(case: Case) -> Row:
+    """One row; one that the device cannot give has its reason in `skipped` and no figures."""
+    codec = case.codec
+    row = TABLE.empty() | {
+        "encoding": codec.encoding.name,
+        "storage": codec.storage.name,
+        "rounding": case.rounding,
+        "backend": case.backend,
+        "range": codec.range,
+        "bits": codec.bits,
+        "count": case.count,
+        "seed": case.seed,
+    }
+    try:
+        with BACKENDS[case.backend](codec) as (trip, how):
+            return row | _figures(case, trip) | how
+    except UNMEASURABLE as error:
+        return row | {"skipped": str(error)}
+
+
+def _figures(case: Case, trip: Trip) -> Row:
+    largest = case.codec.range
+    linear = np.linspace(0.0, 1.0, case.count)
+    x = (linear * largest).astype(np.float32)
+    back = _through(case, trip, x)
+    apart = back.astype(np.float64) - x
+    counted = x >= FROM * largest
+    ends = _through(case, trip, np.array([0.0, largest], np.float32), is_still=True)
+    return {
+        "error_mean": float(abs(apart).mean()),
+        "error_max": float(abs(apart).max()),
+        "bias": float(apart.mean()),
+        "relative_max": float(100 * (abs(apart[counted]) / x[counted]).max()),
+        "least": _least(case, trip, ends[0]),
+        "zero": float(ends[0]),
+        "one": float(ends[1]) / largest,
+        **_display_columns(case, trip, linear),
+    }
+
+
+def _display_columns(case: Case, trip: Trip, shown: np.ndarray) -> Row:
+    """How far colours are off on the sRGB curve; `shown` are values of that curve."""
+    largest = case.codec.range
+    x = np.asarray(from_srgb(shown.astype(np.float32))) * np.float32(largest)
+    back = _through(case, trip, x.astype(np.float32)) / np.float32(largest)
+    apart = STEPS * abs(np.asarray(to_srgb(np.clip(back, 0.0, 1.0)), np.float64) - shown)
+    return {"display_mean": float(apart.mean()), "display_max": float(apart.max())}
+
+
+def _through(case: Case, trip: Trip, x: np.ndarray, is_still: bool = False) -> np.ndarray:
+    """Quantities (float32, any number) through a codec, dithered where that is asked for unless `is_still`."""
+    noise = np.zeros_like(x)
+    if case.rounding == DITHERED and not is_still:
+        tile = Dither((case.codec.step,), 0).added[..., 0].ravel()
+        # A seed begins the tile elsewhere.
+        noise = np.resize(np.roll(tile, case.seed), len(x)).astype(np.float32)
+    return trip(x, noise)
+
+
+def _least(case: Case, trip: Trip, zero: np.float32) -> float | None:
+    """The smallest quantity that is told from 0, to a thousandth; None where the range is not."""
+    low, high = LEAST * case.codec.range, case.codec.range
+    for _ in range(2):
+        tried = np.geomspace(low, high, WIDTH * 4).astype(np.float32)
+        told = np.flatnonzero(_through(case, trip, tried, is_still=True) != zero)
+        if not told.size:
+            return None
+        low, high = float(tried[max(told[0] - 1, 0)]), float(tried[told[0]])
+    return high

@@ -1,0 +1,76 @@
+"""The table of curves: what numbers of a material lose, such as a roughness or a channel of a colour."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from ...ground.options.option import Backends, Names, Option, Seed
+from .. import shared_columns as shared
+from ..table import Column, Role, Section, Table
+
+KEY, HOW = Role.KEY, Role.HOW
+
+
+@dataclass(frozen=True, kw_only=True)
+class CurvesOptions:
+    """What `curves` measures. Names and numbers are comma-separated; no storage: where each curve usually lies."""
+
+    encoding: Annotated[str, Option("--encoding", f"Curves, {Names}.")] = "all"
+    storage: Annotated[str | None, Option("--storage", f"Storages, {Names}. Default: each curve's usual.")] = None
+    rounding: Annotated[str, Option("--rounding", f"nearest, truncate or dithered, {Names}.")] = "nearest"
+    backend: Backends = "jax,glsl"
+    range: Annotated[
+        str | None, Option("--range", "Largest quantities that are kept, comma-separated. Default: each curve's usual.")
+    ] = None
+    count: Annotated[int, Option("--count", "Quantities, evenly spread from 0 to the range.")] = 2**16
+    seed: Seed = 0
+
+
+DISPLAY = "of the sRGB curve, in steps of 8 bits, over quantities that are evenly spread on that curve"
+COLUMNS = (
+    Column("encoding", "How a quantity becomes a number.", KEY),
+    shared.STORAGE,
+    Column("rounding", "How the number is rounded; dithered adds blue noise of a step before the nearest.", KEY),
+    shared.BACKEND,
+    Column("range", "The largest quantity that is kept.", KEY),
+    Column("bits", "Bits of the code: those of a channel."),
+    Column("error_mean", "Mean distance of the decoded quantity from the true one.", better="less"),
+    Column("error_max", "Largest distance of the decoded quantity from the true one.", better="less"),
+    Column("bias", "Mean of the decoded quantity minus the true one: what dithering and averaging leave."),
+    Column(
+        "relative_max",
+        "Largest distance over the true quantity, of quantities from a hundredth of the range on.",
+        unit="%",
+        better="less",
+    ),
+    Column("display_mean", f"Mean distance {DISPLAY}.", better="less", drops=2),
+    Column("display_max", f"Largest distance {DISPLAY}.", better="less"),
+    Column("least", "The smallest quantity that does not decode to what 0 decodes to.", better="less", drops=3),
+    Column("zero", "What 0 decodes to.", drops=1),
+    Column("one", "What the range decodes to, as a share of the range.", drops=1),
+    Column("count", "How many quantities were measured.", HOW, drops=6),
+    shared.DEVICE,
+    shared.ROUNDED_BY,
+    shared.SEED,
+    shared.SKIPPED,
+)
+
+TABLE = Table(
+    name="curves",
+    package=__package__ or "",
+    help="How exact roughness, metalness, occlusion and channels of colours are in few bits: on a curve, over a range, "
+    "rounded, cut off or dithered.\n\nA curve lies in the first channel of a storage. `unorm:5` is five bits.",
+    example="normalbench curves --encoding linear,square_root,srgb --storage unorm:4..8 --backend jax",
+    options=CurvesOptions,
+    columns=COLUMNS,
+    in_all=False,
+    single={"encoding": "linear", "storage": "r8", "backend": "jax"},
+    section=Section(
+        title="What roughness and colours lose",
+        short="Curves",
+        intro="A number of a material in few bits: how far is it off, in itself and as a viewer sees a colour of it?",
+        method="Quantities that are evenly spread from 0 to the range are put on the curve, stored and read back. The "
+        "distances of colours are on the sRGB curve, in 255ths, of quantities that are evenly spread there.",
+    ),
+)

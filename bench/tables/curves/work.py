@@ -1,0 +1,85 @@
+"""How the table of curves is measured and shown."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+from ....encodings.catalogue import CURVE_ENCODINGS
+from ....encodings.codecs.curve_codec import CurveCodec
+from ....encodings.storages.storage import CURVE_STORAGES
+from ...ground.choose import choose
+from ...ground.machine.devices import require_device, require_jax
+from ...ground.options.backends import backends_named
+from ...ground.options.counts import check_seed, checked_numbers, in_range
+from ...ground.options.storage_names import storages_named
+from ...ground.options.targets import that_fit
+from ..charts import one_backend
+from ..table import NoOutputs, Row, Sheet, Step, Work, each
+from . import measure
+from .charts import charts
+from .table import CurvesOptions
+
+ROUNDINGS = (measure.NEAREST, "truncate", measure.DITHERED)
+MAX_QUANTITIES, RANGES = 2**22, (1e-4, 65504.0)
+
+
+def cases(options: CurvesOptions) -> list[measure.Case]:
+    """One case for each curve, range, storage, rounding and back end.
+
+    Raises:
+        UsageError: unknown names, numbers beyond what is possible, or nothing that fits.
+        MissingError: only GLSL is asked for and there is no GL device.
+    """
+    check_seed(options.seed)
+    in_range("--count", options.count, 2, MAX_QUANTITIES)
+    roundings = choose("rounding", options.rounding, dict(zip(ROUNDINGS, ROUNDINGS, strict=True)))
+    chosen = [(codec, way) for way in roundings for codec in codecs(options, way)]
+    backends = backends_named(options.backend, measure.BACKENDS)
+    require_jax()
+    if backends == ["glsl"]:
+        require_device()
+    return [
+        measure.Case(codec, way, backend, options.count, options.seed) for codec, way in chosen for backend in backends
+    ]
+
+
+def codecs(options: CurvesOptions, way: str = measure.NEAREST) -> list[CurveCodec]:
+    """The codecs asked for, rounded in a way; those that do not fit are named on standard error."""
+    said = options.range and checked_numbers("--range", options.range, float, *RANGES)
+    return that_fit(
+        CurveCodec(encoding, storage, largest, "truncate" if way == "truncate" else "nearest", way == measure.DITHERED)
+        for encoding in choose("curve", options.encoding, CURVE_ENCODINGS)
+        for storage in storages_named(options.storage or ",".join(encoding.storages), CURVE_STORAGES, "curve storage")
+        for largest in said or (encoding.usual_range,)
+    )
+
+
+def _steps(options: CurvesOptions, _: NoOutputs) -> list[Step]:
+    return [Step(_key(case), case, case.name) for case in cases(options)]
+
+
+def _key(case: measure.Case) -> Row:
+    key: Row = {"codec": case.codec.name, "rounding": case.rounding, "backend": case.backend}
+    return key | {"range": case.codec.range, "count": case.count, "seed": case.seed}
+
+
+def in_order(rows: Sequence[Row]) -> list[Row]:
+    """Rows by bits, the least largest error first; those without figures last."""
+    return sorted(rows, key=lambda row: (row["bits"], math.inf if row["error_max"] is None else row["error_max"]))
+
+
+def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
+    measured = one_backend([row for row in rows if row["error_mean"] is not None])
+    names = ("encoding", "storage", "rounding", "range", "bits", "error_mean", "error_max", "display_max", "least")
+    if measured:
+        yield Sheet("numbers of materials, by bits", [{name: row[name] for name in names} for row in measured])
+
+
+WORK = Work(
+    steps=_steps,
+    measure=each(lambda case: [measure.measure(case)]),
+    finish=in_order,
+    summary=_summary,
+    charts=charts,
+)

@@ -1,0 +1,116 @@
+"""`normalbench curves`: errors that theory gives, dithering, what it prints, and what it says of bad input."""
+
+import json
+
+import numpy as np
+import pytest
+
+from normalbench.bench.ground.machine import devices
+from normalbench.bench.ground.options.storage_names import storages_named
+from normalbench.bench.tables.curves import measure as curves
+from normalbench.bench.tables.curves import work
+from normalbench.bench.tables.curves.table import CurvesOptions
+from normalbench.bench.tables.registry import TABLES
+from normalbench.encodings.catalogue import CURVE_ENCODINGS
+from normalbench.encodings.codecs.curve_codec import CurveCodec
+from normalbench.gbuffer.gl.device import NoDeviceError
+
+QUICK = ["curves", "--backend", "jax", "--count", "4096", "--format", "json"]
+
+
+def row(encoding: str, storage: str, rounding: str = "nearest", backend: str = "jax") -> dict:
+    (chosen,) = storages_named(storage)
+    way = "truncate" if rounding == "truncate" else "nearest"
+    codec = CurveCodec(CURVE_ENCODINGS[encoding], chosen, 1.0, way, rounding == "dithered")
+    found = curves.measure(curves.Case(codec, rounding, backend, 2**16, 0))
+    assert found["skipped"] is None and tuple(found) == tuple(TABLES["curves"].empty()), found
+    return found
+
+
+@pytest.mark.parametrize("bits", [1, 3, 5, 8, 12])
+def test_a_line_is_off_by_a_quarter_of_a_step_on_average_and_by_half_of_one(bits):
+    step, found = 1 / (2**bits - 1), row("linear", f"unorm:{bits}")
+    assert found["error_mean"] == pytest.approx(step / 4, rel=0.01)
+    assert found["error_max"] == pytest.approx(step / 2, rel=0.01)
+    assert found["zero"] == 0 and found["one"] == 1 and found["least"] == pytest.approx(step / 2, rel=0.01)
+    assert abs(found["bias"]) < step / 500 and found["bits"] == bits
+
+
+def test_cut_off_numbers_are_half_a_step_too_small_and_dithered_ones_right_on_average():
+    """And a dithered one is off by a third of a step on average: of all it may become, by its share."""
+    step = 1 / 31
+    cut, dithered = row("linear", "unorm:5", "truncate"), row("linear", "unorm:5", "dithered")
+    assert cut["bias"] == pytest.approx(-step / 2, rel=0.01) and cut["error_max"] == pytest.approx(step, rel=0.01)
+    assert abs(dithered["bias"]) < step / 100
+    assert dithered["error_mean"] == pytest.approx(step / 3, rel=0.03)
+    assert dithered["zero"] == 0
+
+
+def test_eight_bits_on_the_srgb_curve_are_half_a_step_of_what_a_viewer_sees():
+    assert row("srgb", "r8")["display_max"] == pytest.approx(0.5, abs=0.005)
+    # 12.92 steps of the curve to one of the line near black.
+    assert row("linear", "r8")["display_max"] == pytest.approx(12.92 / 2, rel=0.01)
+
+
+def test_a_floats_error_is_a_share_of_the_quantity():
+    found = row("linear", "float:5:10")
+    assert found["relative_max"] == pytest.approx(100 * 2.0**-11, rel=0.05)
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("storage", ["r8", "unorm:5", "ufloat:5:6", "rgba8_snorm", "snorm_full:8"])
+@pytest.mark.parametrize("rounding", ["nearest", "truncate"])
+def test_both_languages_give_the_same_figures(storage, rounding):
+    by_jax, by_gl = (row("square_root", storage, rounding, backend) for backend in ("jax", "glsl"))
+    for name in ("error_mean", "error_max", "display_mean", "zero", "one"):
+        assert by_jax[name] == pytest.approx(by_gl[name], rel=1e-3, abs=1e-7), name
+
+
+@pytest.mark.usefixtures("gl")
+def test_dithering_is_the_same_in_both_languages():
+    by_jax, by_gl = (row("square_root", "unorm:6", "dithered", backend) for backend in ("jax", "glsl"))
+    assert by_jax["error_mean"] == pytest.approx(by_gl["error_mean"], rel=1e-3)
+
+
+def test_rows_are_by_bits_with_the_best_first(run):
+    status, out, err = run(*QUICK, "--encoding", "linear,srgb", "--storage", "unorm:4..6")
+    rows = json.loads(out)
+    assert status == 0 and not err and [found["bits"] for found in rows] == [4, 4, 5, 5, 6, 6]
+    assert all(one["error_max"] <= other["error_max"] for one, other in zip(rows[::2], rows[1::2], strict=True))
+
+
+def test_a_curve_lies_where_it_usually_does_over_its_usual_range():
+    cases = work.cases(CurvesOptions(backend="jax"))
+    assert {case.codec.encoding.name for case in cases} == set(CURVE_ENCODINGS)
+    assert {case.codec.range for case in cases if case.codec.encoding.name == "log"} == {31.0}
+
+
+@pytest.mark.parametrize(
+    "words, said",
+    [
+        (["--encoding", "cubed"], ["'cubed'", "squared", "fast_srgb"]),
+        (["--storage", "r9"], ["'r9'", "rgb10a2"]),
+        (["--storage", "rg8_centred"], ["centred numbers have a sign"]),
+        (["--storage", "r16f", "--rounding", "dithered"], ["noise is for fixed point"]),
+        (["--rounding", "up"], ["'up'", "truncate", "dithered"]),
+        (["--range", "0"], ["--range"]),
+        (["--count", "1"], ["--count"]),
+        (["--backend", "vulkan"], ["'vulkan'"]),
+    ],
+    ids=lambda value: value[-1] if isinstance(value, list) else None,
+)
+def test_bad_input_is_one_line_that_says_what_would_be_right(run, words, said):
+    status, out, err = run(*QUICK, *words)
+    assert status == 2 and not out and err.count("\n") == 1 and all(word in err for word in said), err
+
+
+def test_without_a_device_glsl_rows_say_why(run, monkeypatch):
+    def none():
+        raise NoDeviceError("no device here")
+
+    for module in (curves, devices):
+        monkeypatch.setattr(module, "device", none)
+    status, out, _ = run("curves", "--encoding", "linear", "--storage", "r8", "--count", "256", "--format", "json")
+    by_backend = {found["backend"]: found for found in json.loads(out)}
+    assert status == 0 and by_backend["glsl"]["skipped"] == "no device here"
+    assert np.isfinite(by_backend["jax"]["error_mean"])
