@@ -65,6 +65,20 @@ DEPTH_STORAGES: Mapping[str, DepthStorage] = MappingProxyType(
 )
 
 
+def depth_storage_of(storage: Storage) -> DepthStorage | None:
+    """The storage of a depth that bits name, `unorm:20` or `float:5:10`; None of what holds no depth by itself."""
+    alike = (one for one in DEPTH_STORAGES.values() if one.home == "channel")
+    if storage.kind == "float":
+        return next((one for one in alike if one.format.float_form(0) == storage.float_form(0)), None)
+    if (storage.kind, storage.channels) != ("unorm", 1):
+        return None
+    (bits,) = storage.bits
+    title = f"{bits} bits across the last channels of RGBA8"
+    return DEPTH_STORAGES.get(f"packed{bits}") or DepthStorage(
+        f"packed{bits}", title, STORAGES["rgba8"], "packed", bits
+    )
+
+
 def fixed(c, scale: int, is_signed: bool):
     """The unsigned integer (uint32) for c in [0, 1] (float32, any shape) where `scale` stands for 1; NaN is 0.
 
@@ -99,7 +113,7 @@ def store_bytes(integer, bits: int):
     """An unsigned integer over channels of 8-bit UNORM, the highest byte first, and back. No byte is rounded by itself,
     so none can carry into another."""
     together = jnp.zeros_like(integer)
-    for shift in range(bits - 8, -1, -8):
+    for shift in range((bits - 1) // 8 * 8, -1, -8):
         byte = ((integer >> shift) & 0xFF).astype(jnp.float32)
         texel = store_unorm(byte / 255.0, scale_of(255))
         together = together | ((texel * 255.0 + 0.5).astype(jnp.uint32) << shift)

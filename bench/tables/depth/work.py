@@ -14,7 +14,7 @@ import numpy as np
 from ....encodings.catalogue import DEPTH_ENCODINGS, LIGHT_BUFFERS
 from ....encodings.codecs.depth_codec import REBUILDS, DepthCodec
 from ....encodings.shared.position import Camera
-from ....encodings.storages.depth_storage import DEPTH_STORAGES
+from ....encodings.storages.depth_storage import DEPTH_STORAGES, DepthStorage, depth_storage_of
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device
 from ....gbuffer.layouts.presets import LAYOUTS
@@ -28,6 +28,7 @@ from ...ground.choose import choose
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_numbers, in_range
+from ...ground.options.storage_names import storages_said
 from ...ground.options.targets import what_is_left
 from ...ground.output.errors import UsageError
 from ...ground.output.writing import check_folder, whole_file
@@ -87,7 +88,7 @@ def codecs(options: DepthOptions) -> list[tuple[DepthCodec, str]]:
     asked = None if options.rebuild is None else choose("rebuild", options.rebuild, {name: name for name in REBUILDS})
     for encoding in choose("depth", options.depth, DEPTH_ENCODINGS):
         names = ",".join(encoding.storages) if options.storage is None else options.storage
-        for storage in choose("depth storage", names, DEPTH_STORAGES):
+        for storage in _storages_named(names):
             codec = DepthCodec(encoding, storage)
             if codec.misfit:
                 complaints.append(f"{codec.name}: {codec.misfit}")
@@ -99,6 +100,14 @@ def codecs(options: DepthOptions) -> list[tuple[DepthCodec, str]]:
                 ways = ", ".join(asked or ())
                 complaints.append(f"{codec.name}: {ways}: only for codes stored in a depth buffer")
     return what_is_left(made, complaints)
+
+
+def _storages_named(names: str) -> list[DepthStorage]:
+    """Storages of depths by their names, or by their bits: unorm:20. Raises UsageError."""
+    said = storages_said(names, DEPTH_STORAGES)
+    made = {word: one and depth_storage_of(one) for word, one in said.items()}
+    known = {**DEPTH_STORAGES, **{word: one for word, one in made.items() if one}}
+    return list(dict.fromkeys(choose("depth storage", ",".join(said), known)))
 
 
 def _ranges(options: DepthOptions) -> list[tuple[float, float]]:

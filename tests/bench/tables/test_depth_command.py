@@ -172,3 +172,19 @@ def test_without_a_gl_driver_the_jax_rows_are_there(run, tmp_path, monkeypatch):
     for arguments in (["--backend", "glsl"], ["--images", str(tmp_path / "pictures")]):
         status, _, err = run(*QUICK[:-2], *arguments)
         assert status == 3 and err.count("\n") == 1 and "install a GL driver" in err
+
+
+def test_bits_of_a_depth_are_said(run):
+    """Linear depth in n bits is off by half of 1 / (2^n - 1) of the far plane, along its ray."""
+    words = ("--depth", "linear", "--storage", "unorm:12..14", "--backend", "jax", "--near", "0.1", "--far", "1000")
+    status, out, err = run("depth", *words, "--format", "json")
+    rows = json.loads(out)
+    found = {row["storage"]: row for row in rows if row["distance"] == 100}
+    assert status == 0 and not err and list(found) == ["packed12", "packed13", "packed14"]
+    ray = found["packed12"]["half_step"] / (1000 / 4095 / 2)
+    assert 1 < ray < 2, "the farthest pixel's"
+    for bits, row in zip((12, 13, 14), found.values(), strict=True):
+        assert row["half_step"] == pytest.approx(ray * 1000 / (2**bits - 1) / 2, rel=1e-3)
+        assert row["error_max"] == pytest.approx(row["half_step"], rel=0.05)
+    status, _, err = run("depth", "--storage", "unorm:9:7")
+    assert status == 2 and "unknown depth storage 'unorm:9:7'" in err and err.count("\n") == 1
