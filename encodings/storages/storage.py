@@ -67,8 +67,8 @@ class Storage:
         bits: bits of each channel, in channel order.
         internal_format: the GL enum.
         curved: how many of its channels, the first, keep linear light by the sRGB curve.
-        part: bits of each channel that numbers lie across as integers: 8 of RGBA8, 16 of RGBA16, or 0 where each number
-            has a channel.
+        part: bits of each channel of a target that numbers lie across as integers, 8 or 16; 0 where each number has a
+            channel.
         is_centred: the integers of SNORM lie in UNORM channels, 2^(n-1) - 1 more than themselves.
         holds_unit: its texels hold numbers in [0, 1] though it has a sign: those of an encoder that returns them so.
         is_said: somebody said its bits, however few they are.
@@ -120,7 +120,7 @@ class Storage:
         """The format of the render target: another one where numbers are laid across its channels, or centred."""
         if self.is_centred:
             return STORAGES[self.name.removesuffix(CENTRED)]
-        return STORAGES[TARGETS[self.part]] if self.is_packed else self
+        return FORMATS[TARGETS[self.part][-(-sum(self.bits) // self.part)]] if self.is_packed else self
 
     @property
     def only_measured(self) -> str:
@@ -194,8 +194,10 @@ def of_unit(storage: Storage) -> Storage:
 
 
 CENTRED = "_centred"
-# By the bits of a channel that numbers are laid across: the target.
-TARGETS: Mapping[int, str] = MappingProxyType({8: "rgba8", 16: "rgba16"})
+# By the bits of a channel that numbers are laid across, and by how many channels they take: the target.
+TARGETS: Mapping[int, tuple[str, ...]] = MappingProxyType(
+    {8: ("", "r8", "rg8", "rgba8", "rgba8"), 16: ("", "r16", "rg16", "rgba16", "rgba16")}
+)
 RGBA8 = 0x8058
 R11G11B10F = Storage("r11g11b10f", "R11F G11F B10F", "float", (11, 11, 10), 0x8C3A)
 STORAGES: Mapping[str, Storage] = MappingProxyType(

@@ -123,19 +123,19 @@ class Texels:
             number = code[channel] if channel < self._components else np.zeros_like(code[0])
             whole = whole << np.uint64(bits) | words(number, storage, channel).astype(np.uint64)
         whole = whole << np.uint64(self._spare_bits)
-        shifts, most = range(3 * part, -1, -part), 2**part - 1
+        shifts, most = range((self._storage.channels - 1) * part, -1, -part), 2**part - 1
         return np.stack([(whole >> np.uint64(s) & np.uint64(most)).astype(F32) * F32(1 / most) for s in shifts])
 
     @property
     def _spare_bits(self) -> int:
-        return 4 * self._codec.storage.part - sum(self._codec.storage.bits)
+        return self._storage.channels * self._codec.storage.part - sum(self._codec.storage.bits)
 
     def _unpacked_numbers(self, texels: np.ndarray) -> np.ndarray:
         storage, whole = self._codec.storage, np.zeros(texels.shape[1:], np.uint64)
         most = 2**storage.part - 1
-        for held in texels[:4]:
+        for held in texels[: self._storage.channels]:
             whole = whole << np.uint64(storage.part) | np.floor(held * F32(most) + F32(0.5)).astype(np.uint64)
-        shift, numbers = 4 * storage.part, []
+        shift, numbers = self._storage.channels * storage.part, []
         for channel, bits in enumerate(storage.bits):
             shift -= bits
             integer = (whole >> np.uint64(shift) & np.uint64(2**bits - 1)).astype(np.uint32)
