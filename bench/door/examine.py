@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import shutil
 import textwrap
 from collections.abc import Mapping, Sequence
@@ -23,7 +24,9 @@ from ..ground.options.storage_names import storages_named
 from ..ground.output.errors import UsageError, tell
 from ..ground.output.writing import check_plot, save_plot, write, write_text
 from ..shaders.languages.source_options import in_names
-from ..shaders.languages.words import file_of
+from ..shaders.languages.words import file_of, without_settings
+from ..subjects.codecs.kinds.named import examined_code, kind_of, notes_of
+from ..subjects.codecs.kinds.own import OwnKind
 from ..subjects.codecs.user_encodings import ANY, Examined, examined
 from ..subjects.normals.normal_sets import NORMAL_SETS
 from ..tables.quality.measure import Case, measure
@@ -66,7 +69,16 @@ def examine_encoding(
     file = Path(in_names({"encoding": str(file), **sources})["encoding"])
     check_plot(plot)
     kept = _storage(storage or STORAGE)
-    found = examined(file, choose_one("domain", domain, DOMAINS) if domain else ANY)
+    try:
+        found = examined(file, choose_one("domain", domain, DOMAINS) if domain else ANY)
+    except UsageError as error:
+        # What it is of in place of normals is asked once it is none of these.
+        if (kind := kind_of(file, str(error))) is None:
+            raise
+        given = {"plot": plot, "storage": storage, "domain": domain}
+        if option := next((name for name, value in given.items() if value), ""):
+            raise UsageError(f"{file}: --{option} is of normals, and this file is of {kind.words.plural}") from None
+        return _examine_own(file, kind, format, output)
     codec = Codec(found.encoding, kept)
     if storage and codec.misfit:
         raise UsageError(f"{codec.name}: {codec.misfit}")
@@ -84,6 +96,25 @@ def examine_encoding(
         "domain": _domain(found),
         "functions": found.functions,
     }
+    _write(about, wrong, notes, format, output)
+    if plot and found.is_measurable:
+        save_plot(plot, _picture(codec, found))
+        tell(f"the error over the sphere is in {plot}")
+    return int(bool(wrong))
+
+
+def _examine_own(file: Path, kind: OwnKind, format: str, output: Path | None) -> int:
+    """The same of a code of something else than normals."""
+    own = examined_code(kind, file)
+    command = kind.words.command.format(shlex.quote(str(without_settings(file))))
+    about = {"file": file_of(file).name, "encoding": own.made.name, "domain": kind.words.plural}
+    measures = [] if "broken" in own.found else [f"`{command}` measures it"]
+    wrong, notes = own.found.get("wrong", []), [*notes_of(own), *measures]
+    _write(about | {"functions": own.made.named}, wrong, notes, format, output)
+    return int(bool(wrong))
+
+
+def _write(about: dict[str, str], wrong: Sequence[str], notes: Sequence[str], format: str, output: Path | None) -> None:
     said = [*_lines("finding", wrong), *([] if wrong else [(RIGHT, "verdict")]), *_lines("note", notes)]
     if format in FOR_PEOPLE:
         write_text(lambda: _text(about, wrong, notes, format), output)
@@ -91,10 +122,6 @@ def examine_encoding(
         functions = about.pop("functions")
         rows = [about | {"finding": line, "kind": kind, "functions": functions} for line, kind in said]
         write(rows, format, output)
-    if plot and found.is_measurable:
-        save_plot(plot, _picture(codec, found))
-        tell(f"the error over the sphere is in {plot}")
-    return int(bool(wrong))
 
 
 def _lines(kind: str, lines: Sequence[str]) -> list[tuple[str, str]]:

@@ -66,7 +66,9 @@ def sheets(table: Table, done: Measured) -> Iterator[Sheet]:
         yield from table.work.shown(done)
         return
     groups: dict[object, list[Row]] = {}
-    for row in table.without_hidden(done.rows):
+    # What lacks a twin alone is said beside the rows.
+    shown = [row for row in done.rows if not lacks_twin(row.get("skipped") or "")]
+    for row in table.without_hidden(shown):
         groups.setdefault(row[table.by] if table.by else None, []).append(row)
     for rows in groups.values():
         yield Sheet("", rows, table.drops(rows))

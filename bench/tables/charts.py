@@ -9,6 +9,7 @@ from typing import Any
 from ...reports.page.codec_key import CodecKey
 from ...reports.page.verdict import BACKENDS, is_number
 from ..ground.options import backends
+from ..ground.output.errors import lacks_twin
 from .table import Row
 
 # A histogram's least angle: nothing of 32 bits and less is finer, and what is 0 has no logarithm.
@@ -26,6 +27,11 @@ def lines_of(rows: Sequence[Row]) -> list[str]:
     """What tells each row of a chart apart: its codec, and what else differs between the rows."""
     others = [name for name in LINES if len({str(row.get(name)) for row in rows}) > 1]
     return [" ".join([CodecKey.of(row).label, *(str(row.get(name)) for name in others)]) for row in rows]
+
+
+def but_without_twins(rows: Sequence[Row]) -> list[Row]:
+    """Rows but those that have no figures for want of a Python twin alone, which is said beside them."""
+    return [row for row in rows if not lacks_twin(row.get("skipped") or "")]
 
 
 def one_backend(rows: Sequence[Row]) -> list[Row]:

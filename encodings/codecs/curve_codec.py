@@ -35,6 +35,7 @@ class CurveEncoding:
         inverse_error: how far a quantity that is encoded and decoded without rounding comes back from itself, in shares
             of the range; 0 where the two maps are each other's inverse.
         constants: numbers that both languages need, by their GLSL name.
+        functions: what the names of its GLSL functions begin with, of a user's file; empty where that is the name.
     """
 
     name: str
@@ -49,13 +50,19 @@ class CurveEncoding:
     usual_range: float = 1.0
     inverse_error: float = 0.0
     constants: Mapping[str, float | tuple[float, ...]] = field(default_factory=dict)
+    functions: str = ""
+
+    @property
+    def prefix(self) -> str:
+        """What the names of its GLSL functions begin with."""
+        return self.functions or self.name
 
     @property
     def signatures(self) -> tuple[str, str]:
         """What its GLSL file defines."""
         return (
-            f"float {self.name}_encode_curve(float x, float range)",
-            f"float {self.name}_decode_curve(float e, float range)",
+            f"float {self.prefix}_encode_curve(float x, float range)",
+            f"float {self.prefix}_decode_curve(float e, float range)",
         )
 
 

@@ -58,6 +58,7 @@ class DepthEncoding:
         own_units: whether float formats hold the depth in the scene's own units, which is a far plane at 1: they need
             no range.
         constants: numbers that both languages need, by their GLSL name.
+        functions: what the names of its GLSL functions begin with, of a user's file; empty where that is the name.
     """
 
     name: str
@@ -73,13 +74,19 @@ class DepthEncoding:
     signed: bool = False
     own_units: bool = False
     constants: Mapping[str, Any] = field(default_factory=dict)
+    functions: str = ""
+
+    @property
+    def prefix(self) -> str:
+        """What the names of its GLSL functions begin with."""
+        return self.functions or self.name
 
     @property
     def signatures(self) -> tuple[str, str]:
         """What its GLSL file defines."""
         return (
-            f"float {self.name}_encode_depth(float depth, float near, float far)",
-            f"float {self.name}_decode_depth(float number, float near, float far)",
+            f"float {self.prefix}_encode_depth(float depth, float near, float far)",
+            f"float {self.prefix}_decode_depth(float number, float near, float far)",
         )
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ..rotation import Frame
 from ..storages.rounding import store_number
-from ..storages.storage import Storage
+from ..storages.storage import Storage, of_unit
 from ..vec import TINY, Vec4
 from .codec import numbers_misfit
 from .frame_encoding import FrameEncoding
@@ -22,6 +22,10 @@ class FrameCodec:
 
     encoding: FrameEncoding
     storage: Storage
+
+    def __post_init__(self) -> None:
+        if self.encoding.is_unit:
+            object.__setattr__(self, "storage", of_unit(self.storage))
 
     @property
     def name(self) -> str:

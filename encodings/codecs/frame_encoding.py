@@ -38,6 +38,8 @@ class FrameEncoding:
         settle: (frame, the code as it comes back) -> the code to store, where some numbers depend on how others were
             rounded; those others stay as they came back.
         constants: numbers that both languages need, by their GLSL name.
+        functions: what the names of its GLSL functions begin with, of a user's file; empty where that is the name.
+        is_unit: its author's functions give and take numbers in [0, 1], u for c = 2 u - 1: every storage holds u.
     """
 
     name: str
@@ -53,6 +55,13 @@ class FrameEncoding:
     ulps_reason: str
     settle: Callable[[Frame, Vec4], Vec4] | None = None
     constants: Mapping[str, float | tuple[float, ...]] = field(default_factory=dict)
+    functions: str = ""
+    is_unit: bool = False
+
+    @property
+    def prefix(self) -> str:
+        """What the names of its GLSL functions begin with."""
+        return self.functions or self.name
 
     @property
     def components(self) -> int:
@@ -62,9 +71,9 @@ class FrameEncoding:
     @property
     def signatures(self) -> tuple[str, ...]:
         """What its GLSL file defines."""
-        settle = (f"vec4 {self.name}_settle(Frame frame, vec4 stored)",) if self.settle else ()
+        settle = (f"vec4 {self.prefix}_settle(Frame frame, vec4 stored)",) if self.settle else ()
         return (
-            f"vec4 {self.name}_encode(Frame frame, float least)",
-            f"Frame {self.name}_decode(vec4 e, float least)",
+            f"vec4 {self.prefix}_encode(Frame frame, float least)",
+            f"Frame {self.prefix}_decode(vec4 e, float least)",
             *settle,
         )

@@ -37,6 +37,7 @@ class LightEncoding:
         ranged: makes the encoding over another range, named `<name>:<range>`; None where it has none.
         is_plain: whether a texel is the light itself; a light buffer of it goes by the format's name.
         in_curve: its name and title in a format that keeps colours by the sRGB curve, where it is made for one.
+        functions: what the names of its GLSL functions begin with, of a user's file; empty where that is the file's.
     """
 
     name: str
@@ -55,6 +56,7 @@ class LightEncoding:
     ranged: Callable[[float], LightEncoding] | None = None
     is_plain: bool = False
     in_curve: tuple[str, str] = ("", "")
+    functions: str = ""
 
     @property
     def no_light(self) -> float:
@@ -64,7 +66,7 @@ class LightEncoding:
     @property
     def prefix(self) -> str:
         """What the names of its GLSL functions begin with. Over another range they are the same functions."""
-        return self.glsl.stem
+        return self.functions or self.glsl.stem
 
     @property
     def signatures(self) -> tuple[str, str]:

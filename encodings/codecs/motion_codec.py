@@ -4,13 +4,13 @@ such an encoding in a storage, which is what `normalbench vectors` measures."""
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from ..storages.rounding import store_number
-from ..storages.storage import Storage
+from ..storages.storage import Storage, of_unit
 from ..vec import Vec2
 from .codec import numbers_misfit
 
@@ -39,6 +39,9 @@ class MotionEncoding:
         ulps_reason: why it is that many.
         own_units: whether float formats hold the motion in screens, which is a range of 1: they need no range.
         constants: numbers that both languages need, by their GLSL name.
+        functions: what the names of its GLSL functions begin with, of a user's file; empty where that is the name.
+        is_unit: its author's functions give and take numbers in [0, 1], u for c = 2 u - 1: every storage holds u.
+        own_range: of functions that are given no range, the largest motion that comes to 1 or -1; None of others.
     """
 
     name: str
@@ -52,13 +55,21 @@ class MotionEncoding:
     ulps_reason: str
     own_units: bool = False
     constants: Mapping[str, float | tuple[float, ...]] = field(default_factory=dict)
+    functions: str = ""
+    is_unit: bool = False
+    own_range: float | None = None
+
+    @property
+    def prefix(self) -> str:
+        """What the names of its GLSL functions begin with."""
+        return self.functions or self.name
 
     @property
     def signatures(self) -> tuple[str, str]:
         """What its GLSL file defines."""
         return (
-            f"vec2 {self.name}_encode_motion(vec2 motion, float range)",
-            f"vec2 {self.name}_decode_motion(vec2 e, float range)",
+            f"vec2 {self.prefix}_encode_motion(vec2 motion, float range)",
+            f"vec2 {self.prefix}_decode_motion(vec2 e, float range)",
         )
 
 
@@ -68,6 +79,10 @@ class MotionCodec:
 
     encoding: MotionEncoding
     storage: Storage
+
+    def __post_init__(self) -> None:
+        if self.encoding.is_unit:
+            object.__setattr__(self, "storage", of_unit(self.storage))
 
     @property
     def name(self) -> str:
@@ -91,7 +106,14 @@ class MotionCodec:
     @property
     def needs_range(self) -> bool:
         """Whether its numbers depend on the range: floats may hold the motion itself."""
-        return not (self.encoding.own_units and self.storage.kind == "float")
+        is_ranged = self.encoding.own_range is None
+        return is_ranged and not (self.encoding.own_units and self.storage.kind == "float")
+
+    def ranges(self, asked: Sequence[float]) -> Sequence[float]:
+        """The ranges that it is measured over, of those that are asked for."""
+        if self.encoding.own_range is not None:
+            return (self.encoding.own_range,)
+        return asked if self.needs_range else asked[:1]
 
     @property
     def clips(self) -> bool:

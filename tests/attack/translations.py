@@ -25,9 +25,9 @@ SEAMS = 1e-3
 WRITTEN = tuple(LANGUAGES)
 
 
-def translated_here(word: Path, by: str) -> dict[str, object]:
+def translated_here(word: Path, by: str, kind: str) -> dict[str, object]:
     """A translation in this process: the attack limits itself."""
-    found = answer(word, file_of(word).parent, by)
+    found = answer(word, file_of(word).parent, by, kind)
     if "error" in found:
         raise UsageError(str(found["error"]))
     return found

@@ -207,7 +207,7 @@ def render(
         encoding: Encodings or files to put into each layout, comma-separated, or all.
         storage: Storages of the codes, or all. Default: rgba8.
         rounding: Roundings, or all. Default: nearest.
-        light_buffer: Light buffers, comma-separated, or all; `normalbench list` shows them.
+        light_buffer: Light buffers or files of yours, comma-separated, or all; `normalbench list` shows them.
         light_targets: 1, 2; comma-separated, or all.
         scene: Scenes or mesh files, comma-separated, or all; `normalbench list` shows them.
         power: Specular powers of all materials, comma-separated. Default: each material's own.
@@ -605,6 +605,11 @@ def lights(
     objects: int = ...,
     lights: int = ...,
     seed: int = ...,
+    define: Names | None = ...,
+    prelude: Names | None = ...,
+    include: Names | None = ...,
+    language: Names | None = ...,
+    all_pairs: bool = ...,
     on: str | None = ...,
 ) -> Rows:
     """What light buffers lose: adding lights up, banding, rebuilt colour, antialiasing, and the final image.
@@ -613,7 +618,7 @@ def lights(
 
     Args:
         experiment: equal, random, banding, chromaticity, resolve, image; or all.
-        light_buffer: Light buffers, comma-separated, or all; `normalbench list` shows them.
+        light_buffer: Light buffers or files of yours, comma-separated, or all; `normalbench list` shows them.
         light_targets: 1, 2; comma-separated, or all.
         sums: equal: what the lights sum to; random: the least.
         counts: equal, random: numbers of lights.
@@ -626,6 +631,11 @@ def lights(
         objects: Objects in the scene `objects`.
         lights: Point lights.
         seed: The random seed of uniform sets, points and scenes.
+        define: Shader files: macros, NAME or NAME=VALUE.
+        prelude: Shader files: files that are put in front.
+        include: Shader files: where includes lie: FOLDER, or NAME=FOLDER of NAME/file.
+        language: Shader files: hlsl, slang, glsl or wgsl. Default: by the ending.
+        all_pairs: Shader files: each encoder that its decoder undoes, not one.
         on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
@@ -645,6 +655,11 @@ def depth(
     backend: Names = ...,
     count: int = ...,
     seed: int = ...,
+    define: Names | None = ...,
+    prelude: Names | None = ...,
+    include: Names | None = ...,
+    language: Names | None = ...,
+    all_pairs: bool = ...,
     on: str | None = ...,
 ) -> Rows:
     """How far off a position is that was rebuilt from a stored depth, at distances and over the whole range.
@@ -652,7 +667,7 @@ def depth(
     Errors are distances in the unit of --near and --far, of points anywhere on the screen; a distance stands for depths up to a sixteenth of it nearer or farther. --depths measures the depths of your own image.
 
     Args:
-        depth: Depth codes, comma-separated, or all; `normalbench list` shows them.
+        depth: Depth codes or files of yours, comma-separated, or all; `normalbench list` shows them.
         storage: Depth storages, comma-separated, or all; `normalbench list` shows them. Default: each code's usual.
         rebuild: inverse_projection, projection_terms, eye_ray; comma-separated, or all. Default: each code's usual.
         near: Near planes, comma-separated.
@@ -666,6 +681,11 @@ def depth(
         backend: jax, glsl; comma-separated, or all.
         count: Points at each distance.
         seed: The random seed of uniform sets, points and scenes.
+        define: Shader files: macros, NAME or NAME=VALUE.
+        prelude: Shader files: files that are put in front.
+        include: Shader files: where includes lie: FOLDER, or NAME=FOLDER of NAME/file.
+        language: Shader files: hlsl, slang, glsl or wgsl. Default: by the ending.
+        all_pairs: Shader files: each encoder that its decoder undoes, not one.
         on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
@@ -678,6 +698,11 @@ def frames(
     count: int = ...,
     seed: int = ...,
     worst_case: bool = ...,
+    define: Names | None = ...,
+    prelude: Names | None = ...,
+    include: Names | None = ...,
+    language: Names | None = ...,
+    all_pairs: bool = ...,
     on: str | None = ...,
 ) -> Rows:
     """What tangent frame codes lose: the angles of normals, of tangents and of the whole rotation, and lost handedness.
@@ -685,13 +710,18 @@ def frames(
     A set may be a mesh (glTF, GLB, OBJ, PLY): the tangent frames of its vertices, authored or along its uv.
 
     Args:
-        encoding: Tangent frame codes, comma-separated, or all; `normalbench list` shows them.
+        encoding: Tangent frame codes or files of yours, comma-separated, or all; `normalbench list` shows them.
         storage: Tangent frame storages, comma-separated, or all; `normalbench list` shows them. Default: each code's usual.
         frames: Tangent frame sets or mesh files, whose vertices are taken, comma-separated, or all; `normalbench list` shows them.
         backend: jax, glsl; comma-separated, or all.
         count: Tangent frames in a uniform set.
         seed: The random seed of uniform sets, points and scenes.
         worst_case: The true largest rotation, by search in float64; seconds a code.
+        define: Shader files: macros, NAME or NAME=VALUE.
+        prelude: Shader files: files that are put in front.
+        include: Shader files: where includes lie: FOLDER, or NAME=FOLDER of NAME/file.
+        language: Shader files: hlsl, slang, glsl or wgsl. Default: by the ending.
+        all_pairs: Shader files: each encoder that its decoder undoes, not one.
         on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
@@ -705,6 +735,11 @@ def vectors(
     range: Names = ...,
     count: int = ...,
     seed: int = ...,
+    define: Names | None = ...,
+    prelude: Names | None = ...,
+    include: Names | None = ...,
+    language: Names | None = ...,
+    all_pairs: bool = ...,
     on: str | None = ...,
 ) -> Rows:
     """How exact motion vectors are in compact targets: errors in pixels over the speed, what slow motion is lost, and how far reprojected points drift.
@@ -712,7 +747,7 @@ def vectors(
     A motion is in screens a frame. Fixed-point storages keep motions up to the range. `_centred` is UNORM with an exact code for no motion, as engines store it.
 
     Args:
-        encoding: Motion codes, comma-separated, or all; `normalbench list` shows them.
+        encoding: Motion codes or files of yours, comma-separated, or all; `normalbench list` shows them.
         storage: Motion storages, comma-separated, or all; `normalbench list` shows them. Default: each code's usual.
         backend: jax, glsl; comma-separated, or all.
         speed: Speeds in pixels a frame, comma-separated.
@@ -720,6 +755,11 @@ def vectors(
         range: Largest motions that are kept, in screens a frame, comma-separated.
         count: Points that move, each for 16 frames.
         seed: The random seed of uniform sets, points and scenes.
+        define: Shader files: macros, NAME or NAME=VALUE.
+        prelude: Shader files: files that are put in front.
+        include: Shader files: where includes lie: FOLDER, or NAME=FOLDER of NAME/file.
+        language: Shader files: hlsl, slang, glsl or wgsl. Default: by the ending.
+        all_pairs: Shader files: each encoder that its decoder undoes, not one.
         on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
@@ -732,6 +772,11 @@ def curves(
     range: Names | None = ...,
     count: int = ...,
     seed: int = ...,
+    define: Names | None = ...,
+    prelude: Names | None = ...,
+    include: Names | None = ...,
+    language: Names | None = ...,
+    all_pairs: bool = ...,
     on: str | None = ...,
 ) -> Rows:
     """How exact roughness, metalness, occlusion and channels of colours are in few bits: on a curve, over a range, rounded, cut off or dithered.
@@ -739,13 +784,18 @@ def curves(
     A curve lies in the first channel of a storage. `unorm:5` is five bits.
 
     Args:
-        encoding: Curves, comma-separated, or all; `normalbench list` shows them.
+        encoding: Curves or files of yours, comma-separated, or all; `normalbench list` shows them.
         storage: Storages, comma-separated, or all; `normalbench list` shows them. Default: each curve's usual.
         rounding: nearest, truncate or dithered, comma-separated, or all; `normalbench list` shows them.
         backend: jax, glsl; comma-separated, or all.
         range: Largest quantities that are kept, comma-separated. Default: each curve's usual.
         count: Quantities, evenly spread from 0 to the range.
         seed: The random seed of uniform sets, points and scenes.
+        define: Shader files: macros, NAME or NAME=VALUE.
+        prelude: Shader files: files that are put in front.
+        include: Shader files: where includes lie: FOLDER, or NAME=FOLDER of NAME/file.
+        language: Shader files: hlsl, slang, glsl or wgsl. Default: by the ending.
+        all_pairs: Shader files: each encoder that its decoder undoes, not one.
         on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
@@ -772,7 +822,7 @@ def sweep(
         objects: Numbers of objects, comma-separated.
         shadow: on, off; comma-separated, or all.
         layout: Layouts: names or TOML files.
-        light_buffer: Light buffers, comma-separated, or all; `normalbench list` shows them.
+        light_buffer: Light buffers or files of yours, comma-separated, or all; `normalbench list` shows them.
         light_targets: 1, 2; comma-separated, or all.
         size: WIDTHxHEIGHT of the image; auto: 640x480, or 320x240 on a software rasteriser.
         samples: Samples per pixel; the device may give more.

@@ -15,6 +15,7 @@ from ...ground.output.errors import UsageError, noting_what_is_left_out
 from ...measures.metrics.totals import Worst
 from ...run.measuring import Nothing, asked
 from ...run.measuring import measured as find_measured
+from ...shaders.languages.source_options import NAMED
 from ...shaders.languages.words import INCLUDE, file_of, files_in, names_an_encoder, split_names, twin_of, with_files
 from ...tables.registry import TABLES
 from ...tables.table import Role, Row, Step, Table
@@ -144,7 +145,7 @@ def single(table: Table, given: Mapping[str, Any]) -> dict[str, Any]:
     A layout is measured as it is. A shader without a Python twin is measured by GLSL.
     """
     usual = {} if given.get("layout") is not None else dict(table.single)
-    if "backend" in usual and _is_in_glsl_only(str(given.get("encoding", ""))):
+    if "backend" in usual and any(_is_in_glsl_only(str(given.get(name) or "")) for name in NAMED):
         usual["backend"] = "glsl"
     return {**usual, **given}
 

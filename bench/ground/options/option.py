@@ -63,7 +63,9 @@ Powers = Annotated[
     str | None,
     Option("--power", "Specular powers of all materials, comma-separated. Default: each material's own.", in_run=True),
 ]
-LightBuffers = Annotated[str, Option("--light-buffer", f"Light buffers, {Names}.", in_run=True)]
+LightBuffers = Annotated[
+    str, Option("--light-buffer", f"Light buffers or files of yours, {Names}.", files=True, in_run=True)
+]
 Effects = Annotated[
     str | None, Option("--effects", "Effects in the image, all at once, with settings: gtao:size=half,lpv.")
 ]

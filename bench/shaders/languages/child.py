@@ -1,10 +1,11 @@
 """A user's file translated, in a process that may hang or die.
 
-    python -m normalbench.bench.shaders.languages.child FOLDER WORD LANGUAGE
+    python -m normalbench.bench.shaders.languages.child FOLDER WORD LANGUAGE KIND
 
 FOLDER is an empty one to work in. WORD names the file: see `words.py`. LANGUAGE is what reads it, a name of `BY_NAME`;
-empty for its own. Prints a line of JSON: `error`, what is wrong with the file, `pairs`, the names of several, and
-`alone`, what is known of an encoder or a decoder alone; `missing`, what to install; else what `Translated` has.
+empty for its own. KIND is what its code is of, of `shapes.SHAPES`; empty for normals. Prints a line of JSON: `error`,
+what is wrong with the file, `pairs`, the names of several, and `alone`, what is known of an encoder or a decoder alone;
+`missing`, what to install; else what `Translated` has.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from __future__ import annotations
 import json
 import re
 import sys
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -40,6 +41,7 @@ from .pairs import (
 )
 from .plain import NotPlainError, plain
 from .programs import Read, TranslationError
+from .shaped import shaped_pair
 from .source import Source
 from .tools import ToolError
 from .wiring import Wiring, candidates, wired, wiring_of
@@ -51,14 +53,15 @@ _UNKNOWN = re.compile(r"undefined identifier|unknown variable|no matching overlo
 _UNDEFINED = re.compile(r"undefined identifier '(\w+)'")
 BY_MACRO = "; a macro that is not there is given by -D or --prelude"
 WHICH = "what is measured is {}"
+HAS_PARAMETERS = "they have their parameters alone"
 MOST_NAMED, MOST_OTHERS = 12, 4
 
 
-def answer(word: str | Path, folder: Path, by: str = "") -> dict[str, Any]:
+def answer(word: str | Path, folder: Path, by: str = "", kind: str = "") -> dict[str, Any]:
     """What there is to say of a file; see above."""
     path = file_of(word)
     try:
-        return _facts_of_a_program(word, folder, by)
+        return _facts_of_a_program(word, folder, by, kind)
     except (UsageError, TranslationError) as error:
         return {"error": f"{error}{BY_MACRO}" if _UNKNOWN.search(str(error)) else str(error)}
     except SeveralPairsError as error:
@@ -71,11 +74,13 @@ def answer(word: str | Path, folder: Path, by: str = "") -> dict[str, Any]:
         return {"missing": f"{path}: {error}"}
 
 
-def _facts_of_a_program(word: str | Path, folder: Path, by: str) -> dict[str, Any]:
+def _facts_of_a_program(word: str | Path, folder: Path, by: str, kind: str) -> dict[str, Any]:
     """Of the first program of a file that has an encoder and its decoder. Raises what is said of the others."""
     errors: list[Exception] = []
     for source in programs_of(Source(word)):
         try:
+            if kind:
+                return _shaped_facts(source, functions_of(word), folder, by, kind)
             return _translation_facts(source, functions_of(word), folder, by)
         except (TranslationError, NoPairError) as error:
             errors.append(error)
@@ -91,9 +96,7 @@ def _translation_facts(source: Source, asked: tuple[str, str] | None, folder: Pa
     except SeveralPairsError:
         raise
     except NoPairError as error:
-        # A function that could be one of the two is the reason, if its compiler refuses it.
-        if why := next((why for name, why in found.refused.items() if name in (asked or ()) or role(name)), ""):
-            raise TranslationError(why) from None
+        _check_refused(found, asked)
         if one := alone(found.functions):
             with suppress(TranslationError, NotPlainError, ToolError):
                 error.alone = _pair_facts(found, one, "", folder, by)
@@ -109,6 +112,59 @@ def _translation_facts(source: Source, asked: tuple[str, str] | None, folder: Pa
     return facts | {"notes": [*([by_glslang] if facts["read_by"] == GLSLANG else []), *notes]}
 
 
+def _check_refused(found: Read, asked: tuple[str, str] | None) -> None:
+    """Raises TranslationError where a function that could be one of the two is refused, which is why there is none."""
+    if why := next((why for name, why in found.refused.items() if name in (asked or ()) or role(name)), ""):
+        raise TranslationError(why) from None
+
+
+def _shaped_facts(source: Source, asked: tuple[str, str] | None, folder: Path, by: str, kind: str) -> dict[str, Any]:
+    """As `_translation_facts`, of a code of something else than normals."""
+    language = language_of(source.word, by)
+    found = language.read(source, folder)
+    if asked and not all(wiring_of(text).is_plain for text in asked):
+        raise NoPairError("what a function is given is said of normals alone; name the two functions")
+    own = functions_in(found.source.own_text)
+    try:
+        pair = shaped_pair(language.placed(found.source, found.functions), kind, asked, source.path.name, own)
+    except SeveralPairsError:
+        raise
+    except NoPairError:
+        _check_refused(found, asked)
+        raise
+    sides = pair.sides(language.adapter)
+    called = {letter: one for letter, (one, _) in sides.items()}
+    text = "".join(text for _, text in sides.values())
+
+    def texts(reader: Language, part: Source, prefix: str) -> list[str]:
+        made = _adapter_texts(part, reader, called, prefix, folder)
+        return [made + programs.shaped(prefix, pair, is_unit) for is_unit in (False, True)]
+
+    both = Pair(pair.encode.function, pair.decode.function)
+    # An adapter's name begins as that of the function that it calls.
+    facts = _facts_of_texts(
+        found, text, [one.name for one in called.values()], _row_name(source, both, asked), by, texts
+    )
+    notes = [*(f"it is read without an include: {line}" for line in found.source.missing), *_read_with(source)]
+    return facts | {
+        "components": pair.components,
+        "notes": notes,
+        "functions": [(one.name, False) for one in (both.encode, both.decode)],
+        "named": pair.named,
+        "shaped": {"template": pair.shape.template, "settings": pair.settings, "parts": pair.parts},
+    }
+
+
+def _adapter_texts(
+    source: Source, language: Language, called: Mapping[str, Function], prefix: str, folder: Path
+) -> str:
+    """Adapters as functions of GLSL, each by its letter behind the prefix."""
+    return "".join(
+        plain(language.shader(source, one, folder), f"{prefix}_{letter}", "vec4", HAS_PARAMETERS)
+        for letter, one in called.items()
+    )
+
+
 def _pair_facts(
     found: Read, pair: Pair, text: str, folder: Path, by: str, asked: tuple[str, str] | None = None
 ) -> dict[str, Any]:
@@ -117,15 +173,41 @@ def _pair_facts(
     Args:
         text: what stands behind the user's own.
     """
-    name = _row_name(found.source, pair, asked)
+
+    def texts(reader: Language, part: Source, prefix: str) -> list[str]:
+        return _function_texts(part, reader, pair, prefix, folder)
+
+    names = (pair.encode.name, pair.decode.name)
+    return _facts_of_texts(found, text, names, _row_name(found.source, pair, asked), by, texts) | {
+        "components": pair.components,
+        "packed": pair.encode.kind if pair.is_packed else "",
+        "functions": [(one.name, one.takes_view) for one in (pair.encode, pair.decode)],
+        "named": pair.named,
+    }
+
+
+# A reader, what it is given, and what names begin with, to the functions in GLSL.
+_Texts = Callable[[Language, Source, str], list[str]]
+
+
+def _facts_of_texts(
+    found: Read, text: str, names: Collection[str], name: str, by: str, texts: _Texts
+) -> dict[str, Any]:
+    """What `Translated` has of functions, but what is of their kind.
+
+    Args:
+        text: what stands behind the user's own.
+        names: of the functions that are called.
+        name: what rows call the code.
+    """
     prefix = "user_" + re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")
-    source = found.source.with_text(reached(found.source.text + text, (pair.encode.name, pair.decode.name)))
+    source = found.source.with_text(reached(found.source.text + text, names))
     # Where an overload that is refused was meant, another one or a built-in function would do something else.
     used = words_of(source.text) if found.refused else set()
     if why := next((why for name, why in found.refused.items() if name in used), ""):
         raise TranslationError(why)
     try:
-        by, texts = _texts_by_whoever_reads_it(source, by, pair, prefix, folder)
+        by, made = _texts_by_whoever_reads_it(source, by, texts, prefix)
     except TranslationError as error:
         # What was cut out for another reason is not defined for that one.
         unknown = _UNDEFINED.search(str(error))
@@ -134,14 +216,12 @@ def _pair_facts(
     return {
         "name": name,
         "prefix": prefix,
-        "components": pair.components,
-        "packed": pair.encode.kind if pair.is_packed else "",
+        "packed": "",
         "notes": [],
-        "texts": texts,
+        "texts": made,
         "text": source.text,
-        "functions": [(one.name, one.takes_view) for one in (pair.encode, pair.decode)],
         "read_by": by,
-        "named": pair.named,
+        "shaped": {},
     }
 
 
@@ -178,15 +258,15 @@ def _wired_pair(wirings: Sequence[Wiring], found: Read) -> tuple[Pair, str, str]
     return pair, text, ":".join(map(str, wirings))
 
 
-def _texts_by_whoever_reads_it(source: Source, by: str, pair: Pair, prefix: str, folder: Path) -> tuple[str, list[str]]:
-    """What has read the two functions, if not the compiler of their language; and they as texts."""
+def _texts_by_whoever_reads_it(source: Source, by: str, texts: _Texts, prefix: str) -> tuple[str, list[str]]:
+    """What has read functions, if not the compiler of their language; and they as texts."""
     try:
-        return by, _function_texts(source, language_of(source.word, by), pair, prefix, folder)
+        return by, texts(language_of(source.word, by), source, prefix)
     except TranslationError:
         if by or name_of(source.word) != "HLSL":
             raise
         with suppress(TranslationError, NotPlainError, ToolError, MissingError):
-            return GLSLANG, _function_texts(source, BY_NAME[GLSLANG], pair, prefix, folder)
+            return GLSLANG, texts(BY_NAME[GLSLANG], source, prefix)
         raise
 
 
@@ -243,5 +323,5 @@ def _function_texts(source: Source, language: Language, pair: Pair, prefix: str,
 
 if __name__ == "__main__":
     children.limit_this_process()
-    work, word, language = sys.argv[1:]
-    print(json.dumps(answer(word, Path(work), language)))
+    work, word, language, kind = sys.argv[1:]
+    print(json.dumps(answer(word, Path(work), language, kind)))

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 
 from ....encodings.codecs.files import file_text
-from . import hlsl, slang, tools, wgsl
+from . import hlsl, slang, tools, wgsl, wiring
 from .pairs import Function
 from .programs import Read
+from .shaped import Adapter
 from .source import Source, without_comments
 from .words import TRANSLATED, file_of, settings_of
 
@@ -29,6 +30,8 @@ class Language:
         read: a source, and a folder to work in, to what a compiler reads of it.
         shader: a source, a function of it and a folder to work in, to a fragment shader in GLSL: input 0 is what the
             function is given, input 1 the view-space position, output 0 the result.
+        adapter: makes a function that calls another one, in the language that a program of both is written in.
+        placed: a source and functions of it to these with the places of what they are given and give.
         others: compilers that read what its own refuses, or check what it has read.
     """
 
@@ -36,6 +39,8 @@ class Language:
     read: Callable[[Source, Path], Read]
     shader: Callable[[Source, Function, Path], str]
     others: tuple[str, ...] = ()
+    adapter: Adapter = wiring.adapter
+    placed: Callable[[Source, Sequence[Function]], Sequence[Function]] = lambda _, functions: functions
 
 
 # A second reader of HLSL, which has the functions of the first.
@@ -46,7 +51,7 @@ BY_NAME: Mapping[str, Language] = MappingProxyType(
         GLSLANG: Language((tools.SLANG_LIBRARY, *hlsl.TOOLS), slang.read, hlsl.shader),
         "Slang": Language((tools.SLANG_LIBRARY,), slang.read, slang.shader),
         "GLSL": Language((tools.SLANG_LIBRARY,), slang.read_glsl, slang.shader_of_glsl),
-        "WGSL": Language(wgsl.TOOLS, wgsl.read, wgsl.shader),
+        "WGSL": Language(wgsl.TOOLS, wgsl.read, wgsl.shader, adapter=wgsl.adapter, placed=wgsl.with_places),
     }
 )
 

@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any
 
+from .shapes import LIGHT, OF_NORMALS, WORD, WORDS, kind_spoken_of, words_in
+
 NORMAL = 3
 # One value of 32 bits, and how many numbers it is measured as.
 PACKED, HALVES = ("uint", "int", "float"), 2
@@ -15,22 +17,14 @@ PACKED, HALVES = ("uint", "int", "float"), 2
 # UnpackNormalOctRectEncode of Unity's HDRP decodes.
 DECODES, ENCODES = ("unpack", "decode", "decompress"), ("pack", "encode", "compress")
 
-# What stands in a name for a code, and a word of a name.
+# What stands in a name for a code.
 CODES = ("oct", "hemi", "sphere", "stereo", "uv", "packed", "encoded")
-_WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z0-9]+")
 # In the name of a function that takes or gives a normal, in lower case.
 NORMALS = ("norm", "nrm", "oct", "unitvec", "direction")
 # A word in that of one of colours, depths and the like.
 OF_COLOURS = {"color", "colour", "rgb", "rgbe", "rgbm", "radiance", "irradiance", "luminance", "hdr", "depth", "albedo"}
 
-# What codes of something else than normals are of: words of their functions' names, and the table of the catalogue's.
-OTHERS: Mapping[str, tuple[tuple[str, ...], str]] = MappingProxyType(
-    {
-        "tangent frames": (("frame", "tangent", "tbn"), "frames"),
-        "motion vectors": (("motion", "velocity"), "vectors"),
-    }
-)
-OF_OTHERS = "{} is of {}, not of normals: no table measures a file of these; `normalbench {}` measures the catalogue's"
+OF_OTHERS = "{} is of {}, not of {}: `{}` measures it"
 
 NO_PAIR = "no encoder and decoder found"
 BY_PARAMETER = "{} returns nothing; write a function that returns what it gives through its parameter"
@@ -219,7 +213,7 @@ def pair_of(
         return best[0]
     if names:
         raise SeveralPairsError(file, names)
-    if other := _of_something_else(found):
+    if other := _of_something_else(found, file):
         raise NoPairError(other)
     wanted = "float2 (or float3) ENCODE(float3 n) and float3 DECODE(float2 code)"
     raise NoPairError(f"{_none_fits(found)}; the two functions must be {wanted}")
@@ -280,9 +274,10 @@ def speaks_of_normals(pair: Pair) -> bool:
 def speaks_of_others(pair: Pair) -> bool:
     """Whether the names of a pair say that it is of something else than normals."""
     named = f"{pair.encode.name} {pair.decode.name}"
-    is_of_colours = bool(OF_COLOURS & {word.lower() for word in _WORD.findall(named)})
-    is_of_others = any(word in named.lower() for words, _ in OTHERS.values() for word in words)
-    return not speaks_of_normals(pair) and (is_of_colours or is_of_others)
+    kind = kind_spoken_of(named)
+    # A code of two numbers is of a direction, such as that to a light.
+    is_of_another = bool(kind) and not (kind == LIGHT and pair.components < NORMAL)
+    return not speaks_of_normals(pair) and (bool(OF_COLOURS & words_in(named)) or is_of_another)
 
 
 def _by_size(pairs: Sequence[Pair]) -> list[Pair]:
@@ -293,7 +288,7 @@ def _by_size(pairs: Sequence[Pair]) -> list[Pair]:
 
 def _ways(name: str) -> tuple[list[str], list[str]] | None:
     """What a name says that a function makes what of: NormalToOctahedron, oct_from_vec; None where it says neither."""
-    words = [word.lower() for word in _WORD.findall(name)]
+    words = [word.lower() for word in WORD.findall(name)]
     for between in ("to", "from"):
         if between in words[1:-1]:
             at = words.index(between)
@@ -331,12 +326,11 @@ def alone(found: Sequence[Function]) -> Pair | None:
     return Pair(*(encoders or [Function("", size, (NORMAL,))]), *(decoders or [Function("", NORMAL, (size,))]))
 
 
-def _of_something_else(found: Sequence[Function]) -> str:
+def _of_something_else(found: Sequence[Function], file: str) -> str:
     """That a file without a pair is of something else, by the names of its functions; else empty."""
-    named = [one.name for one in found if role(one.name)]
-    for what, (words, table) in OTHERS.items():
-        if name := next((name for name in named if any(word in name.lower() for word in words)), ""):
-            return OF_OTHERS.format(name, what, table)
+    for name in (one.name for one in found if role(one.name)):
+        if kind := kind_spoken_of(name):
+            return OF_OTHERS.format(name, WORDS[kind].plural, OF_NORMALS.plural, WORDS[kind].command.format(file))
     return ""
 
 

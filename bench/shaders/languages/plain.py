@@ -35,11 +35,15 @@ _HALF = re.compile(r"\bf16(vec|mat)(\d)|\bfloat16_t\b")
 _HALF_NUMBER = re.compile(r"(?<=[\d.])HF\b", re.I)
 
 
-def plain(shader: str, prefix: str, given: str) -> str:
+HAS_A_NORMAL = "an encoder has the normal and the view-space position alone"
+
+
+def plain(shader: str, prefix: str, given: str, has: str = HAS_A_NORMAL) -> str:
     """The shader as a function PREFIX_main of PREFIX_0 and view, without a head.
 
     Args:
         given: the type of its first input in GLSL; its second has three numbers.
+        has: what it may read, in words.
 
     Raises:
         NotPlainError: it reads something else.
@@ -54,7 +58,7 @@ def plain(shader: str, prefix: str, given: str) -> str:
     text = _NAME.sub(lambda match: names.get(match[0], f"{prefix}_{match[0].strip('_')}"), text)
     if found := _RESOURCE.search(text):
         what = "a texture or a constant buffer" if not found[0].startswith("gl_") else found[0]
-        raise NotPlainError(f"its functions read {what}; an encoder has the normal and the view-space position alone")
+        raise NotPlainError(f"its functions read {what}; {has}")
     return _function_text(re.sub(r"\n\s*\n+", "\n", text.strip()), prefix, given, result.strip()) + "\n"
 
 

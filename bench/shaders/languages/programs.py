@@ -10,6 +10,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from .pairs import Function
+from .shaped import ShapedPair
 from .source import Source
 
 ENTRY = "normalbench_entry"
@@ -53,16 +54,41 @@ def _text(name: str) -> str:
     return Path(__file__).with_name(name).read_text(encoding="utf-8")
 
 
+# Of a code in [0, 1] to [-1, 1], and back.
+UNIT_WAYS = (" * 2.0 - 1.0", " * 0.5 + 0.5")
+
+
 def pair(name: str, components: int, encoder: Function, decoder: Function, is_unit: bool) -> str:
     """The two functions NAME_encode and NAME_decode that every program calls, of two functions that stand before them.
 
     Args:
         is_unit: whether these two give and take codes in [0, 1], which become [-1, 1] on their way out, and come back.
     """
-    way_out, way_back = (" * 2.0 - 1.0", " * 0.5 + 0.5") if is_unit else ("", "")
+    way_out, way_back = UNIT_WAYS if is_unit else ("", "")
     words = {f"NAME_{side}": f"{name}_{side}" for side in ("encode", "decode")}
     words |= {"ENCODED": encoder.called("n") + way_out, "DECODED": decoder.called(f"e{way_back}")}
     return template("pair.glsl", CODE=f"vec{components}", **words)
+
+
+# Where a decoder's hand is: a part of its own, a fourth number of the tangent, the side of the bitangent.
+HANDS: Mapping[str, str] = MappingProxyType(
+    {"hand": "n.w", "tangent": "t.w", "bitangent": "dot(cross(n.xyz, t.xyz), b.xyz)", "": "1.0"}
+)
+
+
+def shaped(name: str, found: ShapedPair, is_unit: bool) -> str:
+    """The two functions of a kind that every program calls, of adapters NAME_e_main and the like before them.
+
+    Args:
+        is_unit: as of `pair`.
+    """
+    text = _text(found.shape.template)
+    words = {word: word.replace("NAME", name, 1) for word in re.findall(r"\bNAME_\w+", text)}
+    back = {part: found.decode.size(part) for part in ("hand", "tangent", "bitangent")}
+    back["tangent"] //= 4
+    hand = next((part for part, size in back.items() if size), "")
+    way_out, way_back = UNIT_WAYS if is_unit else ("", "")
+    return template(found.shape.template, WAY_OUT=way_out, WAY_BACK=way_back, HAND=HANDS[hand], **words)
 
 
 # What a half of 16 bits holds at most, as shaders write it.

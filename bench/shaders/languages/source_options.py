@@ -13,7 +13,7 @@ from ...ground.options.option import Sources
 from ...ground.output.errors import UsageError
 
 # The options whose names may be users' files.
-NAMED = ("encoding", "against", "codec")
+NAMED = ("encoding", "against", "codec", "depth", "light_buffer")
 NO_FILE = "--{} is of users' shader files, and none is named; a layout has it in its file: mine.hlsl:{}=..."
 
 

@@ -51,6 +51,8 @@ class Translated:
         functions: encoder and decoder: the name of each in the user's file, and whether it takes the view.
         named: the two, as they are asked for, ENCODE:DECODE.
         read_by: what has read it, if not the compiler of its language: see `BY_NAME`.
+        shaped: of a code of something else than normals: `template`, the file around it, `settings`, what its functions
+            are given besides, and `parts`, how many numbers of each part they are given and give: see `shapes.py`.
     """
 
     name: str
@@ -63,6 +65,7 @@ class Translated:
     functions: list[tuple[str, bool]]
     read_by: str
     named: str
+    shaped: dict[str, Any]
 
     def glsl(self, is_unit: bool) -> Path:
         """A file with one of the texts, that other processes find as well."""
@@ -81,11 +84,12 @@ class AloneError(UsageError):
         self.made = made
 
 
-def translated(word: str | Path, by: str = "") -> Translated:
+def translated(word: str | Path, by: str = "", kind: str = "") -> Translated:
     """The encoder that a word names: see `words.py`.
 
     Args:
         by: what reads the file, if not the compiler of its own language: see `BY_NAME`.
+        kind: what its code is of, of `shapes.SHAPES`; empty for normals.
 
     Raises:
         UsageError: it cannot be read or translated; one line with the user's file, and line and column if known.
@@ -94,10 +98,10 @@ def translated(word: str | Path, by: str = "") -> Translated:
     """
     source = Source(word)
     read = [str(path) for path in source.files.values()]
-    key = kept.key_of("translated", source.text, str(word), *read, by, *_tool_stamps(word, by), own())
+    key = kept.key_of("translated", source.text, str(word), *read, by, kind, *_tool_stamps(word, by), own())
     found = _translated_or_none(kept.read(key))
     if found is None:
-        found = _translated_or_none(made := _by_child(word, by))
+        found = _translated_or_none(made := _by_child(word, by, kind))
         if found is None:
             raise UsageError(f"{source.path}: its translation ended without a result")
         kept.write(key, made)
@@ -128,11 +132,11 @@ def _translated_or_none(value: dict[str, Any] | None) -> Translated | None:
         return None
 
 
-def _by_child(word: str | Path, by: str) -> dict[str, Any]:
+def _by_child(word: str | Path, by: str, kind: str) -> dict[str, Any]:
     """The answer of the child process that translates a file: its fields, as JSON has them."""
     path = file_of(word)
     with tempfile.TemporaryDirectory() as folder:
-        command = children.python("normalbench.bench.shaders.languages.child", folder, str(word), by)
+        command = children.python("normalbench.bench.shaders.languages.child", folder, str(word), by, kind)
         try:
             done = children.finished(command, TIME_LIMIT)
         except subprocess.TimeoutExpired as error:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from ..translator import tree
@@ -10,12 +12,16 @@ from ..translator.glsl_writer import GlslWriter
 from ..translator.reduce import numbered, reduced
 from ..translator.wgsl_parser import read_wgsl
 from .items import blank
-from .pairs import Function
+from .pairs import Function, Parameter, Place
 from .programs import Read, TranslationError, template
 from .source import Source
+from .wiring import FREE, RESULT, with_words
 
 TOOLS = ()
 SIZES = {"vec2": 2, "vec3": 3}
+TYPES = {"float": "f32", "int": "i32", "uint": "u32", "bool": "bool"}
+# The types of structures' fields by their names, by the structures'.
+_Structs = Mapping[str, Mapping[str, str]]
 # What preprocessors of engines add to the language: nothing that is imported is there.
 _IMPORT = re.compile(r"^[ \t]*#(?:import|define_import_path)\b[^\n{]*(?:\{[^}]*\})?[^\n]*$", re.M)
 # 3:14: y is not known here
@@ -35,6 +41,51 @@ def read(source: Source, folder: Path) -> Read:  # noqa: ARG001 (no tool works t
 def _function(defined: tree.Function) -> Function:
     given = tuple(SIZES.get(p.kind, 0) for p in defined.parameters)
     return Function(tree.plain_name(defined), SIZES.get(defined.kind, 0), given, defined.kind)
+
+
+def with_places(source: Source, functions: Sequence[Function]) -> list[Function]:
+    """Functions of a source with the numbers and vectors that they are given and give. Raises TranslationError."""
+    program = _checked(source, lambda: read_wgsl(source.text))
+    structs = {struct.name: struct.kinds for struct in program.structs}
+    defined = {tree.plain_name(one): one for one in program.functions}
+    return [_with_places(one, defined[one.name], structs) for one in functions]
+
+
+def _with_places(function: Function, defined: tree.Function, structs: _Structs) -> Function:
+    parameters = [
+        Parameter(p.name, p.kind, True, False, False, tuple(_places(p.name, p.kind, structs)))
+        for p in defined.parameters
+    ]
+    return replace(function, parameters=tuple(parameters), results=tuple(_places("", defined.kind, structs)))
+
+
+def _places(path: str, kind: str, structs: _Structs) -> Iterator[Place]:
+    for name, inner in structs.get(kind, {}).items():
+        yield from _places(f"{path}.{name}" if path else name, inner, structs)
+    if tree.scalar_of(kind) in tree.SCALARS and kind == tree.vector(tree.scalar_of(kind), tree.size_of(kind)):
+        yield Place(path, tree.scalar_of(kind), tree.size_of(kind))
+
+
+def _free(place: Place) -> str:
+    """What is given where nothing else is, as `FREE` has it."""
+    value = FREE[place.kind]
+    return value if place.size == 1 else f"vec{place.size}<{TYPES[place.kind]}>({value})"
+
+
+def adapter(function: Function, name: str, given: Mapping[str, str], made: Sequence[Place | None]) -> str:
+    """As `wiring.adapter`, in WGSL."""
+    words = {"n": "normalbench_n", "view": "normalbench_more", "vec4": "vec4f"}
+    of_structs = [one for one in function.parameters if any("." in place.path for place in one.places)]
+    lines = [f"var wired_{one.name}: {one.kind};" for one in of_structs]
+    lines += [f"wired_{place.path} = {_free(place)};" for one in of_structs for place in one.places]
+    lines += [f"wired_{path} = {with_words(value, words)};" for path, value in given.items() if "." in path]
+    values = {path: with_words(value, words) for path, value in given.items()}
+    arguments = [values.get(one.name, f"wired_{one.name}") for one in function.parameters]
+    lines.append(f"let {RESULT} = {function.name}({', '.join(arguments)});")
+    parts = ["0.0" if place is None else f"{RESULT}.{place.path}".rstrip(".") for place in made]
+    parts += ["0.0"] * (4 - sum(place.size if place else 1 for place in made))
+    body = "\n    ".join([*lines, f"return vec4f({', '.join(parts)});"])
+    return f"fn {name}({words['n']}: vec4f, {words['view']}: vec3f) -> vec4f {{\n    {body}\n}}\n"
 
 
 def shader(source: Source, function: Function, folder: Path) -> str:  # noqa: ARG001 (no tool works there)

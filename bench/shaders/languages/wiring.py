@@ -121,7 +121,7 @@ def _swizzles(size: int) -> Iterator[str]:
     return ("".join(letters) for count in range(1, 5) for letters in itertools.permutations("xyzw"[:size], count))
 
 
-def _outputs(function: Function) -> list[Place]:
+def outputs_of(function: Function) -> list[Place]:
     """What a function gives: its result, and its parameters."""
     made = [place for one in function.parameters if one.is_made for place in one.places]
     return [*function.results, *made]
@@ -129,20 +129,20 @@ def _outputs(function: Function) -> list[Place]:
 
 def _output(function: Function, path: str) -> Place:
     """A place of what a function gives, or a part of it. Raises NoPairError."""
-    for place in _outputs(function):
+    for place in outputs_of(function):
         if path == place.path:
             return place
         # Of a result that is a vector, xyz is a part.
         whole, _, letters = path.rpartition(".")
         if whole == place.path and letters in set(_swizzles(place.size)):
             return Place(path, place.kind, len(letters))
-    known = ", ".join(place.path or "its result" for place in _outputs(function)) or "nothing"
+    known = ", ".join(place.path or "its result" for place in outputs_of(function)) or "nothing"
     raise NoPairError(f"{function.name} does not give {path}; it gives {known}")
 
 
 def _made(function: Function, wiring: Wiring) -> tuple[int, str]:
     """How many numbers a wired function gives, and of which type."""
-    places = [_output(function, path) for path in wiring.made] or _outputs(function)
+    places = [_output(function, path) for path in wiring.made] or outputs_of(function)
     kinds = {place.kind for place in places}
     return sum(place.size for place in places), kinds.pop() if len(places) == 1 else "float"
 
@@ -165,27 +165,60 @@ def _caller(function: Function, wiring: Wiring, given: str, called: str, made: s
     known = set(_all_paths(function))
     if unknown := next((place for place, _ in wiring.bound if place not in known), ""):
         raise NoPairError(
-            f"{function.name} is not given {unknown}; it is given {', '.join(one.path for one in _inputs(function))}"
+            f"{function.name} is not given {unknown}; it is given {', '.join(one.path for one in inputs_of(function))}"
         )
-    bound = dict(wiring.bound)
+    bound = {path: _value(function, path, value) for path, value in wiring.bound}
+    view = f", float3 {_local(VIEW)}_given" if _uses_view(wiring) else ""
+    head = f"{made} {_name(function)}({given} {_local(called)}_given{view})"
+    result = ", ".join(_local(path) if path else RESULT for path in _made_paths(function, wiring))
+    return _body(function, head, bound, f"{made}({result})")
+
+
+def _body(function: Function, head: str, bound: Mapping[str, str], made: str) -> str:
+    """A function with this head that calls another one, and gives what is made of its results.
+
+    Args:
+        bound: by its place, the value of what the other one is given.
+    """
     asked = {place.partition(".")[0] for place in bound}
     parameters = list(itertools.takewhile(lambda one: not one.has_default or one.name in asked, function.parameters))
     lines = [f"{one.kind} {_local(one.name)} = ({one.kind})0;" for one in parameters]
     lines += [
         f"{_local(place.path)} = {FREE[place.kind]};" for one in parameters if one.is_given for place in one.places
     ]
-    lines += [f"{_local(place)} = {_value(function, place, value)};" for place, value in bound.items()]
+    lines += [f"{_local(place)} = {value};" for place, value in bound.items()]
     call = f"{function.name}({', '.join(_local(one.name) for one in parameters)})"
     lines.append(f"{function.kind} {RESULT} = {call};" if function.results else f"{call};")
-    view = f", float3 {_local(VIEW)}_given" if _uses_view(wiring) else ""
-    result = ", ".join(_local(path) if path else RESULT for path in _made_paths(function, wiring))
-    body = "\n    ".join([*lines, f"return {made}({result});"])
-    return f"{made} {_name(function)}({given} {_local(called)}_given{view}) {{\n    {body}\n}}\n"
+    body = "\n    ".join([*lines, f"return {made};"])
+    return f"{head} {{\n    {body}\n}}\n"
+
+
+def adapter(function: Function, name: str, given: Mapping[str, str], made: Sequence[Place | None]) -> str:
+    """A function of this name of four numbers, n, and of three, view, that calls another one and gives four.
+
+    Args:
+        given: by its place, what the other one is given, of n and view as GLSL says it.
+        made: the places of what it gives, one behind another; None is 0.
+    """
+    words = {"n": f"{_local(N)}_given", "view": f"{_local(VIEW)}_given", "vec4": "float4"}
+    bound = {path: with_words(value, words) for path, value in given.items()}
+    of_result = {place.path for place in function.results}
+    paths = [place and _of_result(place.path, of_result) for place in made]
+    parts = [("0.0" if path is None else _local(path) if path else RESULT) for path in paths]
+    parts += ["0.0"] * (4 - sum(place.size if place else 1 for place in made))
+    return _body(
+        function, f"float4 {name}(float4 {words['n']}, float3 {words['view']})", bound, f"float4({', '.join(parts)})"
+    )
+
+
+def with_words(text: str, words: Mapping[str, str]) -> str:
+    """A text with other words in place of its own; a swizzle is none."""
+    return re.sub(rf"(?<![.\w])(?:{'|'.join(words)})\b", lambda match: words[match[0]], text)
 
 
 def _made_paths(function: Function, wiring: Wiring) -> list[str]:
     of_result = {place.path for place in function.results}
-    return [_of_result(path, of_result) for path in wiring.made or [place.path for place in _outputs(function)]]
+    return [_of_result(path, of_result) for path in wiring.made or [place.path for place in outputs_of(function)]]
 
 
 def _of_result(path: str, of_result: set[str]) -> str:
@@ -199,7 +232,7 @@ def _local(path: str) -> str:
     return f"{RESULT}{path}" if path.startswith(".") else f"wired_{path}"
 
 
-def _inputs(function: Function) -> list[Place]:
+def inputs_of(function: Function) -> list[Place]:
     return [place for one in function.parameters if one.is_given for place in one.places]
 
 
@@ -236,7 +269,7 @@ def _is_of_other_names(wirings: tuple[Wiring, Wiring]) -> bool:
 
 
 def _wirings(encode: Function, decode: Function) -> Iterator[tuple[Wiring, Wiring]]:
-    normal, back = _normal_of(_inputs(encode)), _normal_of(_outputs(decode))
+    normal, back = _normal_of(inputs_of(encode)), _normal_of(outputs_of(decode))
     if not normal or not back:
         return
     made_back = _named(decode, back.path if back.size == NORMAL else f"{back.path}.xyz".strip("."), NORMAL)
@@ -251,7 +284,7 @@ def _wirings(encode: Function, decode: Function) -> Iterator[tuple[Wiring, Wirin
 
 def _named(function: Function, path: str, size: int) -> tuple[str, ...]:
     """A place of what a function gives, as a wiring says it: nothing where it gives nothing else."""
-    return (path,) if path else ("xyz"[:size],) if len(_outputs(function)) > 1 else ()
+    return (path,) if path else ("xyz"[:size],) if len(outputs_of(function)) > 1 else ()
 
 
 def _free(function: Function, taken: Sequence[str]) -> Iterator[tuple[str, str]]:
@@ -278,8 +311,8 @@ def _is_called_normal(place: Place) -> bool:
 
 
 def _codes(encode: Function, decode: Function, normal: Place) -> _Ways:
-    outputs = [place for place in _outputs(encode) if place.path != normal.path]
-    if len(outputs) < len(_outputs(encode)):
+    outputs = [place for place in outputs_of(encode) if place.path != normal.path]
+    if len(outputs) < len(outputs_of(encode)):
         # The normal becomes its code: two of its numbers or three, and what else there is.
         for letters in SWIZZLES[:2]:
             for some in _parts(outputs):
@@ -303,7 +336,7 @@ def _parts(outputs: Sequence[Place]) -> Iterator[list[Place]]:
 
 def _given(parts: Sequence[Place], encode: Function, decode: Function) -> _Ways:
     """A code of some parts, if the decoder takes it in the same order."""
-    inputs, size = _inputs(decode), sum(part.size for part in parts)
+    inputs, size = inputs_of(decode), sum(part.size for part in parts)
     made = tuple(path for part in parts for path in _named(encode, part.path, part.size))
     if size > NORMAL:
         return

@@ -7,14 +7,15 @@ Imports nothing heavy: gates read these names before anything is measured.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple
 
-from ...ground.choose import PART, split, whole_file_of
+from ...ground.choose import PART, names_a_file, split, whole_file_of
 from ...ground.options.words import Words, given_in
 from ...ground.output.errors import UsageError
+from ...ground.spelling import spelled
 
 GLSL = ".glsl"
 # The languages that are translated, by what their files end in; empty where the text has to say. A new one is a line
@@ -29,13 +30,26 @@ TRANSLATED: Mapping[str, str] = MappingProxyType(
     }
 )
 ENDINGS = (GLSL, *TRANSLATED)
+# Endings of languages that are not read: what they are called, and how a shader becomes GLSL.
+OTHER_LANGUAGES: Mapping[str, tuple[str, str]] = MappingProxyType(
+    {
+        ".metal": ("Metal", "write it as GLSL"),
+    }
+)
 # Between a codec and the encoding of what comes back from it.
 CHAIN = "+"
 # FILE, FILE:ENCODE:DECODE, and settings behind either.
 _FILE = rf".*?(?:{'|'.join(map(re.escape, ENDINGS))})"
 # A function may have what it is given and gives behind it: see `wiring.py`.
 _FUNCTION = r"(?:\w+::)*\w+(?:\([^()]*\))?(?:->(?:[\w.]+|\([^()]*\)))?"
-DEFINE, PRELUDE, INCLUDE, LANGUAGE, ALL_PAIRS = SETTINGS = ("define", "prelude", "include", "language", "all_pairs")
+DEFINE, PRELUDE, INCLUDE, LANGUAGE, ALL_PAIRS, FORMAT = SETTINGS = (
+    "define",
+    "prelude",
+    "include",
+    "language",
+    "all_pairs",
+    "format",
+)
 _SETTING = rf":({'|'.join(SETTINGS)})=([^:,]*)"
 _WORD = re.compile(
     rf"(?P<file>{_FILE})(?::(?P<encode>{_FUNCTION}):(?P<decode>{_FUNCTION}))?(?P<settings>(?:{_SETTING})*)", re.I | re.S
@@ -62,6 +76,7 @@ class Settings(NamedTuple):
         roots: folders in which includes are searched, each with what their names begin with; empty for any.
         language: one of LANGUAGES; empty for that of its ending.
         is_all: whether all its pairs are meant.
+        format: that a code of light lies in; empty for what it usually lies in.
     """
 
     defines: tuple[str, ...] = ()
@@ -69,6 +84,7 @@ class Settings(NamedTuple):
     roots: tuple[tuple[str, str], ...] = ()
     language: str = ""
     is_all: bool = False
+    format: str = ""
 
 
 LANGUAGES = tuple(dict.fromkeys(name for name in ("HLSL", *TRANSLATED.values()) if name))
@@ -90,7 +106,9 @@ def settings_of(word: str | Path) -> Settings:
     if of[LANGUAGE] and not names:
         raise UsageError(f"--language {of[LANGUAGE][0]}: it is one of {', '.join(LANGUAGES).lower()}")
     roots = tuple(_root(one) for one in of[INCLUDE])
-    return Settings(of[DEFINE], of[PRELUDE], roots, names[0] if names else "", bool(of[ALL_PAIRS]))
+    return Settings(
+        of[DEFINE], of[PRELUDE], roots, names[0] if names else "", bool(of[ALL_PAIRS]), "".join(of[FORMAT][:1])
+    )
 
 
 def _root(said: str) -> tuple[str, str]:
@@ -230,6 +248,28 @@ def lacks_a_function(word: str) -> bool:
     """Whether a word names a file, and not both of the functions in it: mine.hlsl:EncodeNormal."""
     head, mark, _ = word.partition(":")
     return bool(mark) and Path(head).suffix.lower() in ENDINGS and not names_an_encoder(word)
+
+
+def check_word(word: str, known: Collection[str], has_format: bool = False) -> None:
+    """Raises UsageError for a shader of another language, for one without its ending, and for one of two functions.
+
+    Args:
+        known: names of the catalogue.
+        has_format: whether what it names may lie in a format that the word says.
+    """
+    file = next((word + ending for ending in ENDINGS if names_a_file(word + ending)), None)
+    if file and spelled("encoding", word, known) is None:
+        raise UsageError(f"unknown encoding {word!r}; did you mean the file {file}?")
+    if settings_of(word).format and not has_format:
+        raise UsageError(f"{word}: {FORMAT} is of light buffers; --storage names what others lie in")
+    if lacks_a_function(word):
+        raise UsageError(
+            f"{word}: name both functions, such as mine.hlsl:EncodeNormal:DecodeNormal, or one in each of two "
+            "files, such as pack.hlsl:EncodeNormal,unpack.hlsl:DecodeNormal"
+        )
+    if (ending := Path(word).suffix.lower()) in OTHER_LANGUAGES:
+        language, how = OTHER_LANGUAGES[ending]
+        raise UsageError(f"{word}: {language} is not read; {how}. docs/bring-your-own.md shows how two functions look")
 
 
 def functions_of(word: str | Path) -> tuple[str, str] | None:

@@ -502,6 +502,9 @@ class WgslParser(Parser):
         name = self._word_token().text
         kind = self._kind() if self._skip(":") else None
         value = self._expression() if self._skip("=") else None
+        if value is None and kind:
+            # WGSL's variables are 0 until they are something else.
+            value = self._zero_value(kind)
         if value is None and kind is None:
             raise self._error(f"{name} has neither a type nor a value")
         if value is not None and kind and size_of(kind) == 1 and kind in SCALARS.values():

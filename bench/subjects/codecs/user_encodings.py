@@ -6,12 +6,11 @@ import importlib.util
 import json
 import subprocess
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import redirect_stdout
 from dataclasses import dataclass, replace
 from pathlib import Path
 from traceback import extract_tb
-from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ....encodings.catalogue import ENCODINGS
@@ -21,7 +20,7 @@ from ....encodings.storages.storage import BITS_32
 from ....encodings.vec import Vec2, Vec3
 from ....gbuffer.codecs.harness import takes_view
 from ....gbuffer.gl.shader import ShaderError, read_shader
-from ...ground.choose import choose, names_a_file
+from ...ground.choose import choose
 from ...ground.machine import children
 from ...ground.machine.cores import on_all_cores
 from ...ground.machine.posix import forks
@@ -35,10 +34,10 @@ from ...shaders.languages.source import Source
 from ...shaders.languages.translated import Translated, glsl_file, translated
 from ...shaders.languages.words import (
     ENDINGS,
+    check_word,
     file_of,
     functions_of,
     is_translated,
-    lacks_a_function,
     names_an_encoder,
     settings_of,
     split_names,
@@ -52,12 +51,6 @@ from .doctor.domains import SPHERE, Domain
 from .doctor.nearly import Lattice
 from .signatures import check_given, encode_of
 
-# Endings of languages that are not read: what they are called, and how a shader becomes GLSL.
-OTHER_LANGUAGES: Mapping[str, tuple[str, str]] = MappingProxyType(
-    {
-        ".metal": ("Metal", "write it as GLSL"),
-    }
-)
 # A first look takes a second or two of processor time, which is limited too; one that sleeps takes for ever.
 TIME_LIMIT = 60.0
 # In place of a domain, to look closely at a file whose author does not say what it is made for.
@@ -85,7 +78,7 @@ def encodings_named(names: str) -> list[Encoding]:
     """
     own = given_in(names)
     for word in (word for word in split_names(names) if word not in own):
-        _check_word(word)
+        check_word(word, ENCODINGS)
     words = [one for word in split_names(names) for one in _pairs_meant(word)]
     files, complaints, notes = _read_all([word for word in words if names_an_encoder(word)])
     rest = [word for word in words if word in files or not names_an_encoder(word)]
@@ -111,22 +104,6 @@ def _pairs_meant(word: str) -> list[str]:
     found = _look(Path(word)).glsl
     pairs = found.get("pairs") or ([found["pair"]] if "pair" in found else [])
     return [str(with_pair(word, pair)) for pair in pairs] or [word]
-
-
-def _check_word(word: str) -> None:
-    """Raises UsageError for a shader of another language, and for one without its ending."""
-    file = next((word + ending for ending in ENDINGS if names_a_file(word + ending)), None)
-    if file and spelled("encoding", word, ENCODINGS) is None:
-        raise UsageError(f"unknown encoding {word!r}; did you mean the file {file}?")
-    settings_of(word)
-    if lacks_a_function(word):
-        raise UsageError(
-            f"{word}: name both functions, such as mine.hlsl:EncodeNormal:DecodeNormal, or one in each of two "
-            "files, such as pack.hlsl:EncodeNormal,unpack.hlsl:DecodeNormal"
-        )
-    if (ending := Path(word).suffix.lower()) in OTHER_LANGUAGES:
-        language, how = OTHER_LANGUAGES[ending]
-        raise UsageError(f"{word}: {language} is not read; {how}. docs/bring-your-own.md shows how two functions look")
 
 
 def _read_all(words: list[str]) -> tuple[dict[str, Encoding], list[Exception], list[str]]:
@@ -195,7 +172,7 @@ def examined(path: Path, domain: str = ANY) -> Examined:
         UsageError: it is not an encoding, or does not compile.
         MissingError: there is no GL device to look at it with.
     """
-    _check_word(str(path))
+    check_word(str(path), ENCODINGS)
     known = spelled("encoding", str(path), ENCODINGS)
     if known and not path.exists():
         command = f"normalbench quality --encoding {known}"

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from ...ground.options.option import Backends, Names, Option, Seed
+from ...shaders.languages.source_options import SourceOptions
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
@@ -13,10 +14,10 @@ KEY, HOW = Role.KEY, Role.HOW
 
 
 @dataclass(frozen=True, kw_only=True)
-class CurvesOptions:
+class CurvesOptions(SourceOptions):
     """What `curves` measures. Names and numbers are comma-separated; no storage: where each curve usually lies."""
 
-    encoding: Annotated[str, Option("--encoding", f"Curves, {Names}.")] = "all"
+    encoding: Annotated[str, Option("--encoding", f"Curves or files of yours, {Names}.", files=True)] = "all"
     storage: Annotated[str | None, Option("--storage", f"Storages, {Names}. Default: each curve's usual.")] = None
     rounding: Annotated[str, Option("--rounding", f"nearest, truncate or dithered, {Names}.")] = "nearest"
     backend: Backends = "jax,glsl"

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from ....encodings.catalogue import CURVE_ENCODINGS
 from ....encodings.codecs.curve_codec import CurveCodec
+from ....encodings.codecs.kind import CURVE
 from ....encodings.storages.storage import CURVE_STORAGES
 from ...ground.choose import choose
 from ...ground.machine.devices import require_device, require_jax
@@ -14,6 +15,7 @@ from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_numbers, in_range
 from ...ground.options.storage_names import storages_named
 from ...ground.options.targets import that_fit
+from ...subjects.codecs.kinds.named import own_codes_named
 from ..charts import one_backend
 from ..table import NoOutputs, Row, Sheet, Step, Work, each
 from . import measure
@@ -49,7 +51,7 @@ def codecs(options: CurvesOptions, way: str = measure.NEAREST) -> list[CurveCode
     said = options.range and checked_numbers("--range", options.range, float, *RANGES)
     return that_fit(
         CurveCodec(encoding, storage, largest, "truncate" if way == "truncate" else "nearest", way == measure.DITHERED)
-        for encoding in choose("curve", options.encoding, CURVE_ENCODINGS)
+        for encoding in own_codes_named(CURVE, options.encoding, CURVE_ENCODINGS)
         for storage in storages_named(options.storage or ",".join(encoding.storages), CURVE_STORAGES, "curve storage")
         for largest in said or (encoding.usual_range,)
     )

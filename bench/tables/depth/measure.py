@@ -18,12 +18,13 @@ from ....encodings.vec import Vec2
 from ....gbuffer.codecs.depth.depth_passes import DepthPasses, Rebuilt
 from ....gbuffer.gl.device import FormatError, NoDeviceError, device
 from ....gbuffer.gl.shader import ShaderError
+from ...shaders.code.twin import NoTwinError
 from .frames import Frame, seen
 from .points import Points
 from .table import TABLE
 
 # Why a device may not be able to give a row.
-UNMEASURABLE = (NoDeviceError, ShaderError, FormatError)
+UNMEASURABLE = (NoDeviceError, ShaderError, FormatError, NoTwinError)
 # A distance stands for depths that are up to this share of it nearer or farther.
 BAND = 1 / 16
 ASPECT = 16 / 9
@@ -166,11 +167,15 @@ class Measured:
 
 @lru_cache(maxsize=1)
 def _limits(codec: DepthCodec, camera: Camera, on: Points) -> tuple[np.ndarray, np.ndarray]:
-    """How far positions may move, without and with float32 arithmetic; the same for every back end."""
+    """How far positions may move, without and with float32 arithmetic; the same for every back end. NaN where only
+    shaders have the code: the exact maps are JAX's."""
     rays, depths = np.linalg.norm(on.rays(camera), axis=1), on.depths.astype(np.float64)
-    half_steps, bounds = _in_blocks(
-        lambda part: [codec.furthest(part, camera, with_arithmetic) for with_arithmetic in (False, True)], depths
-    )
+    try:
+        half_steps, bounds = _in_blocks(
+            lambda part: [codec.furthest(part, camera, with_arithmetic) for with_arithmetic in (False, True)], depths
+        )
+    except NoTwinError:
+        return (np.full_like(rays, np.nan),) * 2
     return rays * half_steps, rays * bounds
 
 
@@ -240,7 +245,12 @@ def _figures(case: Case, found: Measured, part: slice) -> Row:
         "relative_max": float(found.relative[part].max()),
         "error_mean": float(found.errors[part].mean()),
         "error_max": float(found.errors[part].max()),
-        "half_step": float(found.half_steps[part].max()),
-        "bound": float(found.bounds[part].max()),
+        "half_step": _known(found.half_steps[part].max()),
+        "bound": _known(found.bounds[part].max()),
         "signs_lost": int(found.lost[part].sum()) if case.codec.encoding.signed else None,
     }
+
+
+def _known(figure: float) -> float | None:
+    """A figure; None where it is not known."""
+    return None if np.isnan(figure) else float(figure)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from ...ground.options.option import Backends, Images, Names, Option, Plot, Seed
+from ...shaders.languages.source_options import SourceOptions
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
@@ -13,10 +14,10 @@ KEY, HOW = Role.KEY, Role.HOW
 
 
 @dataclass(frozen=True, kw_only=True)
-class DepthOptions:
+class DepthOptions(SourceOptions):
     """What `depth` measures. Names and numbers are comma-separated; None stands for what is usual."""
 
-    depth: Annotated[str, Option("--depth", f"Depth codes, {Names}.")] = "all"
+    depth: Annotated[str, Option("--depth", f"Depth codes or files of yours, {Names}.", files=True)] = "all"
     storage: Annotated[str | None, Option("--storage", f"Depth storages, {Names}. Default: each code's usual.")] = None
     rebuild: Annotated[
         str | None,

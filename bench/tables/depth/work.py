@@ -13,6 +13,7 @@ import numpy as np
 
 from ....encodings.catalogue import DEPTH_ENCODINGS, LIGHT_BUFFERS
 from ....encodings.codecs.depth_codec import REBUILDS, DepthCodec
+from ....encodings.codecs.kind import DEPTH
 from ....encodings.shared.position import Camera
 from ....encodings.storages.depth_storage import DEPTH_STORAGES, DepthStorage, depth_storage_of
 from ....gbuffer.frame.plan import Plan
@@ -32,7 +33,8 @@ from ...ground.options.storage_names import storages_said
 from ...ground.options.targets import what_is_left
 from ...ground.output.errors import UsageError
 from ...ground.output.writing import check_folder, whole_file
-from ..charts import having
+from ...subjects.codecs.kinds.named import own_codes_named
+from ..charts import but_without_twins, having
 from ..table import Measured, Row, Sheet, Step, Tick, Work, each
 from . import measure
 from .charts import charts, depth_chart
@@ -86,7 +88,7 @@ def codecs(options: DepthOptions) -> list[tuple[DepthCodec, str]]:
     made: list[tuple[DepthCodec, str]] = []
     complaints: list[str] = []
     asked = None if options.rebuild is None else choose("rebuild", options.rebuild, {name: name for name in REBUILDS})
-    for encoding in choose("depth", options.depth, DEPTH_ENCODINGS):
+    for encoding in own_codes_named(DEPTH, options.depth, DEPTH_ENCODINGS, "depth"):
         names = ",".join(encoding.storages) if options.storage is None else options.storage
         for storage in _storages_named(names):
             codec = DepthCodec(encoding, storage)
@@ -172,7 +174,8 @@ def _plotted(done: Measured) -> list[Chart]:
 
 
 def _shown(done: Measured) -> Iterator[Sheet]:
-    rows = _of_frames(done.rows) if any(step.case.frame for step in done.steps) else _beside(done.rows)
+    found = but_without_twins(done.rows)
+    rows = _of_frames(found) if any(step.case.frame for step in done.steps) else _beside(found)
     yield Sheet("", rows, TABLE.drops(rows))
 
 

@@ -16,9 +16,10 @@ from ....gbuffer.codecs.light.light_passes import Resolved
 from ....gbuffer.gl.device import Device, FormatError
 from ....gbuffer.gl.shader import ShaderError
 from ....gbuffer.pipelines import Pipeline
-from ...ground.output.errors import UsageError
+from ...ground.output.errors import MissingError, UsageError
+from ...shaders.code.twin import NoTwinError
 from .images import Lit, Resolves, Shot, targets_of, with_power
-from .sums import Adder, banding, chromaticity, equal_lights, gradient, random_lights
+from .sums import Adder, banding, chromaticity, equal_lights, gradient, has_light_twin, random_lights
 from .table import TABLE
 
 # Why the GL device may not be able to give a row.
@@ -83,6 +84,8 @@ def check_light_twin(encoding: LightCodec) -> None:
         found = jax.eval_shape(lambda light: encoding.decode(encoding.encode(light)), light)
         if len(found) != 4:
             raise TypeError(f"{len(found)} numbers of light, not 4")
+    except NoTwinError:
+        return
     except Exception as error:  # whatever a user's own file raises
         place = encoding.glsl.with_suffix(".py")
         raise UsageError(f"{place}: {type(error).__name__}: {error}") from error
@@ -126,10 +129,10 @@ def resolve_rows(
             if encoding in made.failed:
                 yield _filled_row("resolve", encoding, device, **described, skipped=made.failed[encoding])
                 continue
-            images: dict[str, tuple[Resolved, Resolved]] = {
-                "model": (made.model(encoding), single.model(encoding)),
-                "gl": (made.device(encoding), single.device(encoding)),
-            }
+            images: dict[str, tuple[Resolved, Resolved]] = {}
+            if has_light_twin(encoding):
+                images["model"] = (made.model(encoding), single.model(encoding))
+            images["gl"] = (made.device(encoding), single.device(encoding))
             for backend, (found, aliased) in images.items():
                 figures = made.compared(found, aliased)
                 yield _filled_row("resolve", encoding, device, backend=backend, **described, **figures)
@@ -176,7 +179,15 @@ def sorted_rows(rows: list[Row]) -> list[Row]:
     )
 
 
-def banded(encoding: LightCodec, peak: float) -> np.ndarray:
-    """A lamp's falloff as a light buffer keeps it by the model, (width, 3)."""
-    with Adder(encoding, None) as adder:
-        return adder.model(gradient(peak)[None]).light[:, :3]
+def banded(encoding: LightCodec, peak: float, device: Device | None) -> np.ndarray:
+    """A lamp's falloff as a light buffer keeps it by the model, (width, 3); on the device where there is no model.
+
+    Raises:
+        MissingError: there is neither.
+    """
+    with Adder(encoding, device if not has_light_twin(encoding) else None) as adder:
+        light = gradient(peak)[None]
+        found = adder.model(light) or adder.device(light)
+    if not found:
+        raise MissingError(f"{encoding.name} is written for shaders alone, and there is no GL device")
+    return found.light[:, :3]

@@ -20,6 +20,7 @@ from ....encodings.vec import Vec3, Vec4
 from ....gbuffer.codecs.light.light_passes import LightPasses, Sum
 from ....gbuffer.display import displayed
 from ....gbuffer.gl.device import Device
+from ...shaders.code.twin import NoTwinError
 
 Row = dict[str, Any]
 CHANNELS = "rgba"
@@ -72,6 +73,7 @@ class Adder:
 
     def __init__(self, encoding: LightCodec, device: Device | None):
         self.encoding = encoding
+        self._has_model = has_light_twin(encoding)
         self._passes = LightPasses(device, encoding) if device else None
 
     def __enter__(self) -> Adder:
@@ -86,8 +88,11 @@ class Adder:
         """Numbers of light that it holds."""
         return 4 if self.encoding.has_alpha else 3
 
-    def model(self, lights: np.ndarray, count: int | None = None, blending: Blending = IDEAL) -> Sum:
-        """The first `count` of lights, float32 of shape (lights, width, 4), added up by the model."""
+    def model(self, lights: np.ndarray, count: int | None = None, blending: Blending = IDEAL) -> Sum | None:
+        """The first `count` of lights, float32 of shape (lights, width, 4), added up by the model; None of a code that
+        is written for shaders alone."""
+        if not self._has_model:
+            return None
         light, texels = _sum_and_texels(
             self.encoding, planes(lights), len(lights) if count is None else count, blending
         )
@@ -101,7 +106,7 @@ class Adder:
     def rounding(self) -> Rounding | None:
         """How the GL device adds up: the plainest way that explains it best; None without a device."""
         lights = (np.random.default_rng(0).uniform(0, 1, (64, PIXELS, 4)) ** 2 * 0.05).astype(np.float32)
-        got = self.device(lights)
+        got = self.device(lights) if self._has_model else None
         if not got:
             return None
         shares: dict[str, float] = {}
@@ -119,7 +124,9 @@ class Adder:
         return Rounding(f"its own conversion{self._conversion_error()}", shares[name])
 
     def _explained_share(self, lights: np.ndarray, blending: Blending, got: Sum) -> float:
-        apart = steps_apart(self.encoding.storage, self.model(lights, None, blending).texels, got.texels)
+        model = self.model(lights, None, blending)
+        assert model
+        apart = steps_apart(self.encoding.storage, model.texels, got.texels)
         # An integer is the same or is not; floats may be a unit apart.
         allowed = 0.5 if self.encoding.storage.kind == "unorm" else 1.0
         return float(np.mean(np.all(apart <= allowed, axis=-1)))
@@ -155,11 +162,22 @@ def steps_of(storage: Storage, texels: np.ndarray) -> np.ndarray:
     return np.stack([*curved, *straight], axis=-1).astype(np.float64) * storage.scale(0)
 
 
-def worst_rounding(adder: Adder, light: np.ndarray) -> np.ndarray:
-    """The most that storing once moves each number of light, over light of shape (width, 4), below the limit."""
+def has_light_twin(codec: LightCodec) -> bool:
+    """Whether a light code is there in JAX. Raises what its Python half raises."""
+    try:
+        jax.eval_shape(codec.encode, Vec4(*[jax.ShapeDtypeStruct((1,), jnp.float32)] * 4))
+    except NoTwinError:
+        return False
+    return True
+
+
+def worst_rounding(adder: Adder, light: np.ndarray) -> np.ndarray | None:
+    """The most that storing once moves each number of light, over light of shape (width, 4), below the limit; None
+    without a model."""
     below = np.where(np.max(light, axis=1, keepdims=True) <= adder.encoding.limit, light, 0.0).astype(np.float32)
     # A light that multiplies is stored beside none.
-    return np.abs(adder.model(below[None]).light - below).max(axis=0)
+    found = adder.model(below[None])
+    return np.abs(found.light - below).max(axis=0) if found else None
 
 
 def _channel_labels(found: list[tuple[Any, ...]]) -> dict[tuple[Any, ...], str]:
@@ -177,18 +195,21 @@ def equal_lights(adder: Adder, sums: Sequence[float], counts: Sequence[int]) -> 
         half_step = worst_rounding(adder, ramp)
         for count in counts:
             lights = np.full((max(counts), 1, 4), total / count, np.float32)
-            model, gl = adder.model(lights, count).light[0], adder.device(lights, count)
+            model, gl = adder.model(lights, count), adder.device(lights, count)
             found = [
                 (
-                    float(model[i]),
-                    float(gl.light[0, i]) if gl else None,
-                    count * float(half_step[i]) + max(total - adder.encoding.limit, 0),
+                    *(float(one.light[0, i]) if one else None for one in (model, gl)),
+                    None if half_step is None else count * float(half_step[i]) + max(total - adder.encoding.limit, 0),
                 )
                 for i in range(adder.channels)
             ]
             for (by_model, by_gl, bound), channel in _channel_labels(found).items():
                 row: Row = {"channel": channel, "sum": total, "lights": count, "model": by_model, "gl": by_gl}
-                yield row | {"error": by_model - total, "gl_error": by_gl - total if gl else None, "bound": bound}
+                yield row | {"error": _off(by_model, total), "gl_error": _off(by_gl, total), "bound": bound}
+
+
+def _off(found: float | None, total: float) -> float | None:
+    return None if found is None else found - total
 
 
 def falloff(distance: np.ndarray, radius: float) -> np.ndarray:
@@ -223,8 +244,8 @@ def random_lights(adder: Adder, total: float, counts: Sequence[int], seed: int) 
     for count in counts:
         lights = coloured_lights(count, total, seed)
         exact = lights.sum(axis=0, dtype=np.float64)[:, : adder.channels]
-        bound = count * float(worst_rounding(adder, _partial_sums(lights.sum(axis=0)))[: adder.channels].max())
-        bound += max(float(exact.max()) - adder.encoding.limit, 0.0)
+        step, beyond = worst_rounding(adder, _partial_sums(lights.sum(axis=0))), exact.max() - adder.encoding.limit
+        bound = None if step is None else count * float(step[: adder.channels].max()) + max(float(beyond), 0.0)
         padded = np.zeros((max(counts), *lights.shape[1:]), np.float32)
         for order in ORDERS:
             padded[:count] = ordered(lights, order)

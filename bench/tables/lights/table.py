@@ -18,6 +18,7 @@ from ...ground.options.option import (
     Seed,
     Size,
 )
+from ...shaders.languages.source_options import SourceOptions
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
@@ -25,7 +26,7 @@ KEY, HOW = Role.KEY, Role.HOW
 
 
 @dataclass(frozen=True, kw_only=True)
-class LightsOptions:
+class LightsOptions(SourceOptions):
     """What `lights` measures. Names and numbers are comma-separated."""
 
     experiment: Annotated[

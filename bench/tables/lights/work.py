@@ -21,11 +21,12 @@ from ....reports.charts import pictures
 from ...ground.choose import choose
 from ...ground.machine.devices import found_device, require_jax
 from ...ground.options.counts import checked_numbers
-from ...ground.options.light_names import MOST_LIGHT, light_buffers_named
+from ...ground.options.light_names import MOST_LIGHT
 from ...ground.options.scene_names import scene_makers_named
 from ...ground.options.targets import TARGETS, checked_setting, checked_target
 from ...ground.output.errors import MissingError, UsageError
 from ...ground.output.writing import check_folder, whole_file
+from ...subjects.codecs.kinds.named import light_codecs_named
 from ..table import Row, Sheet, Step, Work, each
 from . import measure
 from .charts import charts
@@ -44,7 +45,7 @@ def experiments(options: LightsOptions) -> list[str]:
 
 def encodings(options: LightsOptions) -> list[LightCodec]:
     """The light buffers asked for, checked. Raises UsageError."""
-    chosen = light_buffers_named(options.light_buffer)
+    chosen = light_codecs_named(options.light_buffer)
     for encoding in chosen:
         measure.check_light_twin(encoding)
     return chosen
@@ -157,7 +158,7 @@ def _sum_step(
 ) -> Step:
     def rows() -> list[Row]:
         if "banding" in names:
-            album.add("banding", encoding.name, _bands(encoding, sums.peaks) if album.folder else None)
+            album.add("banding", encoding.name, _bands(encoding, sums.peaks, gl) if album.folder else None)
         found = list(measure.sum_rows(names, encoding, sums, gl))
         return found if gl else [row | {"skipped": missing} for row in found]
 
@@ -209,9 +210,9 @@ def _frame_key(experiment: str, shot: Shot, chosen: list[LightCodec], gl: Device
     return key | {"light_buffers": [encoding.name for encoding in chosen]}
 
 
-def _bands(encoding: LightCodec, peaks: tuple[float, ...]) -> np.ndarray:
+def _bands(encoding: LightCodec, peaks: tuple[float, ...], gl: Device | None) -> np.ndarray:
     """A lamp's falloff for each peak, a strip each, as displayed."""
-    strips = [displayed(measure.banded(encoding, peak) / max(peak, 1.0)) for peak in peaks]
+    strips = [displayed(measure.banded(encoding, peak, gl) / max(peak, 1.0)) for peak in peaks]
     return pictures.strips([strip[::2] for strip in strips], 64)
 
 

@@ -19,12 +19,12 @@ from ...ground.choose import choose, choose_one
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.counts import MAX_REPEATS, in_range
 from ...ground.options.effect_names import effects_named, lacking, name_of, pipeline_with
-from ...ground.options.light_names import light_buffers_named
 from ...ground.options.scene_names import powers_named, scene_makers_named
 from ...ground.options.targets import SHADOWS, TARGETS, check_scale, checked_setting, checked_target, what_is_left
 from ...ground.output.errors import UsageError, tell
 from ...ground.output.writing import check_folder, without
 from ...measures.metrics.images import require_flip
+from ...subjects.codecs.kinds.named import light_codecs_named
 from ...subjects.codecs.layout_names import layouts_named
 from ...subjects.codecs.names import codecs_named
 from ...subjects.environments.scenes_under import scenes_under
@@ -76,7 +76,7 @@ def cases(options: RenderOptions, device: Device) -> list[Case]:
     plans = [
         Plan(size, samples, layout, light, targets, shadows, options.scale, False, antialiased, options.least_roughness)
         for layout in layouts(options)
-        for light in light_buffers_named(options.light_buffer)
+        for light in light_codecs_named(options.light_buffer)
         for targets in choose("number of light targets", options.light_targets, TARGETS)
         for shadows in choose("shadow", options.shadow, SHADOWS)
         for antialiased in choose("specular antialiasing", options.specular_antialiasing, SHADOWS)

@@ -7,7 +7,6 @@ from ....gbuffer.gl.device import Device
 from ....gbuffer.pipelines import PIPELINES
 from ...ground.choose import choose
 from ...ground.options.counts import MAX_OBJECTS, MAX_REPEATS, checked_numbers, in_range
-from ...ground.options.light_names import light_buffers_named
 from ...ground.options.targets import (
     SHADOWS,
     TARGETS,
@@ -16,6 +15,7 @@ from ...ground.options.targets import (
     checked_target,
     what_is_left,
 )
+from ...subjects.codecs.kinds.named import light_codecs_named
 from ...subjects.codecs.layout_names import layouts_named
 from ..plans import suited
 from .measure import Point
@@ -46,7 +46,7 @@ def points(options: SweepOptions, device: Device) -> list[Point]:
                 plans = [
                     Plan(size, samples, layout, light, targets, shadows, options.scale)
                     for layout in asked or layouts_named(pipeline.usual_layout)
-                    for light in light_buffers_named(options.light_buffer)
+                    for light in light_codecs_named(options.light_buffer)
                     for targets in choose("number of light targets", options.light_targets, TARGETS)
                 ]
                 for plan in suited(device, pipeline, plans, complaints):

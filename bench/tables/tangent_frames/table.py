@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from ...ground.options.option import Backends, Names, Option, Seed
+from ...shaders.languages.source_options import SourceOptions
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
@@ -13,10 +14,12 @@ KEY, HOW = Role.KEY, Role.HOW
 
 
 @dataclass(frozen=True, kw_only=True)
-class FramesOptions:
+class FramesOptions(SourceOptions):
     """What `frames` measures. Names are comma-separated; no storage: where each code usually lies."""
 
-    encoding: Annotated[str, Option("--encoding", f"Tangent frame codes, {Names}.")] = "all"
+    encoding: Annotated[str, Option("--encoding", f"Tangent frame codes or files of yours, {Names}.", files=True)] = (
+        "all"
+    )
     storage: Annotated[
         str | None, Option("--storage", f"Tangent frame storages, {Names}. Default: each code's usual.")
     ] = None

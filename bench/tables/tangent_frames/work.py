@@ -7,13 +7,14 @@ from collections.abc import Iterator, Sequence
 
 from ....encodings.catalogue import FRAME_ENCODINGS
 from ....encodings.codecs.frame_codec import FrameCodec
+from ....encodings.codecs.kind import FRAME
 from ....encodings.storages.storage import FRAME_STORAGES
-from ...ground.choose import choose
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_count
 from ...ground.options.storage_names import storages_named
 from ...ground.options.targets import that_fit
+from ...subjects.codecs.kinds.named import own_codes_named
 from ..table import NoOutputs, Row, Sheet, Step, Work, each
 from . import measure
 from .sets import frame_sets_named
@@ -47,7 +48,7 @@ def codecs(options: FramesOptions) -> list[FrameCodec]:
     """The codecs asked for; those that do not fit are named on standard error."""
     return that_fit(
         FrameCodec(encoding, storage)
-        for encoding in choose("frame encoding", options.encoding, FRAME_ENCODINGS)
+        for encoding in own_codes_named(FRAME, options.encoding, FRAME_ENCODINGS, "frame encoding")
         for storage in storages_named(options.storage or ",".join(encoding.storages), FRAME_STORAGES, "frame storage")
     )
 

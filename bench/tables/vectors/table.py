@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from ...ground.options.option import Backends, Names, Option, Seed
+from ...shaders.languages.source_options import SourceOptions
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
@@ -13,10 +14,10 @@ KEY, HOW = Role.KEY, Role.HOW
 
 
 @dataclass(frozen=True, kw_only=True)
-class VectorsOptions:
+class VectorsOptions(SourceOptions):
     """What `vectors` measures. Names and numbers are comma-separated; no storage: where each code usually lies."""
 
-    encoding: Annotated[str, Option("--encoding", f"Motion codes, {Names}.")] = "all"
+    encoding: Annotated[str, Option("--encoding", f"Motion codes or files of yours, {Names}.", files=True)] = "all"
     storage: Annotated[str | None, Option("--storage", f"Motion storages, {Names}. Default: each code's usual.")] = None
     backend: Backends = "jax,glsl"
     speed: Annotated[str, Option("--speed", "Speeds in pixels a frame, comma-separated.")] = "0.05,0.25,1,4,16,64"

@@ -6,15 +6,16 @@ import math
 from collections.abc import Iterator, Sequence
 
 from ....encodings.catalogue import MOTION_ENCODINGS
+from ....encodings.codecs.kind import MOTION
 from ....encodings.codecs.motion_codec import MotionCodec
 from ....encodings.storages.storage import MOTION_STORAGES
-from ...ground.choose import choose
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_numbers, checked_sides, in_range
 from ...ground.options.storage_names import storages_named
 from ...ground.options.targets import that_fit
-from ..charts import one_backend
+from ...subjects.codecs.kinds.named import own_codes_named
+from ..charts import but_without_twins, one_backend
 from ..table import Measured, NoOutputs, Row, Sheet, Step, Work, each
 from . import measure
 from .charts import charts
@@ -47,7 +48,7 @@ def cases(options: VectorsOptions) -> list[measure.Case]:
     return [
         measure.Case(codec, backend, largest, speeds, paths)
         for codec in chosen
-        for largest in (ranges if codec.needs_range else ranges[:1])
+        for largest in codec.ranges(ranges)
         for backend in backends
     ]
 
@@ -56,7 +57,7 @@ def codecs(options: VectorsOptions) -> list[MotionCodec]:
     """The codecs asked for; those that do not fit are named on standard error."""
     return that_fit(
         MotionCodec(encoding, storage)
-        for encoding in choose("motion encoding", options.encoding, MOTION_ENCODINGS)
+        for encoding in own_codes_named(MOTION, options.encoding, MOTION_ENCODINGS)
         for storage in storages_named(options.storage or ",".join(encoding.storages), MOTION_STORAGES, "motion storage")
     )
 
@@ -98,6 +99,7 @@ def _said(value: object) -> object:
 
 
 def _shown(done: Measured) -> Iterator[Sheet]:
+    rows = but_without_twins(done.rows)
     names = ("encoding", "storage", "bits", "backend", "range")
     sheets = {
         "error_mean_px": ("mean error in pixels, by speed in pixels a frame", ("still_px", "least_px")),
@@ -105,8 +107,8 @@ def _shown(done: Measured) -> Iterator[Sheet]:
         "lost_percent": ("percent of the motions that come back as no motion, by speed; codes that lose any", ()),
     }
     for figure, (title, more) in sheets.items():
-        losing = {_line(row) for row in done.rows if figure != "lost_percent" or row[figure]}
-        part = [row for row in done.rows if _line(row) in losing]
+        losing = {_line(row) for row in rows if figure != "lost_percent" or row[figure]}
+        part = [row for row in rows if _line(row) in losing]
         if part:
             yield Sheet(f"{title}; {part[0]['size']}", _by_speed(part, figure, (*names, *more)), ("range",))
 

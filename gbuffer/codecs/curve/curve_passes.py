@@ -23,7 +23,7 @@ def curve_constants(encoding: CurveEncoding) -> dict[str, object]:
 
 
 def _curve_defines(encoding: CurveEncoding) -> dict[str, object]:
-    functions = {"CURVE_ENCODE": f"{encoding.name}_encode_curve", "CURVE_DECODE": f"{encoding.name}_decode_curve"}
+    functions = {"CURVE_ENCODE": f"{encoding.prefix}_encode_curve", "CURVE_DECODE": f"{encoding.prefix}_decode_curve"}
     return curve_constants(encoding) | functions
 
 

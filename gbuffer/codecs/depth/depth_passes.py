@@ -33,8 +33,8 @@ def depth_defines(encoding: DepthEncoding) -> dict[str, object]:
     """
     check_functions(encoding.glsl, encoding.signatures)
     return {
-        "DEPTH_ENCODE": f"{encoding.name}_encode_depth",
-        "DEPTH_DECODE": f"{encoding.name}_decode_depth",
+        "DEPTH_ENCODE": f"{encoding.prefix}_encode_depth",
+        "DEPTH_DECODE": f"{encoding.prefix}_decode_depth",
         "DEPTH_SIGNED": int(encoding.signed),
         "DEPTH_OWN_UNITS": int(encoding.own_units),
         **vec.CONSTANTS,

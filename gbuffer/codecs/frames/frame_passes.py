@@ -20,7 +20,7 @@ def frame_defines(encoding: FrameEncoding, least: float) -> dict[str, object]:
         ShaderError: its GLSL file cannot be read or lacks one of its functions.
     """
     check_functions(encoding.glsl, encoding.signatures)
-    name = encoding.name
+    name = encoding.prefix
     return {
         "FRAME_ENCODE": f"{name}_encode",
         "FRAME_DECODE": f"{name}_decode",

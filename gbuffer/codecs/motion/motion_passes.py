@@ -20,8 +20,8 @@ def motion_defines(encoding: MotionEncoding, needs_range: bool) -> dict[str, obj
     """
     check_functions(encoding.glsl, encoding.signatures)
     return {
-        "MOTION_ENCODE": f"{encoding.name}_encode_motion",
-        "MOTION_DECODE": f"{encoding.name}_decode_motion",
+        "MOTION_ENCODE": f"{encoding.prefix}_encode_motion",
+        "MOTION_DECODE": f"{encoding.prefix}_decode_motion",
         "MOTION_NEEDS_RANGE": int(needs_range),
         **vec.CONSTANTS,
         **encoding.constants,

@@ -9,6 +9,7 @@ from languages import require_runner
 
 from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.shaders.code.verify import agreement
+from normalbench.bench.shaders.languages.translated import translated
 from normalbench.bench.subjects.codecs.names import codecs_named
 
 MINE = """
@@ -116,3 +117,17 @@ def test_a_wrong_file_loses_its_own_rows_alone(run, tmp_path):
     status, out, err = run("quality", "--encoding", f"{wrong},{written(tmp_path, MINE)}", *QUICK)
     assert status == 0 and [row["encoding"] for row in json.loads(out)] == ["mine.wgsl"]
     assert err.count("left out: ") == 1 and np.isfinite(json.loads(out)[0]["mse"])
+
+
+def test_a_variable_without_a_value_is_zero(tmp_path):
+    """GLSL leaves it undefined, so that each is written with its zero: of numbers, vectors, arrays and structures."""
+    (tmp_path / "mine.wgsl").write_text(
+        "struct S { a: f32, b: vec2f }\n"
+        "fn encode_normal(n: vec3f) -> vec2f { var s: S; var f: f32; var l: array<f32, 2>; var v: vec2f;\n"
+        "    v.x = n.x; return v + s.b + vec2f(f + l[1] + s.a, n.y); }\n"
+        "fn decode_normal(e: vec2f) -> vec3f { return vec3f(e, sqrt(max(1.0 - dot(e, e), 0.0))); }\n"
+    )
+    text = translated(tmp_path / "mine.wgsl").texts[0]
+    # A structure's fields stand before the function.
+    body = re.search(r"^vec2 user_mine_wgsl_e_wgsl_\d+\(.*?^}", text, re.S | re.M)
+    assert body and len(re.findall(r"^    [^=;\n.]+ = [^;]*\b0\.0\b[^;]*;", body[0], re.M)) == 4, text

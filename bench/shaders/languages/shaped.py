@@ -1,0 +1,236 @@
+"""The two functions of a file that encode and decode something else than normals, and adapters that call them.
+
+    float4 Encode_e(float4 n, float3 view)      float4 Decode_d(float4 n, float3 view)
+
+are what a program calls, whatever the user's functions are given and give: see `shapes.py`.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from .pairs import (
+    NORMALS,
+    OF_COLOURS,
+    OF_OTHERS,
+    PACKED,
+    Function,
+    NoPairError,
+    Place,
+    SeveralPairsError,
+    role,
+    stem,
+)
+from .shapes import OF_NORMALS, SHAPES, WORDS, Part, Shape, Words, kind_spoken_of, words_in
+from .wiring import inputs_of, outputs_of
+
+# What an adapter is given and gives: seven numbers, and four.
+GIVEN, MADE = (4, 3), 4
+# Makes the text of an adapter in a language: see `wiring.adapter`.
+Adapter = Callable[[Function, str, Mapping[str, str], Sequence[Place | None]], str]
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A function as a shape has it.
+
+    Attributes:
+        function: it.
+        given: by what it is given, the part that this is; of what is a structure's and no part, nothing.
+        made: by the part, what it gives.
+    """
+
+    function: Function
+    given: Mapping[Place, Part]
+    made: Mapping[Part, Place]
+
+    def size(self, part: str) -> int:
+        """How many numbers a part has here; 0 where it has none."""
+        both = [*((part, place) for place, part in self.given.items()), *self.made.items()]
+        return next((place.size for one, place in both if one.name == part), 0)
+
+
+@dataclass(frozen=True)
+class ShapedPair:
+    """An encoder and its decoder, as a shape has them."""
+
+    shape: Shape
+    encode: Fitted
+    decode: Fitted
+
+    @property
+    def named(self) -> str:
+        """How it is asked for."""
+        return f"{self.encode.function.name}:{self.decode.function.name}"
+
+    @property
+    def components(self) -> int:
+        """How many numbers the code has."""
+        return self.encode.size(self.shape.code.name)
+
+    @property
+    def settings(self) -> list[str]:
+        """The names of the settings that either function is given."""
+        return [one.name for one in self.shape.settings if any(f.size(one.name) for f in (self.encode, self.decode))]
+
+    @property
+    def parts(self) -> dict[str, list[int]]:
+        """By each part how many numbers the encoder is given of it, and the decoder gives; 0 for none."""
+        return {part.name: [one.size(part.name) for one in (self.encode, self.decode)] for part in self.shape.parts}
+
+    def sides(self, adapter: Adapter) -> dict[str, tuple[Function, str]]:
+        """By the letter that a program calls it by, each adapter and its text."""
+        made = {"e": _adapted(self.encode, "e", (self.shape.code.name,), adapter)}
+        for letter, names in zip(LETTERS, self.shape.results, strict=False):
+            made[letter] = _adapted(self.decode, letter, names, adapter)
+        return made
+
+
+# What a program calls the adapters of a decoder by.
+LETTERS = "dtb"
+
+
+def _adapted(fitted: Fitted, letter: str, results: Sequence[str], adapter: Adapter) -> tuple[Function, str]:
+    """A function of seven numbers that gives four, and its text."""
+    name = f"{fitted.function.name.replace('::', '_')}_{letter}"
+    given = {place.path: part.sizes[place.size] for place, part in fitted.given.items()}
+    made = {part.name: place for part, place in fitted.made.items()}
+    text = adapter(fitted.function, name, given, [made.get(result) for result in results])
+    return Function(name, MADE, GIVEN, f"float{MADE}"), text
+
+
+def shaped_pair(
+    found: Sequence[Function],
+    kind: str,
+    asked: tuple[str, str] | None = None,
+    file: str = "",
+    own: Collection[str] = (),
+) -> ShapedPair:
+    """The pair of a kind among functions; see `pairs.pair_of`.
+
+    Raises:
+        NoPairError: none fits.
+        SeveralPairsError: several do; the message names them.
+    """
+    every = list(_all_pairs(found, kind, asked))
+    if asked and not every:
+        raise NoPairError(_why_not(found, kind, asked))
+    mine = [pair for pair in every if {pair.encode.function.name, pair.decode.function.name} <= set(own)]
+    best = _likeliest(mine, kind) or _likeliest(every, kind)
+    named = {pair.named: pair for pair in reversed(best if not asked else every)}
+    if len(named) > 1:
+        raise SeveralPairsError(file, list(reversed(named)))
+    if not named:
+        raise NoPairError(_why_none(found, kind, file))
+    return next(iter(named.values()))
+
+
+def _all_pairs(found: Sequence[Function], kind: str, asked: tuple[str, str] | None) -> Iterator[ShapedPair]:
+    for shape in SHAPES[kind]:
+        encoders = [one for one in found if _may_be(one, "encode", asked)]
+        decoders = [one for one in found if _may_be(one, "decode", asked)]
+        made = [fit for one in encoders if (fit := _fitted(one, shape.parts, (shape.code,), shape))]
+        back = [fit for one in decoders if (fit := _fitted(one, (shape.code,), shape.parts, shape))]
+        code = shape.code.name
+        for one, other in itertools.product(made, back):
+            if one.size(code) == other.size(code):
+                yield ShapedPair(shape, one, other)
+
+
+def _may_be(function: Function, side: str, asked: tuple[str, str] | None) -> bool:
+    """Whether a function is the one that is asked for, or is called as one of a side."""
+    return function.name == asked[side == "decode"] if asked else role(function.name) == side
+
+
+def _fitted(function: Function, given: Sequence[Part], made: Sequence[Part], shape: Shape) -> Fitted | None:
+    """A function as one of what it is given and gives; None where it is not."""
+    inputs = _assigned(inputs_of(function), [*given, *shape.settings])
+    outputs = _assigned(outputs_of(function), made)
+    if inputs is None or outputs is None:
+        return None
+    return Fitted(function, inputs, {part: place for place, part in outputs.items()})
+
+
+def _assigned(places: Sequence[Place], parts: Sequence[Part]) -> dict[Place, Part] | None:
+    """The part that each place is: by its name, then by the order; None where a part or a place is left.
+
+    What a structure has besides may be left.
+    """
+    found: dict[Place, Part] = {}
+    likely = sorted(
+        ((_likeness(place, part), place, part) for place in places for part in parts if _fits(place, part)),
+        key=lambda one: -one[0],
+    )
+    for letters, place, part in likely:
+        if letters and place not in found and part not in found.values():
+            found[place] = part
+    for part in sorted(parts, key=lambda part: not part.is_needed):
+        left = [place for place in places if place not in found and _fits(place, part)]
+        if part not in found.values() and left and (part.is_needed or "." not in left[0].path):
+            found[left[0]] = part
+    is_whole = all(part in found.values() for part in parts if part.is_needed)
+    is_used = all(place in found or "." in place.path for place in places)
+    return {place: found[place] for place in places if place in found} if is_whole and is_used else None
+
+
+def _fits(place: Place, part: Part) -> bool:
+    return place.kind == "float" and place.size in part.sizes
+
+
+def _likeness(place: Place, part: Part) -> int:
+    return part.likeness(place.path.rpartition(".")[2].lower())
+
+
+def _likeliest(pairs: Sequence[ShapedPair], kind: str) -> list[ShapedPair]:
+    """Those of the same name otherwise that speak of the kind, or of none."""
+    same = [pair for pair in pairs if stem(pair.encode.function.name) == stem(pair.decode.function.name)] or pairs
+    spoken = [pair for pair in same if kind_spoken_of(pair.named) == kind]
+    silent = [pair for pair in same if not kind_spoken_of(pair.named) and not _is_of_colours(pair, kind)]
+    best = spoken or silent
+    # Of two shapes of a kind the first one that fits.
+    return [pair for pair in best if pair.shape == best[0].shape]
+
+
+def _is_of_colours(pair: ShapedPair, kind: str) -> bool:
+    return kind != "light" and bool(OF_COLOURS & words_in(pair.named))
+
+
+def _why_not(found: Sequence[Function], kind: str, asked: tuple[str, str]) -> str:
+    """Why two functions that are asked for are no pair."""
+    names = {one.name for one in found}
+    if missing := [name for name in asked if name not in names]:
+        return f"no function is named {missing[0]}; there are: {', '.join(dict.fromkeys(names)) or 'none'}"
+    return f"{asked[0]} and {asked[1]} are no code of {WORDS[kind].plural}; the two functions must be {_wanted(kind)}"
+
+
+def _why_none(found: Sequence[Function], kind: str, file: str) -> str:
+    """Why no functions of a file are a pair of a kind."""
+    wanted = f"the two functions must be {_wanted(kind)}"
+    sides = {side: [one for one in found if role(one.name) == side] for side in ("encode", "decode")}
+    spoken = [one for several in sides.values() for one in several]
+    of_kind = [one for one in spoken if not _other_kind(one.name, kind)]
+    if spoken and not of_kind:
+        other = _other_kind(spoken[0].name, kind) or OF_NORMALS
+        return OF_OTHERS.format(spoken[0].name, other.plural, WORDS[kind].plural, other.command.format(file))
+    if packs := next((one for one in of_kind if one.kind in PACKED[:2]), None):
+        return f"{packs.name} gives a {packs.kind}, but a code of {WORDS[kind].plural} is numbers; {wanted}"
+    for side, other in (("encode", "decode"), ("decode", "encode")):
+        if sides[side] and not sides[other]:
+            return f"{sides[side][0].name} has no {other}r; {wanted}"
+    if of_kind:
+        return f"{of_kind[0].name} and its partner have other types than a code of {WORDS[kind].plural}; {wanted}"
+    return f"no encoder and decoder found; {wanted}"
+
+
+def _other_kind(name: str, kind: str) -> Words | None:
+    """What a function's name says that it is of, if that is not a kind."""
+    spoken = kind_spoken_of(name)
+    if spoken == kind:
+        return None
+    return WORDS[spoken] if spoken else OF_NORMALS if any(word in name.lower() for word in NORMALS) else None
+
+
+def _wanted(kind: str) -> str:
+    return "; or ".join(shape.wanted for shape in SHAPES[kind])

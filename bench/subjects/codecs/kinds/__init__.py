@@ -1,0 +1,1 @@
+"""Users' own codes of something else than normals."""

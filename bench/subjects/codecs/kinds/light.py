@@ -1,0 +1,113 @@
+"""Users' own codes of light."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .....encodings.codecs.kind import LIGHT
+from .....encodings.codecs.light_encoding import LightEncoding
+from .....encodings.storages.storage import LIGHT_STORAGES
+from .....gbuffer.codecs.own.own_passes import Tried
+from .....gbuffer.gl.device import Device
+from ....ground.choose import choose
+from ....ground.output.errors import UsageError
+from ....shaders.languages.words import settings_of
+from .own import COUNT, SEED, Own, OwnKind, Values, longest, numbers, rows
+
+# Lights from 2^-10 to the largest half; how far one that is held comes back off.
+DIMMEST, BRIGHTEST, LIGHT_NEARLY = 2.0**-10, 65504.0, 0.03
+# Half a step of a format of 8 bits, which a code may lead beyond 1.
+OF_8_BITS = 0.5 / 255
+# How far two lights that are added as codes come back off, in shares of their sum.
+ADDED = 1e-3
+NO_FOURTH = "its fourth number does not come back: it is measured as three colours"
+FORMATS = ("rgba8", "rgba16f")
+NOT_BLACK = "a texel that is cleared, {0:g} in all channels, decodes to {1:.3g} of light, not to none"
+
+
+def _lights(own: Own) -> Values:
+    """Colours up to the limit, dim ones as often as bright ones, with a fourth number."""
+    random = np.random.default_rng(SEED)
+    largest = own.found.get("limit", 1.0)
+    bright = largest * 2.0 ** random.uniform(-8, 0, (COUNT, 1)) * random.uniform(0, 1, (COUNT, 4))
+    return Values(bright.astype(np.float32), rows(np.zeros(COUNT)))
+
+
+def _light_errors(values: Values, found: Tried) -> np.ndarray:
+    """Of the colours; in shares of the brightest, or of a 256th."""
+    return _light_apart(values.given, found.back[0])[:, :3].max(axis=1)
+
+
+def _light_apart(given: np.ndarray, back: np.ndarray) -> np.ndarray:
+    brightest = np.maximum(given.astype(np.float64).max(axis=1, keepdims=True), 2.0**-8)
+    return np.abs(back.astype(np.float64) - given) / brightest
+
+
+def _light_facts(own: Own, gl: Device) -> dict[str, Any]:
+    """`limit`, the most white light that comes back from a format of fixed point, and `open_limit`, from floats;
+    `is_open`, whether a code of light 1 is for floats alone, `blend`, how its texels are added, and `has_alpha`."""
+    white = np.geomspace(DIMMEST, BRIGHTEST, COUNT)
+    values = Values(np.repeat(rows(white)[:, :1], 4, axis=1), rows(np.zeros(COUNT)))
+    found = own.tried(gl, values.given, values.more)
+    comes_back = _light_errors(values, found) < LIGHT_NEARLY
+    codes = found.codes[:, : own.made.components]
+    is_in = comes_back & np.all((codes >= -OF_8_BITS) & (codes <= 1 + OF_8_BITS), axis=1)
+    (_, limit), (_, open_limit) = (longest(white, some) or (0.0, 0.0) for some in (is_in, comes_back))
+    is_open = limit < 0.5 < open_limit
+    facts: dict[str, Any] = {"limit": float(f"{limit:.3g}"), "open_limit": open_limit, "is_open": is_open}
+    held = _lights(Own(own.path, own.made, {"limit": 0.25 * (open_limit if is_open else limit) or 1.0}))
+    return facts | _added(own, gl, held)
+
+
+def _added(own: Own, gl: Device, held: Values) -> dict[str, Any]:
+    """How texels of lights are added: by the sum or the product of their codes, or as lights; and the fourth number."""
+    found = own.tried(gl, held.given, held.more)
+    both = held.given + held.given[::-1]
+    blend = "read"
+    for name, codes in (("add", found.codes + found.codes[::-1]), ("multiply", found.codes * found.codes[::-1])):
+        back = own.tried(gl, held.given, held.more, codes).back[0]
+        if blend == "read" and bool((_light_apart(both, back)[:, :3] < ADDED).all()):
+            blend = name
+    wide = own.size("light") == (4, 4)
+    has_alpha = wide and bool((_light_apart(held.given, found.back[0])[:, 3] < LIGHT_NEARLY).all())
+    cleared = 1.0 if blend == "multiply" else 0.0
+    (black,) = own.tried(gl, held.given[:1], held.more[:1], np.full((1, 4), cleared, np.float32)).back[0]
+    glows = not abs(black[:3]).max() < LIGHT_NEARLY
+    said = {"wrong": [NOT_BLACK.format(cleared, float(abs(black[:3]).max()))]} if glows else {}
+    notes = [NO_FOURTH] if wide and not has_alpha and np.ptp(found.back[0][:, 3]) > 0 else []
+    return {"blend": blend, "has_alpha": has_alpha, "notes": notes} | said
+
+
+def _light_encoding(own: Own) -> LightEncoding:
+    """In the format that the file's name says, or that its codes are for. Raises UsageError for one that it is not."""
+    is_open = own.found.get("is_open", False)
+    (kept,) = choose("format", settings_of(own.path).format or FORMATS[is_open], LIGHT_STORAGES)
+    if kept.channels < own.made.components:
+        raise UsageError(f"{own.path}: its code has {own.made.components} numbers, {kept.title} {kept.channels}")
+    floats = kept.kind == "float"
+    limit = own.found["open_limit" if floats else "limit"]
+    if floats and limit >= BRIGHTEST:
+        limit = kept.largest
+    return LightEncoding(
+        **own.described(),
+        storages=(kept.name,),
+        blend=own.found["blend"],
+        has_alpha=own.found["has_alpha"],
+        limit=limit,
+    )
+
+
+KIND = OwnKind(
+    kind=LIGHT,
+    values=_lights,
+    errors=_light_errors,
+    unit="of the brightest channel",
+    nearly=LIGHT_NEARLY,
+    exactly=lambda _: {},
+    encoding=_light_encoding,
+    facts=_light_facts,
+    said=numbers,
+    rounded=OF_8_BITS,
+)

@@ -1,0 +1,155 @@
+"""A first look at a user's own code of something else than normals, in a process that may hang or die.
+
+    python -m normalbench.bench.subjects.codecs.kinds.look KIND FILE
+
+Prints a line of JSON. `error`, what is wrong with the file, with `pairs`, the names of several; `missing`, what this
+machine lacks; `broken`, where the code is not finite or does not end. Else `functions`, its encoder and its decoder,
+`pair`, these where the file has several and one undoes itself, `error_max`, how far what was tried comes back off at
+most, `wrong`, `notes` and `measured`, lines, and what its kind finds: see `own.py`.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .....gbuffer.codecs.loops import loop_limit
+from .....gbuffer.codecs.own.own_passes import Tried
+from .....gbuffer.gl.device import Device, NoDeviceError, device
+from .....gbuffer.gl.shader import ShaderError
+from ....ground.machine import children
+from ....ground.output.errors import MissingError, UsageError
+from ....shaders.languages.translated import SeveralEncodersError, translated
+from ....shaders.languages.words import with_pair
+from .own import Own, OwnKind, Values
+from .table import OWN
+
+# How many pairs of a file are tried, and how many letters of a compiler's message are shown.
+MOST_PAIRS, LONGEST = 12, 1000
+NOT_A_PAIR = "encode and decode do not undo each other: {} comes back {:.3g} {} off, the largest error of {} values"
+BEYOND = "number {} of the code leaves [{}, 1], which is all that storages of fixed point hold: {:.4g} of {}"
+UNDONE = "of {} values none comes back farther off than {:.3g} {}, before any storage"
+REACH = "its numbers reach from {}"
+NOT_EXACT = "{} does not come back exactly, before any storage: {:.3g} {} off"
+
+
+def look(kind: OwnKind, path: Path) -> dict[str, Any]:
+    """What there is to say of a file; see above."""
+    try:
+        return _look_at_one(kind, path)
+    except SeveralEncodersError as error:
+        kept = [pair for pair in error.pairs[:MOST_PAIRS] if _undoes_itself(kind, with_pair(path, pair))]
+        if len(kept) == 1:
+            return _look_at_one(kind, with_pair(path, kept[0])) | {"pair": kept[0]}
+        named = ", ".join(str(with_pair(path, pair)) for pair in kept or error.pairs)
+        said = f"{len(kept)} of its pairs undo themselves; name one" if kept else "none of its pairs undoes itself"
+        return {"error": f"{path}: {said}: {named}", "pairs": kept}
+
+
+def _undoes_itself(kind: OwnKind, path: Path) -> bool:
+    found = _look_at_one(kind, path)
+    return found.get("error_max", np.inf) <= kind.nearly
+
+
+def _look_at_one(kind: OwnKind, path: Path) -> dict[str, Any]:
+    """The same of a file of which one pair is meant. Raises SeveralEncodersError."""
+    try:
+        gl, made = device(), translated(path, kind=kind.kind.name)
+        own = Own(path, made, {})
+        if broken := _endless(kind, own, gl):
+            return {"broken": broken}
+        facts = kind.facts(own, gl)
+        return {"functions": made.named} | facts | _judged(kind, Own(path, made, facts), gl)
+    except (NoDeviceError, MissingError) as error:
+        return {"missing": str(error)}
+    except SeveralEncodersError:
+        raise
+    except UsageError as error:
+        return {"error": str(error)}
+    except ShaderError as error:
+        said = re.sub(r"\S+\.glsl:(\d+)", r"line \1", " ".join(str(error).partition("=\n")[2].split()) or str(error))
+        return {"error": f"{path}: the GLSL that was made of it does not compile on this device: {said[:LONGEST]}"}
+
+
+def _endless(kind: OwnKind, own: Own, gl: Device) -> str:
+    """What is said of a loop that the device has ended; empty where it has ended none."""
+    values = kind.values(own)
+    found = own.tried(gl, values.given, values.more)
+    for what, flags in (("encode", found.encode_ended), ("decode", found.decode_ended)):
+        if flags.any():
+            said = f"after {loop_limit(gl) or 'too many'} turns in all this device ends a shader's loops without a word"
+            return f"the loops of {what} for {_said(kind, values, int(np.argmax(flags)))} do not end here: {said}"
+    return ""
+
+
+def _said(kind: OwnKind, values: Values, at: int) -> str:
+    return kind.said(values.given[at], values.more[at])
+
+
+def _judged(kind: OwnKind, own: Own, gl: Device) -> dict[str, Any]:
+    values = kind.values(own)
+    found = own.tried(gl, values.given, values.more)
+    errors = kind.errors(values, found)
+    for what, finite in (("encode", np.isfinite(found.codes).all(axis=1)), ("decode", np.isfinite(errors))):
+        if not finite.all():
+            return {"broken": f"{what} gives no number of {_said(kind, values, int(np.argmin(finite)))}"}
+    at = int(np.argmax(errors))
+    far = NOT_A_PAIR.format(_said(kind, values, at), errors[at], kind.unit, len(errors))
+    wrong = [*([far] if errors[at] > kind.nearly else []), *_beyond(kind, own, values, found)]
+    wrong += own.found.get("wrong", [])
+    inexact = _inexact(kind, own, gl)
+    notes = [*own.found.get("notes", []), *inexact.values()]
+    exact = [f"{name} comes back exactly" for name in kind.exactly(own) if name not in inexact]
+    least = [UNDONE.format(len(errors), errors[at], kind.unit)] if errors[at] <= kind.nearly else []
+    measured = [*least, *exact, REACH.format(", ".join(_reach(found, own.made.components)))]
+    return {"error_max": float(errors[at]), "wrong": wrong, "notes": notes, "measured": measured}
+
+
+def _reach(found: Tried, size: int) -> Iterator[str]:
+    for number in range(size):
+        codes = found.codes[:, number]
+        yield f"{codes.min():.4g} to {codes.max():.4g}"
+
+
+def _beyond(kind: OwnKind, own: Own, values: Values, found: Tried) -> Iterator[str]:
+    """The numbers of a code that lead beyond what storages hold, with the worst value."""
+    least = 0 if own.is_unit or not own.shape.has_sign else -1
+    if own.found.get("is_open"):
+        return
+    for number in range(own.made.components):
+        codes = found.codes[:, number].astype(np.float64)
+        off = np.maximum(codes - 1, least - codes)
+        at = int(np.argmax(off))
+        if off[at] > kind.rounded:
+            yield BEYOND.format(number + 1, least, codes[at], _said(kind, values, at))
+
+
+def _inexact(kind: OwnKind, own: Own, gl: Device) -> dict[str, str]:
+    """By what it is called, a line on each value that should come back exactly and does not."""
+    found: dict[str, str] = {}
+    for name, values in kind.exactly(own).items():
+        error = float(kind.errors(values, own.tried(gl, values.given, values.more))[0])
+        if error != 0:
+            found[name] = NOT_EXACT.format(name, error, kind.unit)
+    return found
+
+
+def main(words: Sequence[str]) -> None:
+    """What the command does; see above."""
+    children.limit_this_process()
+    # Whatever users' code prints goes to stderr.
+    answer = os.dup(1)
+    os.dup2(2, 1)
+    kind, path = words
+    os.write(answer, json.dumps(look(OWN[kind], Path(path))).encode() + b"\n")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,180 @@
+"""A user's own code of a kind: what it is read as, and what a kind says of how it is tried and becomes an encoding.
+
+A kind is a module next to this one, and a line of `table.py`; what its functions take and give stands in
+`languages/shapes.py`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .....encodings.codecs.files import called
+from .....encodings.codecs.kind import AnyEncoding, Kind
+from .....gbuffer.codecs.own.own_passes import RESULTS, Tried, tried
+from .....gbuffer.gl.device import Device
+from ....ground.output.errors import NO_TWIN
+from ....shaders.code.twin import NoTwinError
+from ....shaders.languages.shapes import SHAPES, WORDS, Shape, Words
+from ....shaders.languages.translated import Translated
+
+# How many values of a kind are tried, and with which seed.
+COUNT, SEED = 4096, 0
+# How far a number may lead beyond what a storage holds.
+ROUNDED = 2e-5
+
+
+@dataclass(frozen=True)
+class Own:
+    """A user's own code, read.
+
+    Attributes:
+        path: of the file, with the names of its functions where they are needed.
+        made: its translation.
+        found: what the first look found of it: see `look.py`.
+    """
+
+    path: Path
+    made: Translated
+    found: Mapping[str, Any]
+
+    @property
+    def shape(self) -> Shape:
+        """What its functions take and give."""
+        return next(shape for shapes in SHAPES.values() for shape in shapes if shape.template == self.template)
+
+    @property
+    def template(self) -> str:
+        """The file of GLSL around it, which tells shapes apart."""
+        return self.made.shaped["template"]
+
+    @property
+    def settings(self) -> Sequence[str]:
+        """What its functions are given besides."""
+        return self.made.shaped["settings"]
+
+    @property
+    def is_unit(self) -> bool:
+        """Whether its numbers are in [0, 1] where the catalogue's are in [-1, 1]."""
+        return self.found.get("is_unit", False)
+
+    def size(self, part: str) -> tuple[int, int]:
+        """How many numbers the encoder is given of a part, and the decoder gives; 0 for none."""
+        encoded, decoded = self.made.shaped["parts"].get(part, (0, 0))
+        return encoded, decoded
+
+    def tried(self, gl: Device, given: np.ndarray, more: np.ndarray, codes: np.ndarray | None = None) -> Tried:
+        """Values through its functions: see `own_passes.tried`."""
+        results = min(len(self.shape.results), len(RESULTS))
+        return tried(gl, self.made.glsl(False), self.made.prefix, results, given, more, codes)
+
+    def described(self) -> dict[str, Any]:
+        """What encodings of every kind say of themselves."""
+        lacking = _lacking(f"{self.made.name} {NO_TWIN}")
+        return {
+            "name": self.made.name,
+            "title": called(str(self.path)),
+            "citation": called(str(self.path)),
+            "encode": lacking,
+            "decode": lacking,
+            "glsl": self.made.glsl(self.is_unit),
+            "functions": self.made.prefix,
+            "ulps": (0, 0),
+            "ulps_reason": "a user's own",
+        }
+
+
+def _lacking(reason: str) -> Callable[..., Any]:
+    """A half of a map that raises NoTwinError."""
+
+    def lacking(*_: Any) -> Any:
+        raise NoTwinError(reason)
+
+    return lacking
+
+
+@dataclass(frozen=True)
+class Values:
+    """What functions are tried with: what an adapter is given, and more, of which it is given three; float32 of shape
+    (count, 4)."""
+
+    given: np.ndarray
+    more: np.ndarray
+
+    def of(self, which: Any) -> Values:
+        """Some of them."""
+        return Values(self.given[which], self.more[which])
+
+
+@dataclass(frozen=True)
+class OwnKind:
+    """How a user's own code of a kind is tried, and becomes an encoding.
+
+    Attributes:
+        kind: of the catalogue.
+        values: what a code is tried with.
+        errors: what was given and what came back, as adapters have it, to how far it is off; float64 of shape (count,).
+        unit: what the errors are counted in.
+        nearly: how far what undoes itself is off at most, before any storage.
+        exactly: by what it is called, a value that should come back exactly.
+        encoding: the code as the catalogue has such.
+        facts: what the first look finds besides; `wrong` and `notes` are lines, `is_open`, that codes are unbound.
+        said: a value in words.
+        rounded: how far a number may lead beyond what a storage holds.
+    """
+
+    kind: Kind
+    values: Callable[[Own], Values]
+    errors: Callable[[Values, Tried], np.ndarray]
+    unit: str
+    nearly: float
+    exactly: Callable[[Own], Mapping[str, Values]]
+    encoding: Callable[[Own], AnyEncoding]
+    facts: Callable[[Own, Device], dict[str, Any]]
+    said: Callable[[np.ndarray, np.ndarray], str]
+    rounded: float = ROUNDED
+
+    @property
+    def words(self) -> Words:
+        """How people speak of it."""
+        return WORDS[self.kind.name]
+
+
+def rows(*columns: np.ndarray | float) -> np.ndarray:
+    """Columns as an array of four, zeros behind them; float32 of shape (count, 4)."""
+    wide = np.broadcast_arrays(*columns, *[0.0] * (4 - len(columns)))
+    return np.stack(wide, axis=-1).astype(np.float32)
+
+
+def of_range(count: int) -> np.ndarray:
+    """The setting of functions that are given a range: 1."""
+    return rows(np.ones(count))
+
+
+def numbers(given: np.ndarray, _: np.ndarray) -> str:
+    """What an adapter is given, in words: all of it."""
+    return f"({', '.join(f'{value:.4g}' for value in given)})"
+
+
+def number(given: np.ndarray, _: np.ndarray) -> str:
+    """And the first number alone."""
+    return f"{given[0]:.4g}"
+
+
+def one_number_errors(values: Values, found: Tried) -> np.ndarray:
+    """How far off one number comes back."""
+    return np.abs(found.back[0][:, 0].astype(np.float64) - values.given[:, 0])
+
+
+def longest(ascending: np.ndarray, is_in: np.ndarray) -> tuple[float, float] | None:
+    """The ends of the longest run of values that are in; None where none is."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], is_in, [False]]).astype(int)))
+    runs = edges.reshape(-1, 2)
+    if not len(runs):
+        return None
+    first, last = max(runs, key=lambda run: run[1] - run[0])
+    return float(ascending[first]), float(ascending[last - 1])

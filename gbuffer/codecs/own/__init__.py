@@ -1,0 +1,1 @@
+"""Users' functions of any kind, by themselves."""

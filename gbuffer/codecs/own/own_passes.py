@@ -1,0 +1,64 @@
+"""A user's two functions of any kind on a GL device, without storage."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ....encodings import vec
+from ...gl.device import Device
+from ..harness import exact
+
+# Turns of the loop behind the functions: see loops.py.
+FEW = 4
+# What the adapters of a decoder are called, as many as it may have.
+RESULTS = ("d", "t", "b")
+
+
+@dataclass(frozen=True)
+class Tried:
+    """What the functions made of some values, float32 arrays of shape (count, 4).
+
+    Attributes:
+        codes: what the encoder gives.
+        back: what each adapter of the decoder gives.
+        encode_ended: bool of shape (count,), whether the device ended a loop of the encoder.
+        decode_ended: the same of the decoder, or of the encoder before it.
+    """
+
+    codes: np.ndarray
+    back: list[np.ndarray]
+    encode_ended: np.ndarray
+    decode_ended: np.ndarray
+
+
+def tried(
+    device: Device,
+    glsl: Path,
+    prefix: str,
+    results: int,
+    given: np.ndarray,
+    more: np.ndarray,
+    codes: np.ndarray | None = None,
+) -> Tried:
+    """Values through the two functions.
+
+    Args:
+        glsl: a file with their adapters, whose names begin with the prefix.
+        results: how many adapters the decoder has.
+        given, more: what each adapter is given, float32 of shape (count, 4), of `more` the first three.
+        codes: to decode in place of those that the encoder gives, likewise.
+
+    Raises:
+        ShaderError: the file does not compile.
+    """
+    names = [f"{prefix}_{letter}_main" for letter in RESULTS]
+    functions = dict(zip(("OWN_FIRST", "OWN_SECOND", "OWN_THIRD"), names, strict=True))
+    defines = {"OWN_ENCODE": f"{prefix}_e_main", **functions, "OWN_RESULTS": results, **vec.CONSTANTS}
+    arrays = [given, np.concatenate([more[:, :3], np.full((len(given), 1), codes is not None)], axis=1)]
+    arrays.append(np.zeros_like(given) if codes is None else codes)
+    named = {"OWN_CODE": glsl}
+    made, *back, encoded, decoded = exact(device, "own_trial.comp", defines, named, arrays, 6, asked_turns=FEW)
+    return Tried(made, back[:results], encoded[:, 0] != 1, decoded[:, 0] != 1)
