@@ -51,7 +51,7 @@ def template(name: str, **words: object) -> str:
 
 @cache
 def _text(name: str) -> str:
-    return Path(__file__).with_name(name).read_text(encoding="utf-8")
+    return (Path(__file__).parent / name).read_text(encoding="utf-8")
 
 
 # Of a code in [0, 1] to [-1, 1], and back.
