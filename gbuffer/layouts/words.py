@@ -114,6 +114,8 @@ def _spelt_out(place: str, target: Target) -> Iterator[str]:
     for text in target.holds.split():
         found = WORD.fullmatch(text)
         name = (found["curved"] or found["name"]) if found else ""
+        if found and found["curve"] in WHOLE and name.startswith(f"{LIGHT}."):
+            raise LayoutError(f"{place}: {text}: write {found['curve']}({LIGHT}), which takes the whole target")
         if not found or name not in COLOURS:
             yield text
             continue

@@ -109,6 +109,7 @@ def test_two_ranges_of_one_code_are_told_apart(gl):
         ("rgba8: rgb9e5(albedo)", r"rgb9e5 keeps a light in a whole texel, as in rgb9e5\(emission\)"),
         ("rgba8: metalness; rgba16f: rgb9e5(emission)", r"rgb9e5\(emission\) is all that its target holds, of rgba8"),
         ("rgba8: emission.r emission.g emission.b emission.a", "a code of light has four numbers"),
+        ("rgba8: rgb9e5(emission.r) metalness", r"write rgb9e5\(emission\), which takes the whole target"),
         ("rgba8: rgb9e5(emission):8", "the numbers of rgb9e5 have channels of their own"),
     ],
 )
