@@ -38,11 +38,13 @@ def exact(gl) -> np.ndarray:
 
 @pytest.mark.parametrize("name", CURVE_ENCODINGS)
 def test_in_floats_a_curve_leaves_the_image_as_it_is(gl, exact, name):
-    """Every quantity on it: 75 dB; the fast curve is no inverse of itself, which costs 55 to 75."""
+    """Every quantity on it: 75 dB. The fast curve does not quite undo itself: 55 to 75; eight rays have nine values."""
     on = {q: f"{name}({q})" for q in ("albedo", "metalness", "roughness", "reflectance", "occlusion", "emission")}
     targets = "rgba32f: {albedo} {metalness}; rgba32f: {roughness} {reflectance} {occlusion}; rgba32f: {emission}"
     found = apart(image(gl, targets.format(**on)), exact)
-    assert 55 < found < 75 if CURVE_ENCODINGS[name].inverse_error else found > 75, f"{found:.1f} dB"
+    off = CURVE_ENCODINGS[name].inverse_error
+    least, most = (75, np.inf) if not off else (55, 75) if off < 0.01 else (10, 55)
+    assert least < found <= most, f"{found:.1f} dB"
 
 
 # Colours as dark as soil and rubber, where linear steps are coarsest.
