@@ -10,6 +10,15 @@ from types import MappingProxyType
 OTHER_WORDS: Mapping[str, Mapping[str, str]] = MappingProxyType(
     {
         "language": {"metal": "msl"},
+        "depth storage": {
+            "d16unorm": "depth16",
+            "d24unorms8uint": "depth24",
+            "x8d24unorm": "depth24",
+            "depth24plus": "depth24",
+            "d32float": "depth32f",
+            "d32sfloat": "depth32f",
+            "unorm:24": "packed24",
+        },
         "encoding": {"oct": "octahedral", "hemioct": "hemi_octahedral"},
         "family": {
             "gcn4": "polaris10",
@@ -57,7 +66,7 @@ def spelled(what: str, word: str, known: Iterable[str]) -> str | None:
     known = list(known)
     if word in known:
         return word
-    wanted = OTHER_WORDS.get(what, {}).get(plain(word), word)
+    wanted = OTHER_WORDS.get(what, {}).get(plain(_API.sub("", word.lower())), word)
     found = [name for name in known if plain(name) == plain(wanted)]
     if not found and what.endswith("storage") and (channels := channels_of(word)):
         found = [name for name in known if channels_of(name) == channels]

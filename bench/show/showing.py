@@ -10,6 +10,7 @@ from pathlib import Path
 from ...reports import tables
 from ..ground.output.errors import UsageError, lacks_twin, tell
 from ..ground.output.writing import check_writable, say, whole_file
+from ..tables.charts import but_without_twins
 from ..tables.table import Measured, Role, Row, Sheet, Table
 
 FOR_PEOPLE = ("table", "markdown")
@@ -66,9 +67,7 @@ def sheets(table: Table, done: Measured) -> Iterator[Sheet]:
         yield from table.work.shown(done)
         return
     groups: dict[object, list[Row]] = {}
-    # What lacks a twin alone is said beside the rows.
-    shown = [row for row in done.rows if not lacks_twin(row.get("skipped") or "")]
-    for row in table.without_hidden(shown):
+    for row in table.without_hidden(but_without_twins(done.rows)):
         groups.setdefault(row[table.by] if table.by else None, []).append(row)
     for rows in groups.values():
         yield Sheet("", rows, table.drops(rows))
@@ -120,11 +119,16 @@ def say_skipped(table: Table, rows: Sequence[Row], known: Iterable[str] = ()) ->
         tell(f"{_kind_of_skip(table, rows, reason)}: {reason}")
 
 
+def _but_its_backend(table: Table, row: Row) -> tuple[object, ...]:
+    """What a row is called, whichever language measured it."""
+    return tuple(row.get(column.name) for column in table.of_role(Role.KEY) if column.name != "backend")
+
+
 def _kind_of_skip(table: Table, rows: Sequence[Row], reason: str) -> str:
     """What a reason has kept from some rows; that an encoding without a twin is measured otherwise is not a failure."""
     skipped = [row for row in rows if row.get("skipped") == reason]
-    measured = {row.get("encoding") for row in rows if not row.get("skipped")}
-    if lacks_twin(reason) and all(row.get("encoding") in measured for row in skipped):
+    measured = {_but_its_backend(table, row) for row in rows if not row.get("skipped")}
+    if lacks_twin(reason) and all(_but_its_backend(table, row) in measured for row in skipped):
         return "measured by OpenGL alone"
     return (
         "rows without some of their figures"

@@ -74,6 +74,8 @@ class Codec:
             return f"{storage.title} is of floats, and {self._rounding_text} is for fixed point"
         if encoding.is_precise and self.rounding != "nearest":
             return "it is rounded precisely, not otherwise"
+        if encoding.is_half and encoding.patch:
+            return "a range is not computed in half arithmetic"
         if encoding.is_half and self._not_in_half:
             return f"{self._not_in_half} for half arithmetic"
         return numbers_misfit(storage, levels)
@@ -133,10 +135,9 @@ class Codec:
             return self.encoding.packed_bits
         return sum(self.storage.bits[: self.encoding.components]) + self.encoding.sign_bits
 
-    @property
-    def bits_of_bounds(self) -> float:
-        """The bits that a patch's range adds to each of its normals; 0 without patches."""
-        return bits_of_bounds(self.encoding.components, self.encoding.patch) if self.encoding.patch else 0.0
+    def bits_of_bounds(self, count: int) -> float:
+        """The bits that the ranges of patches add to each of so many normals; 0 without patches."""
+        return bits_of_bounds(self.encoding.components, self.encoding.patch, count) if self.encoding.patch else 0.0
 
     @property
     def codes(self) -> int:

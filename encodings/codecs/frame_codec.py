@@ -12,9 +12,6 @@ from ..vec import TINY, Vec4
 from .codec import numbers_misfit
 from .frame_encoding import FrameEncoding
 
-# Of floats by their size the least number that a hand is kept at: none that a device may flush to 0.
-LEAST_FLOAT = {16: 2.0**-14, 32: TINY}
-
 
 @dataclass(frozen=True)
 class FrameCodec:
@@ -53,7 +50,8 @@ class FrameCodec:
         if self.encoding.hand_in is None:
             return 0.0
         if self.storage.kind == "float":
-            return LEAST_FLOAT[self.storage.bits[0]]
+            # The least normal float: none that a device may flush to 0.
+            return max(2.0 ** (1 - self.storage.float_form(self.encoding.hand_in).one), TINY)
         return 1.0 / self.storage.scale(self.encoding.hand_in)
 
     def store(self, code: Vec4) -> Vec4:

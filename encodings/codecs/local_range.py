@@ -1,7 +1,8 @@
 """Codes within the range of their patch: each number is stored between the least and the largest of its neighbours'.
 
-A patch is some normals that follow each other: vertices of a mesh in its order, or pixels along a row. Its two bounds
-for each number are stored next to it, in 16 bits each, rounded away from the codes.
+A patch is some normals that follow each other: vertices of a mesh in its order, or pixels row after row; pixels without
+a surface have codes as well. Its two bounds for each number are stored next to it, in 16 bits each, rounded away from
+the codes.
 """
 
 from __future__ import annotations
@@ -15,9 +16,9 @@ BOUND_BITS = 16
 SCALE = 2.0 ** (BOUND_BITS - 1) - 1.0
 
 
-def bits_of_bounds(components: int, patch: int) -> float:
-    """The bits of a patch's bounds for each of its normals."""
-    return 2.0 * components * BOUND_BITS / patch
+def bits_of_bounds(components: int, patch: int, count: int) -> float:
+    """The bits of all patches' bounds for each of so many normals; the last patch may be a part."""
+    return 2.0 * components * BOUND_BITS * -(-count // patch) / count
 
 
 def bounds(c: Any, patch: int) -> tuple[Any, Any]:

@@ -71,7 +71,7 @@ def by_rule(kind: str, bits: tuple[int, ...]) -> Storage:
         return _of_floats(kind, bits)
     if kind == "centred":
         like = by_rule("unorm", bits)
-        if like.is_packed:
+        if like.name not in STORAGES or like.is_packed:
             raise ValueError(
                 f"centred numbers lie in a format of a GPU, such as centred:8:8, not {':'.join(map(str, bits))}"
             )
@@ -125,7 +125,7 @@ def storage_of(name: str) -> Storage | None:
         return by_rule(by["kind"], tuple(map(int, by["bits"].split(":"))))
     if name in STORAGES:
         return STORAGES[name]
-    if name.endswith(CENTRED) and (like := FORMATS.get(name.removesuffix(CENTRED))):
+    if name.endswith(CENTRED) and (like := STORAGES.get(name.removesuffix(CENTRED))):
         return by_rule("centred", like.bits) if like.kind == "unorm" else None
     if floats := re.fullmatch(r"(u?float)_(\d{1,2})_(\d{1,2})", name):
         return _of_floats(floats[1], (int(floats[2]), int(floats[3])))

@@ -62,8 +62,10 @@ class StoragePacking:
 
     @property
     def channels(self) -> int:
-        """The channels of the target that hold something."""
-        return -(-sum(self.storage.bits[: self.numbers]) // BYTE) if self.storage.is_packed else self.numbers
+        """The channels of the target that hold something: at least 2, as GLSL has no vectors of one."""
+        storage = self.storage
+        taken = -(-sum(storage.bits[: self.numbers]) // storage.part) if storage.is_packed else self.numbers
+        return max(2, taken)
 
     def pack(self) -> Operation:
         return Operation("kernel_store.glsl", self.numbers, 3, self.channels, self._defines(), is_portable=False)

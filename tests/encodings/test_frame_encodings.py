@@ -10,6 +10,7 @@ from parity.frames import (
     LEAST,
     RANDOM,
     as_frame,
+    as_rows,
     decoded,
     gl_trip,
     hard_frames,
@@ -23,6 +24,7 @@ from slowly import all_but
 from normalbench.encodings.catalogue import FRAME_ENCODINGS
 from normalbench.encodings.codecs.frame_codec import FrameCodec
 from normalbench.encodings.rotation import quaternion_of
+from normalbench.encodings.storages.rules import by_rule
 from normalbench.encodings.storages.storage import FRAME_STORAGES
 
 
@@ -114,6 +116,14 @@ def test_a_hand_at_an_end_of_its_range_is_kept():
     for name, frames, number in (("smallest_three", third, 2), ("qtangent", half_turn, 3)):
         codes = rows(FRAME_ENCODINGS[name].encode(as_frame(frames), LEAST))
         assert codes[:, number] == pytest.approx([LEAST, -LEAST], rel=2e-3), name
+
+
+@pytest.mark.parametrize("name", ["qtangent", "smallest_three"])
+def test_a_hand_is_kept_in_floats_of_any_form(name):
+    """Its least number is the form's least normal float."""
+    codec = FrameCodec(FRAME_ENCODINGS[name], by_rule("float", (4, 3)))
+    frames = hard_frames()
+    assert codec.least == 2.0**-6 and np.array_equal(as_rows(codec.round_trip(as_frame(frames)))[:, 3], frames[:, 3])
 
 
 def test_a_number_of_many_values_is_laid_into_no_single_bit_that_nobody_said():

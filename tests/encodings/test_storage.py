@@ -24,6 +24,7 @@ from normalbench.encodings.storages.rules import by_rule
 from normalbench.encodings.storages.storage import ROUNDINGS, STORAGES
 from normalbench.encodings.storages.words import words
 from normalbench.gbuffer.codecs.codec_passes import storage_defines
+from normalbench.gbuffer.defines.packings import StoragePacking
 from normalbench.gbuffer.gl.device import in_steps, read_pixels
 
 INTEGERS = [name for name, s in STORAGES.items() if s.kind != "float" and not s.is_packed]
@@ -373,3 +374,14 @@ def test_a_format_that_stands_for_others_stores_the_same(name):
         for channel in range(count):
             found = store_number(c, fixed(like, scales), channel)
             assert np.array_equal(found, store_number(c, storage, channel)), (count, channel)
+
+
+@pytest.mark.parametrize("bits", [(4, 4), (9, 7), (12, 12), (11, 11, 10), (20, 20), (12, 12, 12), (20, 20, 20)])
+@pytest.mark.parametrize("kind", ["unorm", "snorm", "float"])
+def test_a_packing_writes_the_channels_that_its_target_has(kind, bits):
+    """Two at least, as GLSL has no vectors of one; as many as the numbers lie across."""
+    storage = by_rule(kind, bits) if kind != "float" else by_rule("float", (8, 7))
+    numbers = min(len(bits), 3)
+    packing = StoragePacking(storage, numbers)
+    across = -(-sum(storage.bits[:numbers]) // storage.part) if storage.is_packed else numbers
+    assert packing.channels == max(2, across) <= max(2, storage.target.channels)

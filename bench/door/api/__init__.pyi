@@ -786,10 +786,10 @@ def curves(
     Args:
         encoding: Curves or files of yours, comma-separated, or all; `normalbench list` shows them.
         storage: Storages, comma-separated, or all; `normalbench list` shows them. Default: each curve's usual.
-        rounding: nearest, truncate or dithered, comma-separated, or all; `normalbench list` shows them.
+        rounding: nearest, truncate or dithered, comma-separated.
         backend: jax, glsl; comma-separated, or all.
         range: Largest quantities that are kept, comma-separated. Default: each curve's usual.
-        count: Quantities, evenly spread from 0 to the range.
+        count: Quantities, one at random in each of as many steps to the range.
         seed: The random seed of uniform sets, points and scenes.
         define: Shader files: macros, NAME or NAME=VALUE.
         prelude: Shader files: files that are put in front.

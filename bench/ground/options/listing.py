@@ -75,14 +75,19 @@ BY_BITS = {
     "snorm_gl2:B:...": "c is (2i+1)/(2^B-1): unorm's numbers",
     "centred:B:...": "snorm's integers and a half, in UNORM",
     "uint:B:... sint:B:...": "as unorm and snorm; the shader rounds",
-    "float:E:M ufloat:E:M": "exponent, mantissa; with a sign, without",
+    "float:E:M ufloat:E:M": "as many as 8 bytes hold, 4 at most",
     "unorm:4:4..16:16": "each, from some bits to some others",
 }
 
 
 def _storages() -> list[Row]:
-    named = [_row("storage", s.name, rule_of(s), holds=_texel_text(s)) for s in STORAGES.values()]
+    named = [_row("storage", s.name, _rule_text(s), holds=_texel_text(s)) for s in STORAGES.values()]
     return named + [_row("storage by bits", name, holds) for name, holds in BY_BITS.items()]
+
+
+def _rule_text(storage: Storage) -> str:
+    """The bits of a storage, of floats how many there are as well."""
+    return f"{storage.channels} x {rule_of(storage)}" if storage.kind == "float" else rule_of(storage)
 
 
 def _texel_text(storage: Storage) -> str:

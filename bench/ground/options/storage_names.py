@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping
 
 from ....encodings.storages.rules import BY_RULE, KINDS, storage_of
 from ....encodings.storages.storage import FORMATS, STORAGES, Storage
-from ..choose import choose
+from ..choose import choose, unknown_name
 from ..output.errors import UsageError
 from ..spelling import channels_of, spelled
 from .words import given_in
@@ -32,6 +32,11 @@ def storages_named(names: str, known: Mapping[str, Storage] = STORAGES, what: st
     """
     own = given_in(names)
     said = storages_said(names, own)
+    unknown = [
+        word for word, one in said.items() if not (one or word in own or word == "all" or spelled(what, word, known))
+    ]
+    if unknown:
+        raise unknown_name(what, unknown, known, f"all, {', '.join(known)}; or bits, such as unorm:9:7")
     chosen = choose(what, ",".join(said), {**known, **{word: one for word, one in said.items() if one}, **own})
     return list(dict.fromkeys(chosen))
 

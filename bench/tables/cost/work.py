@@ -48,6 +48,8 @@ def packings(names: str) -> list[Packing]:
     """What `--storage` names: packings, and storages by their bits alone. Raises UsageError."""
     said = storages_said(names, PACKINGS)
     known = {**PACKINGS, **{word: packings_of(storage) for word, storage in said.items() if storage}}
+    if few := next((word for word, several in known.items() if not several), None):
+        raise UsageError(f"--storage {few}: a code of a normal has two numbers or three")
     chosen = choose("storage", ",".join(said), known)
     return list(dict.fromkeys(packing for several in chosen for packing in several))
 

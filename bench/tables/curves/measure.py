@@ -99,7 +99,8 @@ def measure(case: Case) -> Row:
 
 def _figures(case: Case, trip: Trip) -> Row:
     largest = case.codec.range
-    linear = np.linspace(0.0, 1.0, case.count)
+    # Not the even steps themselves, which may be the codes of a storage.
+    linear = (np.arange(case.count) + np.random.default_rng(case.seed).random(case.count)) / case.count
     x = (linear * largest).astype(np.float32)
     back = _through(case, trip, x)
     apart = back.astype(np.float64) - x

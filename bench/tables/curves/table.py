@@ -19,16 +19,16 @@ class CurvesOptions(SourceOptions):
 
     encoding: Annotated[str, Option("--encoding", f"Curves or files of yours, {Names}.", files=True)] = "all"
     storage: Annotated[str | None, Option("--storage", f"Storages, {Names}. Default: each curve's usual.")] = None
-    rounding: Annotated[str, Option("--rounding", f"nearest, truncate or dithered, {Names}.")] = "nearest"
+    rounding: Annotated[str, Option("--rounding", "nearest, truncate or dithered, comma-separated.")] = "nearest"
     backend: Backends = "jax,glsl"
     range: Annotated[
         str | None, Option("--range", "Largest quantities that are kept, comma-separated. Default: each curve's usual.")
     ] = None
-    count: Annotated[int, Option("--count", "Quantities, evenly spread from 0 to the range.")] = 2**16
+    count: Annotated[int, Option("--count", "Quantities, one at random in each of as many steps to the range.")] = 2**16
     seed: Seed = 0
 
 
-DISPLAY = "of the sRGB curve, in steps of 8 bits, over quantities that are evenly spread on that curve"
+DISPLAY = "on the sRGB curve, in steps of 8 bits, of quantities that are evenly spread there"
 COLUMNS = (
     Column("encoding", "How a quantity becomes a number.", KEY),
     shared.STORAGE,

@@ -236,7 +236,7 @@ def _left_out(frame: Frame, camera: Camera) -> list[str]:
     if not len(found.points.depths):
         remedy = "--depth-unit -1 turns them around" if len(finite) and finite.max() <= 0 else "see --depths-are"
         raise UsageError(f"{frame.name}: no depth lies within {planes}; they are {reach}: {remedy}")
-    said = [f"every {found.every}. pixel is measured"] * (found.every > 1)
+    said = [f"1 pixel in {found.every} is measured"] * (found.every > 1)
     if found.background:
         said.append(f"{found.background / depths.size:.1%} of its pixels are not within {planes}; it has {reach}")
     return said + [f"{frame.not_finite} numbers are NaN and left out"] * bool(frame.not_finite)

@@ -33,6 +33,7 @@ from ...ground.options.storage_names import storages_said
 from ...ground.options.targets import what_is_left
 from ...ground.output.errors import UsageError
 from ...ground.output.writing import check_folder, whole_file
+from ...ground.spelling import OTHER_WORDS
 from ...subjects.codecs.kinds.named import own_codes_named
 from ..charts import but_without_twins, having
 from ..table import Measured, Row, Sheet, Step, Tick, Work, each
@@ -106,7 +107,7 @@ def codecs(options: DepthOptions) -> list[tuple[DepthCodec, str]]:
 
 def _storages_named(names: str) -> list[DepthStorage]:
     """Storages of depths by their names, or by their bits: unorm:20. Raises UsageError."""
-    said = storages_said(names, DEPTH_STORAGES)
+    said = storages_said(names, {*DEPTH_STORAGES, *OTHER_WORDS["depth storage"]})
     made = {word: one and depth_storage_of(one) for word, one in said.items()}
     known = {**DEPTH_STORAGES, **{word: one for word, one in made.items() if one}}
     return list(dict.fromkeys(choose("depth storage", ",".join(said), known)))

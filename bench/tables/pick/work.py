@@ -94,7 +94,12 @@ def questions(options: PickOptions) -> list[list[measure.Case]]:
         return measure.Case(codec, normals, makers, setting, powers, said | about | more, pipeline)
 
     return [
-        [case(codec, normals, about) for codec, about in _compared(name, storages, fit, encodings)]
+        [
+            case(codec, normals, about)
+            for codec, about in _compared(name, storages, fit, encodings)
+            # A code of the view ray is not made for normals that no camera saw.
+            if normals.has_rays or codec.encoding.domain != "view"
+        ]
         for name, storages in asked.items()
         if any(_is_held(codec, storages) for codec in fit)
         for normals in sets

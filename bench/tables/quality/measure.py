@@ -275,7 +275,7 @@ def _case_columns(case: Case) -> Row:
         "normals": case.normal_set.name,
         "backend": case.backend,
         "bits": case.codec.bits,
-        "bounds_bits": case.codec.bits_of_bounds or None,
+        "bounds_bits": case.codec.bits_of_bounds(case.normal_set.count) or None,
         "background": case.normal_set.background,
         "own_error_deg": case.normal_set.own_error_deg,
         "not_finite": case.normal_set.not_finite,

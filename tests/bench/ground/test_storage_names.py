@@ -46,7 +46,8 @@ def test_every_storage_is_said_by_its_bits(storage):
     """What `list storages` says of it names it, or another one with these numbers: rg16f has two of rgba16f's four."""
     if storage.name != "r11g11b10f":
         said = storage_of(rule_of(storage))
-        assert said.is_centred == storage.is_centred and said.bits[: storage.channels] == storage.bits
+        assert (said.kind, said.is_centred, said.is_full) == (storage.kind, storage.is_centred, storage.is_full)
+        assert said.bits[: storage.channels] == storage.bits
 
 
 @pytest.mark.parametrize(

@@ -77,7 +77,7 @@ def _frame_facts(own: Own, gl: Device) -> dict[str, Any]:
     finite = codes[np.isfinite(codes).all(axis=1)]
     is_in_unit = bool(len(finite)) and is_unit(finite, OF_A_HALF)
     levels = [_level_count(finite[:, i] * 2 - 1 if is_in_unit else finite[:, i]) for i in range(codes.shape[1])]
-    facts = {"is_unit": is_in_unit, "levels": [*levels, *[1] * (4 - len(levels))]}
+    facts = {"is_unit": is_in_unit, "levels": levels}
     return facts | _of_hands(own, values, found)
 
 
@@ -94,7 +94,7 @@ def _of_hands(own: Own, values: Values, found: Tried) -> dict[str, Any]:
     """A note where a decoder gives no hand; a finding where some come back as the other."""
     gives = [part for part in ("hand", "bitangent") if own.size(part)[1]]
     if not gives and own.size("tangent")[1] < 4:
-        return {"notes": [NO_HAND]}
+        return {"notes": [NO_HAND], "has_hand": False}
     if gives == ["bitangent"]:
         n, t, b = (one[:, :3] for one in found.back)
         hand = np.sum(np.cross(n, t) * b, axis=1)
@@ -108,8 +108,9 @@ def _of_hands(own: Own, values: Values, found: Tried) -> dict[str, Any]:
 
 def _frame_encoding(own: Own) -> FrameEncoding:
     every = dict.fromkeys(name for one in FRAME_ENCODINGS.values() for name in one.storages)
-    levels: Any = tuple(own.found.get("levels", (0, 0, 0, 0)))
-    made = FrameEncoding(**own.described(), hand_in=3, levels=levels, storages=tuple(every), is_unit=own.is_unit)
+    levels = tuple(own.found.get("levels", (0, 0, 0, 0)))
+    hand_in = len(levels) - 1 if own.found.get("has_hand", True) else None
+    made = FrameEncoding(**own.described(), hand_in=hand_in, levels=levels, storages=tuple(every), is_unit=own.is_unit)
     fitting = tuple(name for name in every if not FrameCodec(made, FRAME_STORAGES[name]).misfit)
     return replace(made, storages=fitting)
 

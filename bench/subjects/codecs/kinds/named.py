@@ -77,7 +77,13 @@ def light_codecs_named(names: str) -> list[LightCodec]:
     words = split_names(names)
     own = [word for word in words if names_an_encoder(word)]
     others = [word for word in words if not names_an_encoder(word)]
-    files = own_codes_named(LIGHT, ",".join(own), LIGHT_ENCODINGS, "light buffer") if own else []
+    try:
+        files = own_codes_named(LIGHT, ",".join(own), LIGHT_ENCODINGS, "light buffer") if own else []
+    except (UsageError, MissingError) as error:
+        if not others:
+            raise
+        leave_out(str(error))
+        files = []
     made = [LightCodec(encoding, LIGHT_STORAGES[encoding.storages[0]]) for encoding in files]
     return [*(light_buffers_named(",".join(others)) if others else []), *made]
 
