@@ -107,7 +107,7 @@ class Codec:
         if encoding.is_precise or self.rounding != "nearest":
             return "noise is for numbers that are rounded to the nearest"
         if self.storage.kind == "float":
-            return f"{self.storage.title} is of floats, whose steps are not even"
+            return f"{self.storage.title}: the steps of floats are not even"
         return None
 
     def dither(self, frame: int) -> Dither:

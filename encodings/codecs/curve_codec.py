@@ -92,7 +92,7 @@ class CurveCodec:
         if self.storage.is_centred:
             return "centred numbers have a sign, and a curve's are from 0 to 1"
         if self.is_dithered and self.storage.kind == "float":
-            return f"{self.storage.title} is of floats, whose steps are not even: noise is for fixed point"
+            return f"{self.storage.title}: the steps of floats are not even; noise is for fixed point"
         return None
 
     @property

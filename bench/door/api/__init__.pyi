@@ -813,6 +813,11 @@ def sweep(
     lights: int = ...,
     repeats: int = ...,
     seed: int = ...,
+    define: Names | None = ...,
+    prelude: Names | None = ...,
+    include: Names | None = ...,
+    language: Names | None = ...,
+    all_pairs: bool = ...,
     on: str | None = ...,
 ) -> Rows:
     """How each pipeline's passes grow with the number of objects: light pre-pass against hybrid and the others.
@@ -830,6 +835,11 @@ def sweep(
         lights: Point lights.
         repeats: Frames that times are taken over; of render, 0 takes none.
         seed: The random seed of uniform sets, points and scenes.
+        define: Shader files: macros, NAME or NAME=VALUE.
+        prelude: Shader files: files that are put in front.
+        include: Shader files: where includes lie: FOLDER, or NAME=FOLDER of NAME/file.
+        language: Shader files: hlsl, slang, glsl or wgsl. Default: by the ending.
+        all_pairs: Shader files: each encoder that its decoder undoes, not one.
         on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 

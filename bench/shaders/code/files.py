@@ -85,7 +85,7 @@ def code_of(codec: Codec, language: str, prefix: str = "") -> Code:
     if codec.encoding.patch:
         raise UsageError(f"{codec.encoding.name}: ranges of patches are measured, and no code is written for them")
     if what := codec.storage.only_measured:
-        raise UsageError(f"{codec.name}: {what} are measured, and no code is written for them")
+        raise UsageError(f"{codec.name}: {what} are measured, and no code is written for them; take unorm or snorm")
     prefix = prefix or identifier(codec.name)
     try:
         program = program_of(codec, prefix)

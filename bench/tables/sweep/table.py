@@ -19,6 +19,7 @@ from ...ground.options.option import (
     Seed,
     Shadow,
 )
+from ...shaders.languages.source_options import SourceOptions
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
@@ -26,7 +27,7 @@ KEY, HOW, TIME = Role.KEY, Role.HOW, Role.TIME
 
 
 @dataclass(frozen=True, kw_only=True)
-class SweepOptions:
+class SweepOptions(SourceOptions):
     """What `sweep` sweeps over. Names and counts are comma-separated; no layout: each pipeline's published one."""
 
     pipeline: Pipelines = "prepass,hybrid,deferred,inferred,forward"

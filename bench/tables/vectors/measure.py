@@ -115,7 +115,7 @@ def _case_columns(case: Case, speed: float) -> Row:
         "encoding": case.codec.encoding.name,
         "storage": case.codec.storage.name,
         "backend": case.backend,
-        "range": case.largest if case.codec.needs_range else None,
+        "range": case.largest if case.codec.needs_range or case.codec.encoding.own_range else None,
         "size": case.size,
         "speed": speed,
         "bits": case.codec.bits,

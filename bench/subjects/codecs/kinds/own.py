@@ -105,10 +105,6 @@ class Values:
     given: np.ndarray
     more: np.ndarray
 
-    def of(self, which: Any) -> Values:
-        """Some of them."""
-        return Values(self.given[which], self.more[which])
-
 
 @dataclass(frozen=True)
 class OwnKind:

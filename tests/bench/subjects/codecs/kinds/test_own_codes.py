@@ -29,7 +29,7 @@ KEYS = ("encoding", "device", "range")
 def test_every_kind_has_a_shape_and_words():
     named = {kind.name for kind in KINDS if kind is not NORMAL}
     assert set(SHAPES) == set(WORDS) == named
-    assert set(OWN) <= named
+    assert set(OWN) == named
 
 
 def figures(out: str, name: str) -> list[dict]:
