@@ -11,11 +11,11 @@ from functools import reduce
 import numpy as np
 
 from ..storages.dither import Dither
+from ..storages.local_range import back, bits_of_bounds, bounds, within
 from ..storages.rounding import numbers_around, store_number
 from ..storages.storage import BITS_32, FORMS, Storage, of_unit
 from ..vec import Vec3, dot, jnp, select
 from .encoding import Encoding
-from .local_range import back, bits_of_bounds, bounds, within
 
 # A number that is not one of few values is not laid into fewer bits, unless somebody said them.
 LEAST_BITS = 4
