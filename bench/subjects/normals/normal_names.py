@@ -9,6 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, get_type_hints
 
+from ....encodings.codecs.encoding import Encoding
 from ....encodings.codecs.files import called
 from ....gbuffer.scenes.files import read as files
 from ...ground.choose import choose_or_read, file_names, names_a_folder
@@ -68,6 +69,11 @@ def normal_sets_named(names: str, count: int, seed: int, reading: Reading, needs
     made = [make(count, seed) for make in choose_or_read("normal set", names, known, ENDINGS, read)]
     say_notes(notes)
     return made
+
+
+def lacking_rays(pairs: Iterable[tuple[Encoding, NormalSet]]) -> list[str]:
+    """Of encodings and sets a line on each that cannot be measured, as the set has no rays."""
+    return [f"{encoding.name} of {made.name}: {LACKS_RAYS}" for encoding, made in pairs if not made.serves(encoding)]
 
 
 def check_rays(sets: Iterable[NormalSet], needs_rays: bool) -> None:

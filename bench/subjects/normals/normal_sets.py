@@ -14,6 +14,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from ....encodings.codecs.encoding import Encoding
 from ....encodings.elementary import sincos_pi
 from ....encodings.vec import Vec3, from_array, sqrt
 from ...ground.native.elementwise import NotElementwiseError
@@ -83,6 +84,10 @@ class NormalSet:
     def has_rays(self) -> bool:
         """Whether its normals have a view ray; those in object space have none."""
         return self.code_space != OBJECT
+
+    def serves(self, encoding: Encoding) -> bool:
+        """Whether an encoding can be measured on it: it needs no view ray, or the normals have one."""
+        return self.has_rays or encoding.domain != "view"
 
     @property
     def starts(self) -> range:

@@ -24,7 +24,7 @@ from ...ground.options.storage_names import storages_named
 from ...ground.output.errors import UsageError, by_reason, leave_out, tell
 from ...ground.output.writing import check_folder
 from ...subjects.codecs.names import as_declared, check_twin, codecs_named
-from ...subjects.normals.normal_names import normal_sets_named
+from ...subjects.normals.normal_names import lacking_rays, normal_sets_named
 from ...subjects.normals.normal_sets import NormalSet
 from ..families_named import families_named
 from ..mix.table import USES
@@ -93,17 +93,22 @@ def questions(options: PickOptions) -> list[list[measure.Case]]:
         more["against"] = codec.encoding.name in named and not about["beside"]
         return measure.Case(codec, normals, makers, setting, powers, said | about | more, pipeline)
 
-    return [
+    made = [
         [
             case(codec, normals, about)
             for codec, about in _compared(name, storages, fit, encodings)
-            # A code of the view ray is not made for normals that no camera saw.
-            if normals.has_rays or codec.encoding.domain != "view"
+            if normals.serves(codec.encoding)
         ]
         for name, storages in asked.items()
         if any(_is_held(codec, storages) for codec in fit)
         for normals in sets
     ]
+    lacking = lacking_rays((codec.encoding, normals) for codec in fit for normals in sets)
+    if lacking and not any(made):
+        raise UsageError(lacking[0])
+    for line in dict.fromkeys(lacking) if options.encoding.strip() != "all" else ():
+        leave_out(line)
+    return [cases for cases in made if cases]
 
 
 def _say_if_few(sets: Iterable[NormalSet]) -> None:

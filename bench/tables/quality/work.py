@@ -17,8 +17,7 @@ from ...ground.output.errors import UsageError, lacks_twin, leave_out, names_by_
 from ...ground.output.writing import check_folder, without
 from ...measures.metrics import published
 from ...subjects.codecs.names import check_twin, codecs_named, fitting
-from ...subjects.normals.normal_names import normal_sets_named
-from ...subjects.normals.normal_sets import LACKS_RAYS
+from ...subjects.normals.normal_names import lacking_rays, normal_sets_named
 from ..charts import backends_of, one_backend
 from ..table import BACKENDS_NEED, C_COMPILER, PART, Measured, Row, Sheet, Step, Tick, Work
 from . import measure, pictures
@@ -73,19 +72,8 @@ def cases(options: QualityOptions) -> list[measure.Case]:
     normal_sets = normal_sets_named(names, count, options.seed, options.reading, needs_rays)
     made = measure.cases(codecs, normal_sets, backends, options.worst_case, options.codes)
     asked = [case for case in made if _is_asked(case, said)]
-    return what_is_left([case for case in asked if _has_its_rays(case)], list(_lacking_rays(asked)))
-
-
-def _has_its_rays(case: measure.Case) -> bool:
-    """Whether a case is of a code that needs no view ray, or of normals that have one."""
-    return case.codec.encoding.domain != "view" or case.normal_set.has_rays
-
-
-def _lacking_rays(cases: Sequence[measure.Case]) -> Iterator[str]:
-    """What is said of those that are left out, as they have none."""
-    for case in cases:
-        if not _has_its_rays(case):
-            yield f"{case.codec.encoding.name} of {case.normal_set.name}: {LACKS_RAYS}"
+    lacking = lacking_rays((case.codec.encoding, case.normal_set) for case in asked)
+    return what_is_left([case for case in asked if case.normal_set.serves(case.codec.encoding)], lacking)
 
 
 def _set_names(said: Sequence[str], codec: Codec) -> Iterator[str]:
