@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
+from typing import Any
 
 from ....encodings.catalogue import is_in_catalogue
 from ....encodings.codecs.encoding import Encoding
@@ -11,6 +13,15 @@ from ....encodings.vec import Vec3
 
 class NoTwinError(Exception):
     """An encoding that is there in GLSL only."""
+
+
+def lacking_twin(reason: str) -> Callable[..., Any]:
+    """A half of a map that raises NoTwinError."""
+
+    def lacking(*_: Any) -> Any:
+        raise NoTwinError(reason)
+
+    return lacking
 
 
 @cache

@@ -27,7 +27,7 @@ from ...ground.machine.posix import forks
 from ...ground.options.words import given_in
 from ...ground.output.errors import NO_TWIN, MissingError, UsageError, leave_out, tell
 from ...ground.spelling import spelled
-from ...shaders.code.twin import NoTwinError
+from ...shaders.code.twin import NoTwinError, lacking_twin
 from ...shaders.languages.pairs import NORMAL, Function
 from ...shaders.languages.programs import has_halves, pair
 from ...shaders.languages.source import Source
@@ -323,11 +323,7 @@ def _with_includes(path: Path) -> str:
 
 def _lacking_functions(reason: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """An encode and a decode that raise NoTwinError."""
-
-    def lacking(*_: Any) -> Any:
-        raise NoTwinError(reason)
-
-    return lacking, lacking
+    return lacking_twin(reason), lacking_twin(reason)
 
 
 def _twin_functions(path: Path) -> tuple[Callable[..., Any], Callable[..., Any]]:

@@ -18,7 +18,7 @@ from .....encodings.codecs.kind import AnyEncoding, Kind
 from .....gbuffer.codecs.own.own_passes import RESULTS, Tried, tried
 from .....gbuffer.gl.device import Device
 from ....ground.output.errors import NO_TWIN
-from ....shaders.code.twin import NoTwinError
+from ....shaders.code.twin import lacking_twin
 from ....shaders.languages.shapes import SHAPES, WORDS, Shape, Words
 from ....shaders.languages.translated import Translated
 
@@ -45,12 +45,9 @@ class Own:
     @property
     def shape(self) -> Shape:
         """What its functions take and give."""
-        return next(shape for shapes in SHAPES.values() for shape in shapes if shape.template == self.template)
-
-    @property
-    def template(self) -> str:
-        """The file of GLSL around it, which tells shapes apart."""
-        return self.made.shaped["template"]
+        return next(
+            shape for shapes in SHAPES.values() for shape in shapes if shape.template == self.made.shaped["template"]
+        )
 
     @property
     def settings(self) -> Sequence[str]:
@@ -74,7 +71,7 @@ class Own:
 
     def described(self) -> dict[str, Any]:
         """What encodings of every kind say of themselves."""
-        lacking = _lacking(f"{self.made.name} {NO_TWIN}")
+        lacking = lacking_twin(f"{self.made.name} {NO_TWIN}")
         return {
             "name": self.made.name,
             "title": called(str(self.path)),
@@ -86,15 +83,6 @@ class Own:
             "ulps": (0, 0),
             "ulps_reason": "a user's own",
         }
-
-
-def _lacking(reason: str) -> Callable[..., Any]:
-    """A half of a map that raises NoTwinError."""
-
-    def lacking(*_: Any) -> Any:
-        raise NoTwinError(reason)
-
-    return lacking
 
 
 @dataclass(frozen=True)
