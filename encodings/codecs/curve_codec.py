@@ -11,6 +11,8 @@ from typing import Any
 from ..storages.rounding import store_texel
 from ..storages.storage import Storage
 
+DITHERED = "dithered"
+
 
 @dataclass(frozen=True, eq=False)
 class CurveEncoding:
@@ -72,15 +74,14 @@ class CurveCodec:
 
     Attributes:
         range: the largest quantity that is kept.
-        rounding: one of `storage.ROUNDINGS`.
-        is_dithered: noise of a step is added to the number before it is rounded.
+        rounding: one of `storage.ROUNDINGS`; or DITHERED, where noise of a step is added to the number before it is
+            rounded to the nearest.
     """
 
     encoding: CurveEncoding
     storage: Storage
     range: float = 1.0
     rounding: str = "nearest"
-    is_dithered: bool = False
 
     @property
     def name(self) -> str:
@@ -94,6 +95,16 @@ class CurveCodec:
         if self.is_dithered and self.storage.kind == "float":
             return f"{self.storage.title}: the steps of floats are not even; noise is for fixed point"
         return None
+
+    @property
+    def is_dithered(self) -> bool:
+        """Whether noise is added to the number."""
+        return self.rounding == DITHERED
+
+    @property
+    def rounds_to(self) -> str:
+        """How what is written is rounded: one of `storage.ROUNDINGS`."""
+        return "nearest" if self.is_dithered else self.rounding
 
     @property
     def step(self) -> float:
@@ -118,7 +129,7 @@ class CurveCodec:
         Args:
             noise: what is added to the number before it is rounded, of the same shape.
         """
-        return store_texel(self.encoding.encode(x, self.range) + noise, self.storage, 0, self.rounding)
+        return store_texel(self.encoding.encode(x, self.range) + noise, self.storage, 0, self.rounds_to)
 
     def round_trip(self, x: Any, noise: Any = 0.0) -> Any:
         """Quantities encoded, stored and decoded; see `stored`."""

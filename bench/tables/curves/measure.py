@@ -23,7 +23,6 @@ from .table import TABLE
 # Why a device may not be able to give a row.
 UNMEASURABLE = (NoDeviceError, ShaderError, FormatError, NoTwinError)
 WIDTH = 256
-DITHERED, NEAREST = "dithered", "nearest"
 # The share of the range from which on relative errors count, and the steps of colours that a viewer sees.
 FROM, STEPS = 0.01, 255.0
 # Quantities that are just told from 0 are looked for from this share of the range on.
@@ -37,21 +36,16 @@ How = dict[str, str]
 
 @dataclass(frozen=True)
 class Case:
-    """One row to measure.
-
-    Attributes:
-        rounding: one of `storage.ROUNDINGS`, or dithered.
-    """
+    """One row to measure."""
 
     codec: CurveCodec
-    rounding: str
     backend: str
     count: int
     seed: int
 
     @property
     def name(self) -> str:
-        return f"{self.codec.name} {self.rounding} {self.codec.range:g} {self.backend}"
+        return f"{self.codec.name} {self.codec.rounding} {self.codec.range:g} {self.backend}"
 
 
 @contextmanager
@@ -83,7 +77,7 @@ def measure(case: Case) -> Row:
     row = TABLE.empty() | {
         "encoding": codec.encoding.name,
         "storage": codec.storage.name,
-        "rounding": case.rounding,
+        "rounding": codec.rounding,
         "backend": case.backend,
         "range": codec.range,
         "bits": codec.bits,
@@ -130,7 +124,7 @@ def _display_columns(case: Case, trip: Trip, shown: np.ndarray) -> Row:
 def _through(case: Case, trip: Trip, x: np.ndarray, is_still: bool = False) -> np.ndarray:
     """Quantities (float32, any number) through a codec, dithered where that is asked for unless `is_still`."""
     noise = np.zeros_like(x)
-    if case.rounding == DITHERED and not is_still:
+    if case.codec.is_dithered and not is_still:
         tile = Dither((case.codec.step,), 0).added[..., 0].ravel()
         # A seed begins the tile elsewhere.
         noise = np.resize(np.roll(tile, case.seed), len(x)).astype(np.float32)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 
 from ....encodings.catalogue import CURVE_ENCODINGS
-from ....encodings.codecs.curve_codec import CurveCodec
+from ....encodings.codecs.curve_codec import DITHERED, CurveCodec
 from ....encodings.codecs.kind import CURVE
 from ....encodings.storages.storage import CURVE_STORAGES
 from ...ground.choose import choose
@@ -22,7 +22,7 @@ from . import measure
 from .charts import charts
 from .table import CurvesOptions
 
-ROUNDINGS = (measure.NEAREST, "truncate", measure.DITHERED)
+ROUNDINGS = ("nearest", "truncate", DITHERED)
 MAX_QUANTITIES, RANGES = 2**22, (1e-4, 65504.0)
 
 
@@ -35,23 +35,24 @@ def cases(options: CurvesOptions) -> list[measure.Case]:
     """
     check_seed(options.seed)
     in_range("--count", options.count, 2, MAX_QUANTITIES)
-    roundings = choose("rounding", options.rounding, dict(zip(ROUNDINGS, ROUNDINGS, strict=True)))
-    chosen = [(codec, way) for way in roundings for codec in codecs(options, way)]
+    chosen = codecs(options)
     backends = backends_named(options.backend, measure.BACKENDS)
     require_jax()
     if backends == ["glsl"]:
         require_device()
-    return [
-        measure.Case(codec, way, backend, options.count, options.seed) for codec, way in chosen for backend in backends
-    ]
+    return [measure.Case(codec, backend, options.count, options.seed) for codec in chosen for backend in backends]
 
 
-def codecs(options: CurvesOptions, way: str = measure.NEAREST) -> list[CurveCodec]:
-    """The codecs asked for, rounded in a way; those that do not fit are named on standard error."""
+def codecs(options: CurvesOptions) -> list[CurveCodec]:
+    """The codecs asked for; those that do not fit are named on standard error."""
+    roundings = choose("rounding", options.rounding, dict(zip(ROUNDINGS, ROUNDINGS, strict=True)))
     said = options.range and checked_numbers("--range", options.range, float, *RANGES)
+    # A user's file is looked at once, however many ways to round are named.
+    encodings = own_codes_named(CURVE, options.encoding, CURVE_ENCODINGS)
     return that_fit(
-        CurveCodec(encoding, storage, largest, "truncate" if way == "truncate" else "nearest", way == measure.DITHERED)
-        for encoding in own_codes_named(CURVE, options.encoding, CURVE_ENCODINGS)
+        CurveCodec(encoding, storage, largest, rounding)
+        for rounding in roundings
+        for encoding in encodings
         for storage in storages_named(options.storage or ",".join(encoding.storages), CURVE_STORAGES, "curve storage")
         for largest in said or (encoding.usual_range,)
     )
@@ -62,7 +63,7 @@ def _steps(options: CurvesOptions, _: NoOutputs) -> list[Step]:
 
 
 def _key(case: measure.Case) -> Row:
-    key: Row = {"codec": case.codec.name, "rounding": case.rounding, "backend": case.backend}
+    key: Row = {"codec": case.codec.name, "rounding": case.codec.rounding, "backend": case.backend}
     return key | {"range": case.codec.range, "count": case.count, "seed": case.seed}
 
 

@@ -39,7 +39,7 @@ class CurvePasses(Passes):
     """
 
     def __init__(self, device: Device, codec: CurveCodec):
-        self.rounded_by, rounds = rounding_defines(device, codec.storage, codec.rounding)
+        self.rounded_by, rounds = rounding_defines(device, codec.storage, codec.rounds_to)
         # A curve's number is a texel's, whatever its format.
         rounds["STORAGE_BIASED"] = 0
         shaders, names = ("curve_encode.frag", "curve_decode.frag"), {"CURVE_ENCODING": codec.encoding.glsl}

@@ -22,9 +22,8 @@ QUICK = ["curves", "--backend", "jax", "--count", "4096", "--format", "json"]
 
 def row(encoding: str, storage: str, rounding: str = "nearest", backend: str = "jax") -> dict:
     (chosen,) = storages_named(storage)
-    way = "truncate" if rounding == "truncate" else "nearest"
-    codec = CurveCodec(CURVE_ENCODINGS[encoding], chosen, 1.0, way, rounding == "dithered")
-    found = curves.measure(curves.Case(codec, rounding, backend, 2**16, 0))
+    codec = CurveCodec(CURVE_ENCODINGS[encoding], chosen, 1.0, rounding)
+    found = curves.measure(curves.Case(codec, backend, 2**16, 0))
     assert found["skipped"] is None and tuple(found) == tuple(TABLES["curves"].empty()), found
     return found
 
