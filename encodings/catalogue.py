@@ -59,7 +59,10 @@ DEPTH_NAMES = ("linear", "linear_sign", "logarithmic", "window", "reversed_windo
 MOTION_NAMES = ("linear", "sqrt", "cube_root", "log")
 
 # Of roughness, metalness, reflectance, occlusion, and the channels of colours and of emission.
-CURVE_NAMES = ("linear", "squared", "square_root", "inverted", "gamma_2_2", "srgb", "fast_srgb", "log", "ray_bits")
+CURVE_NAMES = (
+    *("linear", "squared", "square_root", "inverted", "gamma_2_2", "srgb", "fast_srgb", "log"),
+    *("ray_bits", "reflectivity"),
+)
 
 # The last ones are of rotations alone, which have no handedness.
 FRAME_NAMES = ("smallest_three", "octahedral_angle", "hexadecachoral", "qtangent")

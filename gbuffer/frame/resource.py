@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from ...encodings.storages.storage import FORMATS, R32F, Storage
-from ..layouts.layout import DEPTH_STENCIL_BYTES
 from .plan import Plan, scaled
 
 # The two formats that hold depth: one that shaders read, and the one that geometry is tested against.
 DEPTH_MAP, DEPTH_STENCIL = "depth map", "depth and stencil"
+DEPTH_STENCIL_BYTES = 5
 # Whose size and samples a resource follows.
 IMAGE, SURFACES = "image", "surfaces"
 # Samples: those of what it follows.

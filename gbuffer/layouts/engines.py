@@ -1,7 +1,7 @@
-"""The layouts of engines and SDKs, each from its own source.
+"""The normals of engines and SDKs, each from its own source. What lies beside them is this renderer's.
 
-`kind`, this renderer's Deferred ID, lies where the engine has a material's ID or nothing. Where the source says nothing
-of what lies beside the normal, that is this renderer's.
+`kind`, this renderer's Deferred ID, lies where the engine has a material's ID or nothing. `whole.py` has engines whose
+whole material is known.
 """
 
 from __future__ import annotations
@@ -12,21 +12,14 @@ from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.encoding import Encoding
 from ...encodings.codecs.variants import variant
 from .layout import Layout
-from .words import Target
+from .words import targets_of
 
 ALBEDO = "rgba8: albedo.r albedo.g albedo.b kind"
 SPECULAR = "rgba8: specular.r specular.g specular.b -"
 MATERIAL = f"{ALBEDO}; rgba8: specular.r specular.g specular.b power"
 # What a normal that stands with its roughness is measured beside.
 COLOURS = f"{ALBEDO}; {SPECULAR}"
-# An engine keeps other things beside its normal than this renderer's materials need.
-ENGINE = " (its normal; the rest is this renderer's)"
 NRD = "NVIDIA-RTX/NRD, Shaders/NRD.hlsli (a822d87)"
-
-
-def targets_of(text: str) -> tuple[Target, ...]:
-    """Targets of text such as `rg16f: normal.x normal.y; rgba8: albedo.r albedo.g albedo.b kind`."""
-    return tuple(Target(*one.strip().split(": ", 1)) for one in text.split(";"))
 
 
 def _layout(
@@ -34,6 +27,7 @@ def _layout(
 ) -> Layout:
     found = ENCODINGS[encoding] if isinstance(encoding, str) else encoding
     how = {"space": "world", **how}
+    title = f"the normal of {engine}: {title}"
     return Layout(name, title, targets_of(targets), found, source, engine=engine, year=year, **how)
 
 
@@ -50,7 +44,7 @@ ENGINES = (
         "view-space xy, two half floats, there packed into RGBA8: the same bits, other blending and clears",
         "xy",
         f"rg16f: normal.x normal.y; {MATERIAL}",
-        "Valient, Deferred Rendering in Killzone 2, 2007" + ENGINE,
+        "Valient, Deferred Rendering in Killzone 2, 2007",
         space="view",
     ),
     _layout(
@@ -60,7 +54,7 @@ ENGINES = (
         "world-space best-fit normal in RGB8, specular power in A",
         "best_fit",
         f"rgba8: normal.x normal.y normal.z power; {COLOURS}",
-        "Kaplanyan, CryENGINE 3: Reaching the Speed of Light, 2010 (Crysis 2)" + ENGINE,
+        "Kaplanyan, CryENGINE 3: Reaching the Speed of Light, 2010 (Crysis 2)",
     ),
     _layout(
         "Godot",
@@ -69,17 +63,8 @@ ENGINES = (
         "view-space best-fit normal in RGB8, roughness in A: the Forward+ prepass, not a deferred G-buffer",
         "best_fit",
         f"rgba8: normal.x normal.y normal.z power; {COLOURS}",
-        "Godot 4" + ENGINE,
+        "Godot 4",
         space="view",
-    ),
-    _layout(
-        "Unreal Engine",
-        2012,
-        "unreal4",
-        "world-space xyz in RGB10A2",
-        "xyz_renormalised",
-        f"rgb10a2: normal.x normal.y normal.z -; {MATERIAL}",
-        "Unreal Engine 4 (2012), GBufferA" + ENGINE,
     ),
     _layout(
         "Unreal Engine",
@@ -88,7 +73,7 @@ ENGINES = (
         "world-space octahedral, 11:11 bits",
         "octahedral",
         f"rgba8: normal.x:11 normal.y:11 power:10; {COLOURS}",
-        "Unreal Engine 5, Substrate" + ENGINE,
+        "Unreal Engine 5, Substrate",
     ),
     _layout(
         "Unreal Engine",
@@ -97,7 +82,7 @@ ENGINES = (
         "world-space octahedral, 16:16 bits",
         "octahedral",
         f"rgba8: normal.x:16 normal.y:16; {MATERIAL}",
-        "Unreal Engine 5, Substrate" + ENGINE,
+        "Unreal Engine 5, Substrate",
     ),
     _layout(
         "Unity",
@@ -106,45 +91,7 @@ ENGINES = (
         "world-space xyz in RGB10A2",
         "xyz_renormalised",
         f"{MATERIAL}; rgb10a2: normal.x normal.y normal.z -",
-        "Unity, built-in deferred path" + ENGINE,
-    ),
-    _layout(
-        "Unity",
-        2021,
-        "unity_urp",
-        "world-space xyz in RGBA8 signed; where that cannot be rendered to, URP takes unity_urp_accurate",
-        "xyz_renormalised",
-        f"{MATERIAL}; rgba8_snorm: normal.x normal.y normal.z -",
-        "Unity, Universal Render Pipeline" + ENGINE,
-    ),
-    _layout(
-        "Unity",
-        2021,
-        "unity_urp_accurate",
-        "world-space octahedral, 12:12 in RGB8 by floor(x 4095.5)",
-        "octahedral",
-        f"{MATERIAL}; rgba8: normal.x:12 normal.y:12 -:8",
-        "Unity, Universal Render Pipeline, accurate G-buffer normals" + ENGINE,
-        packing="truncate_half",
-    ),
-    _layout(
-        "Unity",
-        2018,
-        "unity_hdrp",
-        "world-space octahedral, 12:12 in RGB8",
-        "octahedral",
-        f"{MATERIAL}; rgba8: normal.x:12 normal.y:12 -:8",
-        "Unity, High Definition Render Pipeline, less its step that keeps z off 0" + ENGINE,
-        packing="truncate_half",
-    ),
-    _layout(
-        "Bevy",
-        2024,
-        "bevy",
-        "world-space octahedral, 12:12, rounded",
-        "octahedral",
-        f"rgba8: normal.x:12 normal.y:12 -:8; {MATERIAL}",
-        "Bevy, deferred path, newer releases" + ENGINE,
+        "Unity, built-in deferred path",
     ),
     _layout(
         "Bevy",
@@ -153,7 +100,7 @@ ENGINES = (
         "world-space octahedral, 12:12, truncated",
         "octahedral",
         f"rgba8: normal.x:12 normal.y:12 -:8; {MATERIAL}",
-        "Bevy, deferred path, older releases" + ENGINE,
+        "Bevy, deferred path, older releases",
         packing="truncate",
     ),
     _layout(
@@ -163,7 +110,7 @@ ENGINES = (
         "world-space xyz in RGB10A2, the normal prepass",
         "xyz_renormalised",
         f"rgb10a2: normal.x normal.y normal.z -; {MATERIAL}",
-        "bevyengine/bevy, issues 9264 and 22843" + ENGINE,
+        "bevyengine/bevy, issues 9264 and 22843",
     ),
     _layout(
         "Bevy",
@@ -172,26 +119,7 @@ ENGINES = (
         "world-space octahedral in RG16 signed, proposed for the normal prepass",
         "octahedral",
         f"rg16_snorm: normal.x normal.y; {MATERIAL}",
-        "bevyengine/bevy, issue 22843" + ENGINE,
-    ),
-    _layout(
-        "Granite",
-        2017,
-        "granite",
-        "world-space xyz in RGB10A2",
-        "xyz_renormalised",
-        f"rgb10a2: normal.x normal.y normal.z -; {MATERIAL}",
-        "Granite (Arntzen)" + ENGINE,
-    ),
-    _layout(
-        "kajiya",
-        2021,
-        "kajiya",
-        "world-space xyz, 11:10:11 bits, truncated",
-        "xyz_renormalised",
-        f"rgba8: normal.x:11 normal.y:10 normal.z:11; {MATERIAL}",
-        "kajiya (Embark Studios)" + ENGINE,
-        packing="truncate",
+        "bevyengine/bevy, issue 22843",
     ),
     _layout(
         "NRD",
@@ -264,7 +192,7 @@ ENGINES = (
         "xyz 8:8:8 truncated: pack_unitvector, of particles and primitives",
         "xyz_renormalised",
         f"rgba8: normal.x:8 normal.y:8 normal.z:8 -:8; {MATERIAL}",
-        "turanszkij/WickedEngine, shaders/globals.hlsli (bc3ef16)" + ENGINE,
+        "turanszkij/WickedEngine, shaders/globals.hlsli (bc3ef16)",
         packing="truncate",
     ),
     _layout(
@@ -284,28 +212,8 @@ ENGINES = (
         "spheremap, the game's own (EncodeNormalVanilla); z points into the screen, and the pole away, as here",
         "spheremap",
         f"rgba8: normal.x normal.y - roughness; {COLOURS}",
-        "community-shaders/skyrim-community-shaders, package/Shaders/Common/GBuffer.hlsli (fd20066)" + ENGINE,
+        "community-shaders/skyrim-community-shaders, package/Shaders/Common/GBuffer.hlsli (fd20066)",
         space="view",
-    ),
-    _layout(
-        "Donut",
-        2026,
-        "donut",
-        "sRGB8 colours, world-space xyz and roughness in RGBA16 signed, emission RGBA16F, motion RG16F",
-        "xyz_renormalised",
-        "srgb8_a8: albedo.r albedo.g albedo.b kind; srgb8_a8: specular.r specular.g specular.b occlusion; "
-        "rgba16_snorm: normal.x normal.y normal.z roughness; rgba16f: emission.r emission.g emission.b other; "
-        "rg16f: motion.x motion.y",
-        "NVIDIA-RTX/Donut, src/render/GBuffer.cpp:40, include/donut/shaders/gbuffer.hlsli (bfdebdd); opacity is `kind`",
-    ),
-    _layout(
-        "RTX Remix",
-        2026,
-        "remix",
-        "octahedral, two SNORM of 16 bits in R32_UINT: the primary shading normal",
-        "octahedral",
-        f"rg16_snorm: normal.x normal.y; {MATERIAL}",
-        "NVIDIAGameWorks/dxvk-remix, src/dxvk/shaders/rtx/utility/packing.slangh (574be6b)" + ENGINE,
     ),
     _layout(
         "RTX Remix",
@@ -334,7 +242,7 @@ ENGINES = (
         "xyz 10:10:10 signed: packNormal, of rays",
         "xyz_renormalised",
         f"rgba8: normal.x:10 normal.y:10 normal.z:10 -:2; {MATERIAL}",
-        "GPUOpen-LibrariesAndSDKs/Capsaicin, packNormal (5a3bf2a)" + ENGINE,
+        "GPUOpen-LibrariesAndSDKs/Capsaicin, packNormal (5a3bf2a)",
         packing="signed",
     ),
     _layout(
@@ -344,17 +252,7 @@ ENGINES = (
         "octahedral in RG16, a layer for each closure; this is one",
         "octahedral",
         f"rg16: normal.x normal.y; {MATERIAL}",
-        "Blender 4.2, EEVEE Next, eevee_gbuffer_lib" + ENGINE,
-    ),
-    _layout(
-        "O3DE",
-        2026,
-        "o3de",
-        "signed octahedron 10:10 in RGB10 A2, its sign in all of B",
-        "signed_octahedral",
-        f"rgb10a2: normal.x normal.y normal.z -; {MATERIAL}",
-        "o3de/o3de-atom-sampleviewer, Materials/Pipelines/PrototypeDeferredPipeline/DeferredMaterialPass.azsli:79"
-        + ENGINE,
+        "Blender 4.2, EEVEE Next, eevee_gbuffer_lib",
     ),
     _layout(
         "XeGTAO",
@@ -363,7 +261,7 @@ ENGINES = (
         "view-space xyz, 11:11:10 in R32_UINT",
         "xyz_renormalised",
         f"rgba8: normal.x:11 normal.y:11 normal.z:10; {MATERIAL}",
-        "GameTechDev/XeGTAO" + ENGINE,
+        "GameTechDev/XeGTAO",
         space="view",
     ),
     _layout(
@@ -382,7 +280,7 @@ ENGINES = (
         "world-space xyz in RGBA16F",
         "xyz_renormalised",
         f"rgba16f: normal.x normal.y normal.z -; {MATERIAL}",
-        "webgpu/webgpu-samples, deferredRendering (pull request 238)" + ENGINE,
+        "webgpu/webgpu-samples, deferredRendering (pull request 238)",
     ),
     _layout(
         "Diligent Engine",
@@ -391,7 +289,7 @@ ENGINES = (
         "world-space xyz in RGBA16F",
         "xyz_renormalised",
         f"rgba16f: normal.x normal.y normal.z -; {MATERIAL}",
-        "DiligentGraphics/DiligentFX, issue 49" + ENGINE,
+        "DiligentGraphics/DiligentFX, issue 49",
     ),
     _layout(
         "three.js",
@@ -400,7 +298,7 @@ ENGINES = (
         "view-space xyz in RGBA8, as directionToColor writes them",
         "xyz_renormalised",
         f"rgba8: normal.x normal.y normal.z -; {MATERIAL}",
-        "mrdoob/three.js, TSL, directionToColor (issue 32136)" + ENGINE,
+        "mrdoob/three.js, TSL, directionToColor (issue 32136)",
         space="view",
     ),
     _layout(
@@ -410,7 +308,7 @@ ENGINES = (
         "octahedral 12:12 and roughness of 8 bits in one word",
         "octahedral",
         f"rgba8: normal.x:12 normal.y:12 roughness:8; {COLOURS}",
-        "Sunset-Flock/Timberdoodle" + ENGINE,
+        "Sunset-Flock/Timberdoodle",
     ),
     _layout(
         "Timberdoodle",
@@ -419,7 +317,7 @@ ENGINES = (
         "octahedral 16:16: the normal of the triangle",
         "octahedral",
         f"rgba8: normal.x:16 normal.y:16; {MATERIAL}",
-        "Sunset-Flock/Timberdoodle" + ENGINE,
+        "Sunset-Flock/Timberdoodle",
     ),
     _layout(
         "Intel deferred samples",
@@ -439,7 +337,7 @@ ENGINES = (
         "Lambert azimuthal about y, 8:8, and depth of 16 bits",
         _about_y("spheremap"),
         f"rgba8: normal.x normal.y depth:16; {MATERIAL}",
-        "GarageGames/Torque3D, GBuffer conditioner" + ENGINE,
+        "GarageGames/Torque3D, GBuffer conditioner",
         space="view",
     ),
     _layout(

@@ -12,7 +12,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from ...encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS
+from ...encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS, LIGHT_BUFFERS
 from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.depth_codec import DepthCodec, DepthEncoding
 from ...encodings.codecs.encoding import Encoding
@@ -23,7 +23,10 @@ from .kept import COLOURS, LIGHT, Kept
 from .words import FREE, LEAST_BITS, PACKINGS, SIGNED, LayoutError, Target, Word, place_of, placed, without_normal
 
 SPACES = VIEW, WORLD = ("view", "world")
-DEPTH_STENCIL_BYTES = 5
+# What layouts keep of a metal/rough surface's reflection.
+METALNESS_REFLECTANCE = "base colour, metalness, reflectance"
+METALNESS = "base colour, metalness"
+DIFFUSE_F0 = "diffuse colour, F0"
 
 
 def engines_space(encoding: Encoding) -> str:
@@ -45,6 +48,10 @@ class Layout:
         depth: the encoding of the depth; None for the first of the catalogue that suits the normal.
         engine, year: which engine or SDK it is of, and when its source was written or read; empty and 0 where it is
             of none.
+        is_whole: whether the targets are all that the engine keeps of an opaque material, and not only its normal.
+        light: the engine's light buffer, a key of LIGHT_BUFFERS; empty where it is not known. Emission is added there
+            if the targets hold none.
+        decals: how the engine puts decals on it, one sentence; empty where it is not known.
 
     Raises:
         LayoutError: what it names does not exist, does not fit, or clashes.
@@ -61,6 +68,9 @@ class Layout:
     depth: DepthEncoding | None = None
     engine: str = ""
     year: int = 0
+    is_whole: bool = False
+    light: str = ""
+    decals: str = ""
 
     def __post_init__(self):
         self._check_names()
@@ -132,6 +142,8 @@ class Layout:
     def _check_names(self) -> None:
         for field, names in (("space", SPACES), ("rounding", ROUNDINGS), ("packing", PACKINGS)):
             _check_known(self.name, field, getattr(self, field), names)
+        if self.light:
+            _check_known(self.name, "light", self.light, LIGHT_BUFFERS)
         for target in self.targets:
             _check_known(self.name, "format", target.format, FORMATS)
 
@@ -220,8 +232,23 @@ class Layout:
 
     @property
     def bytes_per_pixel(self) -> int:
-        """Of its targets and of depth and stencil, at one sample."""
-        return sum(sum(target.storage.bits) for target in self.targets) // 8 + DEPTH_STENCIL_BYTES
+        """Of its targets, without native depth and stencil, at one sample."""
+        return sum(sum(target.storage.bits) for target in self.targets) // 8
+
+    @property
+    def bytes_with_light(self) -> int | None:
+        """Of its targets and the engine's light buffer, likewise; None where that is not known."""
+        return self.bytes_per_pixel + LIGHT_BUFFERS[self.light].bytes_per_pixel if self.light else None
+
+    @property
+    def reflects_by(self) -> str:
+        """What says how much a surface reflects: the contract between materials and light. Layouts with different
+        ones cannot be compared byte by byte. Empty where nothing does, or a metal/rough material is not held whole."""
+        if not {"albedo.r", "roughness"} <= self.components:
+            return ""
+        if "metalness" in self.components:
+            return METALNESS_REFLECTANCE if "reflectance" in self.components else METALNESS
+        return DIFFUSE_F0 if "specular.r" in self.components else ""
 
     def with_codec(self, codec: Codec) -> Layout:
         """The layout with its normal in a target of its own, encoded and stored as `codec` does.
@@ -285,7 +312,7 @@ def catalogue_encoding(word: str) -> Encoding:
 
 def read_layout(path: Path, encoding_named: Callable[[str], Encoding] = catalogue_encoding) -> Layout:
     """A layout from a TOML file: `title`, `encoding`, `[[targets]]` of `format` and `holds`; `space`, `rounding`,
-    `packing` and `depth` where they are not the usual.
+    `packing`, `depth` and `light` where they are not the usual.
 
     Args:
         encoding_named: gives the encoding that the file names.
@@ -311,6 +338,7 @@ def _layout_from_data(path: Path, data: dict[str, Any], encoding_named: Callable
         "rounding": "nearest",
         "packing": "nearest",
         "depth": "",
+        "light": "",
     }
     unknown = set(data) - {*texts, "encoding", "targets"}
     if unknown:

@@ -7,9 +7,10 @@ from types import MappingProxyType
 
 from ...encodings.catalogue import ENCODINGS
 from . import engines
-from .engines import ENGINES, targets_of
+from .engines import ENGINES
 from .layout import Layout
-from .words import Target
+from .whole import WHOLE_ENGINES
+from .words import Target, targets_of
 
 MATERIAL = targets_of(engines.MATERIAL)
 
@@ -81,4 +82,6 @@ _ARTICLES = (
     ),
 )
 
-LAYOUTS: Mapping[str, Layout] = MappingProxyType({layout.name: layout for layout in (*_ARTICLES, *ENGINES)})
+LAYOUTS: Mapping[str, Layout] = MappingProxyType(
+    {layout.name: layout for layout in (*_ARTICLES, *WHOLE_ENGINES, *ENGINES)}
+)

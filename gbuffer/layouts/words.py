@@ -74,6 +74,11 @@ class Target:
         return FORMATS[self.format]
 
 
+def targets_of(text: str) -> tuple[Target, ...]:
+    """Targets of text such as `rg16f: normal.x normal.y; rgba8: albedo kind`."""
+    return tuple(Target(*one.strip().split(": ", 1)) for one in text.split(";"))
+
+
 def placed(layout: str, index: int, target: Target) -> Iterator[Word]:
     """Where each component of a target lies, the free and the unused ones left out.
 
@@ -85,7 +90,7 @@ def placed(layout: str, index: int, target: Target) -> Iterator[Word]:
         LayoutError: an unknown word, or one that does not fit.
     """
     place, storage, bit = place_of(layout, index, target), target.storage, 0
-    for text in _spelt_out(place, target):
+    for text in spelt_out(place, target):
         name, sign, bits, kept = _word_parts(place, text)
         if bits and name != OTHER:
             _check_packed(place, text, storage, bits)
@@ -109,7 +114,7 @@ def place_of(layout: str, index: int, target: Target) -> str:
     return f"layout {layout}, target {index} ({target.format})"
 
 
-def _spelt_out(place: str, target: Target) -> Iterator[str]:
+def spelt_out(place: str, target: Target) -> Iterator[str]:
     """The words of a target, a colour without a channel as its channels."""
     for text in target.holds.split():
         found = WORD.fullmatch(text)

@@ -15,11 +15,12 @@ EVERY = sorted(CURVE_ENCODINGS)
 
 @pytest.mark.parametrize("name", EVERY)
 def test_a_curve_leads_from_nothing_to_the_range_and_back(name):
-    """0 and the range are the ends of [0, 1], no step goes the other way, and what comes back is what was given."""
+    """0 and the range are the ends of the numbers, no step goes the other way, and what comes back is what was
+    given."""
     encoding, largest = CURVE_ENCODINGS[name], np.float32(range_of(CURVE_ENCODINGS[name]))
     x = np.sort(np.minimum(shares() * largest, largest))
     numbers = np.asarray(encoding.encode(x, largest))
-    ends = (1, 0) if name == "inverted" else (0, 1)
+    ends = {"inverted": (1, 0), "reflectivity": (0.04, 1)}.get(name, (0, 1))
     assert (numbers[0], numbers[-1]) == pytest.approx(ends, abs=4 * ULP)
     # A logarithm is within 2 units, so that neighbours may change places by as much.
     assert (np.diff(numbers) * (ends[1] - ends[0]) > -4 * ULP).all() and numbers.min() >= 0 and numbers.max() < 1 + 1e-6
@@ -45,6 +46,7 @@ def test_a_curve_leads_from_nothing_to_the_range_and_back(name):
         ("log", 31, 31.0, 1.0),
         ("ray_bits", 1, 0.5, 15 / 255),
         ("ray_bits", 1, 1.0, 1.0),
+        ("reflectivity", 1, 0.5, 0.52),
     ],
 )
 def test_a_curve_has_the_values_of_its_source(name, limit, quantity, number):

@@ -13,10 +13,9 @@ from test_metal_rough import LIT
 from normalbench.encodings.catalogue import CURVE_ENCODINGS, ENCODINGS, LIGHT_BUFFERS
 from normalbench.encodings.light import rgbm
 from normalbench.gbuffer.frame.plan import Plan
-from normalbench.gbuffer.layouts.engines import targets_of
 from normalbench.gbuffer.layouts.kept import WHOLE
 from normalbench.gbuffer.layouts.layout import Layout, read_layout
-from normalbench.gbuffer.layouts.words import LayoutError
+from normalbench.gbuffer.layouts.words import LayoutError, targets_of
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
 

@@ -21,10 +21,9 @@ from normalbench.gbuffer.environment.sun import without_sun
 from normalbench.gbuffer.frame.plan import LEAST_ROUGHNESS, Plan
 from normalbench.gbuffer.frame.resources import GBUFFER
 from normalbench.gbuffer.gl.device import bind
-from normalbench.gbuffer.layouts.engines import targets_of
 from normalbench.gbuffer.layouts.layout import Layout
 from normalbench.gbuffer.layouts.presets import LAYOUTS
-from normalbench.gbuffer.layouts.words import LayoutError
+from normalbench.gbuffer.layouts.words import LayoutError, targets_of
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.files.read import file_scene, read_mesh_file

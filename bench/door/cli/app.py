@@ -54,7 +54,10 @@ app = typer.Typer(
 )
 
 # What `list` leaves out where the terminal is narrow.
-SPARED = ("from", "holds", "year", "bytes_per_pixel", "components", "domain", "engine")
+SPARED = (
+    *("from", "holds", "decals", "year", "reflects_by", "bytes_with_light", "bytes_per_pixel", "components"),
+    *("domain", "engine"),
+)
 INTERRUPTED, TERMINATED = 130, 143
 NO_CACHE = "--no-cache"
 # What the library that reads values says, and what is said for it.

@@ -45,7 +45,10 @@ FILES_OF_DEPTHS = {"DEPTH.exr": "the depths of a frame, also .png, .tif and .npy
 FRAME_SETS = {"rotations": "rotations spread evenly, of either hand, seeded"}
 
 HOW = {"add": "adding", "multiply": "multiplying", "read": "reading and writing"}
-COLUMNS = ("kind", "name", "engine", "year", "title", "components", "domain", "bytes_per_pixel", "holds", "from")
+COLUMNS = (
+    *("kind", "name", "engine", "year", "title", "components", "domain", "bytes_per_pixel", "bytes_with_light"),
+    *("reflects_by", "decals", "holds", "from"),
+)
 Row = dict[str, object]
 
 
@@ -143,6 +146,8 @@ def _layouts() -> list[Row]:
     return [
         _row("layout", layout.name, layout.title, bytes_per_pixel=layout.bytes_per_pixel)
         | {"engine": layout.engine or None, "year": layout.year or None, "from": layout.source}
+        | {"bytes_with_light": layout.bytes_with_light, "decals": layout.decals or None}
+        | {"reflects_by": (layout.is_whole and layout.reflects_by) or None}
         | {"holds": layout.summary}
         for layout in sorted(LAYOUTS.values(), key=lambda layout: (layout.engine.lower(), layout.year))
     ]

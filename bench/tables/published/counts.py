@@ -13,7 +13,6 @@ from ....encodings.catalogue import DEPTH_ENCODINGS, LIGHT_BUFFERS
 from ....encodings.codecs.codec import Codec
 from ....encodings.normals.optimised_rings import points_needed
 from ....encodings.vec import Vec3
-from ....gbuffer.frame.resource import DEPTH_STENCIL_BYTES
 from ....gbuffer.layouts.presets import LAYOUTS
 from .measures import InACube, Quality, codec_of
 
@@ -145,7 +144,7 @@ def truncated(axis: int) -> float:
 
 def bytes_of_targets(layout: str) -> float:
     """The bytes a pixel of a layout's own targets."""
-    return float(LAYOUTS[layout].bytes_per_pixel - DEPTH_STENCIL_BYTES)
+    return float(LAYOUTS[layout].bytes_per_pixel)
 
 
 def most_light(light_buffer: str) -> float:

@@ -1,0 +1,34 @@
+"""Reflectivity: a metalness as what a surface reflects of white, from a dielectric's 0.04 to 1."""
+
+from pathlib import Path
+
+from ..codecs.curve_codec import CurveEncoding
+from ..vec import maximum
+
+DIELECTRIC = 0.04
+
+
+def encode(x, range):
+    """A quantity (float32 or float64, any shape, not negative) to [0.04, 1] up to the range."""
+    # e = d + (1 - d) x / range
+    return DIELECTRIC + (1.0 - DIELECTRIC) * (x / range)
+
+
+def decode(e, range):
+    """The quantity of a number, of its shape; 0 for less than a dielectric reflects."""
+    # x = (e - d) / (1 - d) range
+    return maximum((e - DIELECTRIC) / (1.0 - DIELECTRIC) * range, 0.0)
+
+
+ENCODING = CurveEncoding(
+    name="reflectivity",
+    title="what a metalness reflects of white, 0.04 to 1",
+    encode=encode,
+    decode=decode,
+    storages=("r8", "rgba8"),
+    citation="Unity URP 14, UnityGBuffer.hlsl (373861b): metalness is found again from it",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(4, 8),
+    ulps_reason="a product and a sum, which GLSL may join; a quotient",
+    constants={"REFLECTIVITY_LEAST": DIELECTRIC},
+)
