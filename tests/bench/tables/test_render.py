@@ -217,11 +217,11 @@ def test_flip_that_is_not_installed_is_one_line(run, monkeypatch):
 
 
 def test_layouts_are_measured_as_they_are(run):
-    status, out, _ = run(*QUICK[:-4], "--format", "json", "--pipeline", "hybrid", "--layout", "hybrid,kajiya")
+    status, out, _ = run(*QUICK[:-4], "--format", "json", "--pipeline", "hybrid", "--layout", "hybrid,xegtao")
     rows = json.loads(out)
     assert status == 0 and [(row["layout"], row["storage"]) for row in rows] == [
         ("hybrid", "rg16f"),
-        ("kajiya", "rgba8 11:10:11"),
+        ("xegtao", "rgba8 11:11:10"),
     ]
     assert [row["normal_bits"] for row in rows] == [32, 32] and all(row["psnr_db"] > 40 for row in rows)
 
