@@ -22,8 +22,9 @@ from ..ground.output.progress import progress
 from ..ground.output.writing import check_folder, check_is_folder, check_writable, say, whole_file, write
 from ..shaders.code.emit import LANGUAGES
 from ..shaders.code.files import Code, code_of, file_name
+from ..shaders.code.kinds.normal import is_catalogues
 from ..shaders.code.run import runner
-from ..shaders.code.verify import Agreement, agreement, is_catalogues
+from ..shaders.code.verify import Agreement, agreement
 from ..shaders.languages.source_options import in_names
 from ..subjects.codecs.names import codecs_named, fitting
 from .code_figures import figures, head
@@ -186,7 +187,8 @@ def verified(code: Code) -> Row:
 def _figures(found: Agreement, how: str) -> Row:
     return {
         "verdict": VERIFIED if found.holds else DIFFERS,
-        "texels": found.count,
+        "values": found.count,
+        "texels": found.texels,
         "differing": found.differing,
         "steps": found.steps,
         "run_by": how,
@@ -215,7 +217,7 @@ def _check(
 
 
 def _by_codec(rows: Sequence[Row]) -> list[Row]:
-    """A row for each codec, with a column for each language: how many texels are not the catalogue's."""
+    """A row for each codec, with a column for each language: how many values have another texel than the catalogue's."""
     found: dict[tuple[str, str, str], Row] = {}
     for row in rows:
         key = (row["encoding"], row["storage"], row["rounding"])
@@ -227,4 +229,4 @@ def _by_codec(rows: Sequence[Row]) -> list[Row]:
 def _said(row: Row) -> str:
     if row["verdict"] != VERIFIED:
         return row["verdict"]
-    return f"{row['differing']} of {row['texels']}" if row["differing"] else "equal"
+    return f"{row['differing']} of {row['values']}" if row["differing"] else "equal"

@@ -12,8 +12,8 @@ from ...encodings.codecs.encoding import AXES, Encoding
 from ..ground.options.counts import DEFAULT_COUNT
 from ..shaders.code.emit import LANGUAGES
 from ..shaders.code.files import Code
+from ..shaders.code.kinds.normal import is_catalogues
 from ..shaders.code.twin import has_twin
-from ..shaders.code.verify import is_catalogues
 from ..subjects.normals.normal_sets import NORMAL_SETS
 from ..tables.cost import measure as cost
 from ..tables.quality import measure as quality
@@ -42,7 +42,7 @@ def head(code: Code, codec: Codec, command: str, verified: str, said: Sequence[s
     """
     encoding = codec.encoding
     compared = (
-        verified.replace("texels are equal", "texels are the catalogue's") if is_catalogues(encoding) else verified
+        verified.replace(" are equal, bit", " are the catalogue's, bit", 1) if is_catalogues(encoding) else verified
     )
     tables = [
         f"Table: {name}, {table.shape[1]} x {table.shape[0]} texels of {table.shape[2]} floats of 32 bits."

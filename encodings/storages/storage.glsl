@@ -24,6 +24,27 @@ float round_float(float x, int exponent, int mantissa, bool is_signed, bool trun
     return is_signed && word != magnitude ? -kept : kept;
 }
 
+// The bits of a float of so many bits of exponent and mantissa, and back: they count its steps, from 0 on.
+uint float_bits(float x, int exponent, int mantissa, bool is_signed, bool truncates) {
+    int one = (1 << (exponent - 1)) - 1;
+    float kept = round_float(x, exponent, mantissa, is_signed, truncates);
+    uint word = floatBitsToUint(kept), magnitude = word & 0x7FFFFFFFu, endless = ((1u << exponent) - 1u) << mantissa;
+    uint bits = (magnitude >> (23 - mantissa)) - (uint(127 - one) << mantissa);
+    if (exponent < 8 && abs(kept) < exact_power(1 - one)) bits = uint(abs(kept) * exact_power(one - 1 + mantissa));
+    // infinite, or no number
+    if (magnitude >= 0x7F800000u) bits = magnitude > 0x7F800000u ? endless | 1u << (mantissa - 1) : endless;
+    return is_signed && word != magnitude ? bits | 1u << (exponent + mantissa) : bits;
+}
+
+float float_value(uint bits, int exponent, int mantissa) {
+    int one = (1 << (exponent - 1)) - 1;
+    uint magnitude = bits & ((1u << (exponent + mantissa)) - 1u), octave = magnitude >> mantissa;
+    float value = uintBitsToFloat((magnitude << (23 - mantissa)) + (uint(127 - one) << 23));
+    if (exponent < 8 && octave == 0u) value = float(magnitude) * exact_power(1 - one - mantissa);
+    if (octave + 1u == 1u << exponent) value = uintBitsToFloat(0x7F800000u | magnitude << (23 - mantissa));
+    return bits != magnitude ? -value : value;
+}
+
 // x in [-1, 1] as a whole number, `scale` standing for 1.
 float round_whole(float x, float scale, int rounding) {
     if (rounding == 0) return roundEven(x * scale);
@@ -106,24 +127,13 @@ vec4 unbiased(vec4 texel) { return STORAGE_BIASED != 0 ? texel * 2.0 - 1.0 : tex
 const float PART_SCALE = float((1 << STORAGE_PART) - 1);
 
 #if STORAGE_FLOATS
-// The bits of a float of a form, and back: they count its steps, from 0 on.
 uint integer_of(float number, int i) {
-    int mantissa = storage_bits[i] - STORAGE_EXPONENT - STORAGE_SIGNED, one = (1 << (STORAGE_EXPONENT - 1)) - 1;
-    float kept = round_float(number, STORAGE_EXPONENT, mantissa, STORAGE_SIGNED != 0, storage_rounding[i] != 0);
-    uint word = floatBitsToUint(kept), magnitude = word & 0x7FFFFFFFu;
-    uint integer = (magnitude >> (23 - mantissa)) - (uint(127 - one) << mantissa);
-    if (STORAGE_EXPONENT < 8 && abs(kept) < exact_power(1 - one)) integer = uint(abs(kept) * exact_power(one - 1 + mantissa));
-    if (magnitude >= 0x7F800000u) integer = (uint(exp2(float(STORAGE_EXPONENT))) * 2u - (magnitude > 0x7F800000u ? 1u : 2u)) << (mantissa - 1);
-    return word != magnitude ? integer | 1u << (storage_bits[i] - 1) : integer;
+    int mantissa = storage_bits[i] - STORAGE_EXPONENT - STORAGE_SIGNED;
+    return float_bits(number, STORAGE_EXPONENT, mantissa, STORAGE_SIGNED != 0, storage_rounding[i] != 0);
 }
 
 float number_of(uint integer, int i) {
-    int mantissa = storage_bits[i] - STORAGE_EXPONENT - STORAGE_SIGNED, one = (1 << (STORAGE_EXPONENT - 1)) - 1;
-    uint magnitude = integer & ((1u << (mantissa + STORAGE_EXPONENT)) - 1u), exponent = magnitude >> mantissa;
-    float value = uintBitsToFloat((magnitude << (23 - mantissa)) + (uint(127 - one) << 23));
-    if (STORAGE_EXPONENT < 8 && exponent == 0u) value = float(magnitude) * exact_power(1 - one - mantissa);
-    if (exponent + 1u == 1u << STORAGE_EXPONENT) value = uintBitsToFloat(0x7F800000u | magnitude << (23 - mantissa));
-    return integer != magnitude ? -value : value;
+    return float_value(integer, STORAGE_EXPONENT, storage_bits[i] - STORAGE_EXPONENT - STORAGE_SIGNED);
 }
 #else
 // A signed number's integer is `scale` more than itself, so that -1 is 0.

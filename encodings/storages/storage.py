@@ -124,7 +124,7 @@ class Storage:
 
     @property
     def only_measured(self) -> str:
-        """What its numbers are, where no layout keeps them and no code is written for them; else empty."""
+        """What its numbers are, where neither a layout keeps them nor a page reads them; else empty."""
         if self.form:
             return "floats of a form that no GPU has"
         if self.is_centred:

@@ -23,14 +23,15 @@ def words(numbers: np.ndarray, storage: Storage, channel: int) -> np.ndarray:
     if storage.is_biased:
         exact = exact / 2 + 0.5
     if storage.kind == "float":
-        return _float_words(exact, storage.float_form(channel))
+        return float_words(exact, storage.float_form(channel))
     whole = np.rint(np.nan_to_num(exact) * storage.scale(channel)).astype(np.int64)
     if storage.kind == "snorm" and storage.is_packed:
         whole += storage.scale(channel)
     return (whole & 2 ** storage.bits[channel] - 1).astype(np.uint32)
 
 
-def _float_words(texels: np.ndarray, form: FloatForm) -> np.ndarray:
+def float_words(texels: np.ndarray, form: FloatForm) -> np.ndarray:
+    """The bits (uint32) of numbers that a float of a form holds; any shape."""
     if form == FORMS[32]:
         return texels.astype(np.float32).view(np.uint32)
     magnitude = np.where(np.isfinite(texels), np.abs(texels), 0.0)
@@ -53,13 +54,14 @@ def numbers_across(words: np.ndarray, storage: Storage, channel: int) -> np.ndar
 
 def _numbers_of(words: np.ndarray, storage: Storage, channel: int) -> np.ndarray:
     if storage.kind == "float":
-        return _floats_of(words, storage.float_form(channel))
+        return floats_of(words, storage.float_form(channel))
     scale = storage.scale(channel)
     signed = words.astype(np.int64) - (scale if storage.kind == "snorm" else 0)
     return signed.astype(np.float32) * np.float32(1 / scale)
 
 
-def _floats_of(words: np.ndarray, form: FloatForm) -> np.ndarray:
+def floats_of(words: np.ndarray, form: FloatForm) -> np.ndarray:
+    """The numbers (float32) of bits (uint32, any shape): `float_words` the other way."""
     magnitude = words & 2 ** (form.exponent + form.mantissa) - 1
     exponent, mantissa = magnitude >> form.mantissa, magnitude & 2**form.mantissa - 1
     steps = mantissa + np.where(exponent > 0, 2**form.mantissa, 0)

@@ -17,7 +17,7 @@ from ....gbuffer.gl.shader import ShaderError, Source
 from ...ground.output.errors import UsageError
 from ...shaders.code.channels import Channels
 from ...shaders.code.files import Code, code_of
-from ...shaders.code.verify import is_catalogues
+from ...shaders.code.kinds.normal import is_catalogues
 
 Record = dict[str, Any]
 LANGUAGE, PREFIX = "essl", "codec"
@@ -41,6 +41,8 @@ def program(codec: Codec) -> Record:
     Raises:
         NotLiveError: its GLSL cannot be translated, or its look-up tables are too large.
     """
+    if what := codec.storage.only_measured:
+        raise NotLiveError(f"{codec.name}: a page does not read {what}")
     try:
         code = code_of(codec, LANGUAGE, PREFIX)
     except (UsageError, ShaderError) as error:
@@ -82,7 +84,7 @@ def _code_record(codec: Codec, code: Code) -> Record:
         "target": storage.target.title,
         "size": code.interface.size,
         "words": code.interface.words,
-        "bytes": channels.bytes if storage.is_packed else 0,
+        "bytes": channels.parts,
         "channels": [
             {"kind": c.kind, "bits": c.bits, "first": c.first, "integer": c.integer} for c in channels.channels
         ],

@@ -9,10 +9,14 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from ....encodings.codecs.codec import Codec
+import numpy as np
+
+from ....encodings.storages.storage import FloatForm
+from .kinds.code_kind import Numbers
+from .kinds.table import kind_of
 
 TEMPLATE = Path(__file__).with_name("storage.glsl.j2")
-FIELDS, WORD, BYTE = "xyzw", 32, 8
+FIELDS, PARTS, WORD = "xyzw", "rgba", 32
 RULES: Mapping[str, str] = MappingProxyType(
     {
         "nearest": "the integer nearest to {x} {scale}, of two as near the even one",
@@ -23,6 +27,39 @@ RULES: Mapping[str, str] = MappingProxyType(
 
 
 @dataclass(frozen=True)
+class Piece:
+    """Neighbouring bits of a number that lie in one channel of a target.
+
+    Attributes:
+        part: which channel.
+        above: how many bits of the number are higher.
+        below: how many bits of the number are lower.
+        left: its lowest bit in the channel.
+        bits: how many they are.
+        is_first: whether it begins at the channel's highest bit.
+    """
+
+    part: int
+    above: int
+    below: int
+    left: int
+    bits: int
+    is_first: bool
+
+    def placed(self, name: str) -> str:
+        """The bits of a number where they lie in the channel."""
+        low = f"{name} >> {self.below}" if self.below else name
+        kept = f"({low} & {mask_text(self.bits)})" if self.above else low
+        return f"{kept} << {self.left}" if self.left else kept
+
+    def taken(self, part: str) -> str:
+        """The bits of a channel where they lie in the number."""
+        low = f"{part} >> {self.left}" if self.left else part
+        kept = low if self.is_first else f"({low} & {mask_text(self.bits)})"
+        return f"{kept} << {self.below}" if self.below else kept
+
+
+@dataclass(frozen=True)
 class Channel:
     """One number of a code in its storage.
 
@@ -30,12 +67,15 @@ class Channel:
         name: x, y, z or w.
         kind: as the storage's.
         bits: its bits.
-        first: its lowest bit among all bits of the texel; where numbers are laid across bytes, of the bytes read as one
-            number, the first byte the highest.
+        first: its lowest bit among all bits of the texel; where numbers are laid across channels, of the channels read
+            as one number, the first one the highest.
         integer: the integer that stands for 1.
+        most: the largest integer.
         rounding: one of `storage.ROUNDINGS`.
-        is_across: it is laid across bytes.
+        form: of a float.
+        is_offset: whether its integer is kept `integer` more than itself, so that none is negative.
         words: how many words the texel has.
+        pieces: where its bits lie, if numbers are laid across channels.
     """
 
     name: str
@@ -43,38 +83,61 @@ class Channel:
     bits: int
     first: int
     integer: int
+    most: int
     rounding: str
-    is_across: bool
+    form: FloatForm | None
+    is_offset: bool
     words: int
+    pieces: tuple[Piece, ...] = ()
 
     @property
     def scale(self) -> str:
         return f"{self.integer}.0"
 
     @property
+    def top(self) -> str:
+        """The largest integer as a float."""
+        return f"{self.most}.0"
+
+    @property
     def mask(self) -> str:
-        return f"{(1 << self.bits) - 1}u"
+        return mask_text(self.bits)
+
+    @property
+    def largest(self) -> str:
+        """The largest unsigned integer as a float."""
+        return f"{(1 << self.bits) - 1}.0"
 
     @property
     def truncates(self) -> str:
         return "false" if self.rounding == "nearest" else "true"
 
+    @property
+    def float_words(self) -> str:
+        """Exponent and mantissa, and whether there is a sign, as `float_bits` is given them."""
+        assert self.form
+        return f"{self.form.exponent}, {self.form.mantissa}, {'true' if self.form.is_signed else 'false'}"
+
     def rounded(self, x: str) -> str:
         """x in [-1, 1] as a whole number."""
         if self.rounding == "nearest":
-            return f"roundEven({x} * {self.scale})"
-        if self.rounding == "truncate":
+            whole = f"roundEven({x} * {self.scale})"
+            return whole if self.most == self.integer else f"min({whole}, {self.top})"
+        if self.rounding == "truncate" and self.most == self.integer:
             return f"trunc({x} * {self.scale})"
-        return f"clamp(trunc({x} * {self.integer}.5), -{self.scale}, {self.scale})"
+        widened = f"{self.integer}.{5 if self.rounding == 'truncate_half' else 0}"
+        return f"clamp(trunc({x} * {widened}), -{self.scale}, {self.top})"
 
     @property
     def _word_name(self) -> str:
-        return "bits" if self.is_across else "texel" + (f".{FIELDS[self.first // WORD]}" if self.words > 1 else "")
+        return "texel" + (f".{FIELDS[self.first // WORD]}" if self.words > 1 else "")
 
     @property
     def read(self) -> str:
-        """Its bits, from the word that holds them."""
-        shift = self.first if self.is_across else self.first % WORD
+        """Its bits, from what holds them."""
+        if self.pieces:
+            return f"({' | '.join(f'({piece.taken(PARTS[piece.part])})' for piece in self.pieces)})"
+        shift = self.first % WORD
         moved = f"{self._word_name} >> {shift}" if shift else self._word_name
         return f"({moved} & {self.mask})" if self.bits < WORD else self._word_name
 
@@ -87,34 +150,41 @@ class Channel:
     @property
     def placed(self) -> str:
         """Its bits where they lie."""
-        shift = self.first if self.is_across else self.first % WORD
+        shift = self.first % WORD
         return f"{self.name} << {shift}" if shift else self.name
 
 
 @dataclass(frozen=True)
 class Channels:
-    """A codec's storage, as the template asks for it."""
+    """The numbers of a codec of any kind in their storage, as the template asks for them."""
 
-    codec: Codec
+    codec: Any
+
+    @cached_property
+    def numbers(self) -> Numbers:
+        """The code's numbers."""
+        return kind_of(self.codec).numbers(self.codec)
 
     @property
     def words(self) -> int:
         """How many integers of 32 bits a texel is: 1, 2 or 4."""
-        return -(-sum(self.codec.storage.bits) // WORD)
+        least = -(-sum(self.numbers.storage.bits) // WORD)
+        return least if least < 3 else 4
 
     @property
-    def has_sign(self) -> bool:
-        return bool(self.codec.encoding.sign_bits)
+    def part(self) -> int:
+        """The bits of a channel that numbers are laid across; 0 where each has a channel."""
+        return self.numbers.storage.part
 
     @property
-    def bytes(self) -> int:
-        """How many bytes numbers are laid across."""
-        return -(-sum(self.codec.storage.bits) // BYTE)
+    def parts(self) -> int:
+        """How many channels numbers are laid across."""
+        return -(-sum(self.numbers.storage.bits) // self.part) if self.part else 0
 
     @cached_property
     def channels(self) -> list[Channel]:
         """Where each number of the code is kept."""
-        storage, count = self.codec.storage, self.codec.encoding.components
+        storage = self.numbers.storage
         return [
             Channel(
                 FIELDS[at],
@@ -122,26 +192,62 @@ class Channels:
                 storage.bits[at],
                 self._first_bit(at),
                 storage.scale(at),
-                self.codec.rounding_of(at),
-                storage.is_packed,
+                storage.most(at),
+                rounding,
+                storage.float_form(at) if storage.kind == "float" else None,
+                storage.kind == "snorm" and (storage.is_packed or storage.is_centred),
                 self.words,
+                self._pieces(at),
             )
-            for at in range(count)
+            for at, rounding in enumerate(self.numbers.roundings)
         ]
 
     def _first_bit(self, at: int) -> int:
-        bits = self.codec.storage.bits
-        return BYTE * self.bytes - sum(bits[: at + 1]) if self.codec.storage.is_packed else sum(bits[:at])
+        bits = self.numbers.storage.bits
+        return self.part * self.parts - sum(bits[: at + 1]) if self.part else sum(bits[:at])
+
+    def _pieces(self, at: int) -> tuple[Piece, ...]:
+        """The bits of a number, by the channels that they lie in."""
+        if not self.part:
+            return ()
+        bits = self.numbers.storage.bits
+        start, end = sum(bits[:at]), sum(bits[: at + 1])
+        found = []
+        for part in range(start // self.part, -(-end // self.part)):
+            low, high = max(start, part * self.part), min(end, (part + 1) * self.part)
+            is_first = low == part * self.part
+            found.append(Piece(part, low - start, end - high, (part + 1) * self.part - high, high - low, is_first))
+        return tuple(found)
 
     def _texel_text(self, word: int) -> str:
-        return " | ".join(c.placed for c in self.channels if c.first // WORD == word) or "0u"
+        """A word of the texel."""
+        if not self.part:
+            return " | ".join(c.placed for c in self.channels if c.first // WORD == word) or "0u"
+        each = WORD // self.part
+        inside = range(word * each, min(self.parts, word * each + each))
+        return " | ".join(_shifted_text(PARTS[at], self.part * (at % each)) for at in inside) or "0u"
+
+    def _part_text(self, part: int) -> str:
+        """The channel that numbers are laid across."""
+        held = [(c.name, piece) for c in self.channels for piece in c.pieces if piece.part == part]
+        return (
+            " | ".join(f"({piece.placed(name)})" if piece.left else piece.placed(name) for name, piece in held) or "0u"
+        )
+
+    def _read_part(self, part: int) -> str:
+        """A channel's integer, from the texel's words."""
+        each = WORD // self.part
+        word = "texel" + (f".{FIELDS[part // each]}" if self.words > 1 else "")
+        shift = self.part * (part % each)
+        return f"{word} >> {shift} & {mask_text(self.part)}" if shift else f"{word} & {mask_text(self.part)}"
 
     @property
     def layout(self) -> str:
         """Where the numbers are, in words."""
-        if self.codec.storage.is_packed:
+        if self.part:
             spread = ", then ".join(f"{c.bits} bits of {c.name}" for c in self.channels)
-            return f"{spread}, from the highest bit of the first byte on"
+            what = "byte" if self.part == 8 else f"channel of {self.part}"
+            return f"{spread}, from the highest bit of the first {what} on"
         places = (f"{c.name} in bits {c.first % WORD} to {c.first % WORD + c.bits - 1}" for c in self.channels)
         owners = (f" of the {('first', 'second', 'third', 'fourth')[c.first // WORD]}" for c in self.channels)
         return ", ".join(p + (o if self.words > 1 else "") for p, o in zip(places, owners, strict=True))
@@ -149,46 +255,85 @@ class Channels:
     @property
     def rule(self) -> str:
         """How a number becomes an integer, in words."""
-        storage, first = self.codec.storage, self.channels[0]
-        if storage.kind == "float":
-            return ""
-        x = "(code / 2 + 1/2)" if storage.is_biased else "code"
+        first = self.channels[0]
+        if first.form:
+            if not self.part:
+                return ""
+            return f"Each is a float of {first.form.exponent} bits of exponent and {first.form.mantissa} of mantissa."
+        x = "(code / 2 + 1/2)" if self.numbers.is_biased else "code"
         scales = dict.fromkeys(str(c.integer) for c in self.channels)
-        return f"Each is {RULES[first.rounding].format(x=x, scale=' or '.join(scales))}."
+        offset = f", and {' or '.join(scales)} more" if first.is_offset else ""
+        return f"Each is {RULES[first.rounding].format(x=x, scale=' or '.join(scales))}{offset}."
 
     def context(self) -> dict[str, Any]:
         """What the template is given."""
+        numbers = self.numbers
         return {
             "words": self.words,
-            "has_sign": self.has_sign,
-            "is_precise": self.codec.encoding.is_precise,
-            "is_biased": self.codec.storage.is_biased,
-            "is_packed": self.codec.storage.is_packed,
-            "rounds_itself": self.codec.rounding != "nearest",
+            "has_sign": bool(numbers.sign_bits),
+            "is_precise": numbers.is_precise,
+            "is_biased": numbers.is_biased,
+            "is_centred": numbers.storage.is_centred,
+            "rounds_itself": numbers.storage.is_centred or any(one != "nearest" for one in numbers.roundings),
             "channels": self.channels,
+            "size": numbers.size,
             "layout": self.layout,
             "rule": self.rule,
-            "target": self.codec.storage.target.title,
+            "target": numbers.storage.target.title,
             "texels": [self._texel_text(word) for word in range(self.words)],
-            **(self._across_fields() if self.codec.storage.is_packed else {}),
+            **(self._across_fields() if self.part else {"parts": []}),
         }
 
     def _across_fields(self) -> dict[str, Any]:
-        """What the template is given of numbers that are laid across bytes."""
-        count = self.bytes
-        shifts = [(BYTE * (count - 1 - at), BYTE * at) for at in range(count)]
+        """What the template is given of numbers that are laid across channels."""
+        each = WORD // self.part
+        made, read = zip(*((self._part_text(at), self._read_part(at)) for at in range(self.parts)), strict=True)
+        words = [range(word * each, min(self.parts, word * each + each)) for word in range(self.words)]
+        joined = [" | ".join(_shifted_text(f"parts.{FIELDS[at]}", self.part * (at % each)) for at in w) for w in words]
         return {
-            "bits_of": " | ".join(c.placed for c in self.channels),
-            "bytes_of": " | ".join(_shifted_text(_byte_text("bits", high), low) for high, low in shifts),
-            "joined": " | ".join(_shifted_text(_byte_text("texel", low), high) for high, low in shifts),
-            "target_bytes": [f"float({_byte_text('texel', low)})" for _, low in shifts] + ["0.0"] * (4 - count),
-            "from_bytes": " | ".join(_shifted_text(f"bytes.{FIELDS[at]}", low) for at, (_, low) in enumerate(shifts)),
+            "parts": [(PARTS[at], made[at], read[at]) for at in range(self.parts)],
+            "part_scale": f"{(1 << self.part) - 1}.0",
+            "target_parts": [f"float({one})" for one in read] + ["0.0"] * (4 - self.parts),
+            "from_parts": [one or "0u" for one in joined],
         }
 
+    # The same in NumPy.
 
-def _byte_text(word: str, shift: int) -> str:
-    return f"({word} >> {shift} & 255u)" if shift else f"({word} & 255u)"
+    def texel_words(self, integers: np.ndarray) -> np.ndarray:
+        """Texels of the bits of numbers (uint32 of shape (count, numbers)): uint32 of shape (count, words)."""
+        words = np.zeros((len(integers), self.words), np.uint32)
+        for at, channel in enumerate(self.channels):
+            if not channel.pieces:
+                words[:, channel.first // WORD] |= integers[:, at] << np.uint32(channel.first % WORD)
+            for piece in channel.pieces:
+                bits = integers[:, at] >> np.uint32(piece.below) & np.uint32((1 << piece.bits) - 1)
+                place = piece.part * self.part
+                words[:, place // WORD] |= bits << np.uint32(place % WORD + piece.left)
+        return words
+
+    def bits_in(self, words: np.ndarray, at: int) -> np.ndarray:
+        """The bits of a number in texels, uint32 of shape (count,): `texel_words` the other way."""
+        channel = self.channels[at]
+        if not channel.pieces:
+            word = words[:, channel.first // WORD]
+            return word >> np.uint32(channel.first % WORD) & np.uint32((1 << channel.bits) - 1)
+        found = np.zeros(len(words), np.uint32)
+        for piece in channel.pieces:
+            place = piece.part * self.part
+            bits = words[:, place // WORD] >> np.uint32(place % WORD + piece.left) & np.uint32((1 << piece.bits) - 1)
+            found |= bits << np.uint32(piece.below)
+        return found
+
+    def part_in(self, words: np.ndarray, part: int) -> np.ndarray:
+        """The integers of a channel that numbers are laid across, uint32 of shape (count,)."""
+        place = part * self.part
+        return words[:, place // WORD] >> np.uint32(place % WORD) & np.uint32((1 << self.part) - 1)
+
+
+def mask_text(bits: int) -> str:
+    """An unsigned integer with so many of the lowest bits set."""
+    return f"{(1 << bits) - 1}u"
 
 
 def _shifted_text(value: str, shift: int) -> str:
-    return f"{value} << {shift}" if shift else value
+    return f"({value} << {shift})" if shift else value

@@ -8,11 +8,10 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 
-from ....encodings.codecs.codec import Codec
-from ....gbuffer.codecs.codec_passes import encoding_defines
 from ....gbuffer.gl.shader import Source
 from ..translator.c_writer import CWriter
 from ..translator.glsl_parser import read_glsl
@@ -25,6 +24,7 @@ from ..translator.tree import Program, TranslationError
 from ..translator.wgsl_writer import WgslWriter
 from ..translator.writer import PUBLIC, Writer
 from .channels import TEMPLATE, Channels
+from .kinds.table import kind_of
 
 ROOT = Path(__file__).with_name("codec.glsl")
 
@@ -81,23 +81,24 @@ def _template() -> Template:
     return environment.get_template(TEMPLATE.name)
 
 
-def program_of(codec: Codec, prefix: str) -> Program:
-    """The six functions of a codec as a tree, and what they need.
+def program_of(codec: Any, prefix: str) -> Program:
+    """The six functions of a codec of any kind as a tree, and what they need.
 
     Raises:
         ShaderError: its GLSL cannot be read, or is of half arithmetic or a chain.
         TranslationError: its GLSL has what cannot be translated.
     """
-    encoding = codec.encoding
-    defines = encoding_defines(encoding)
+    encoding, kind = codec.encoding, kind_of(codec)
+    defines = kind.defines(codec)
     source = Source(ROOT, defines, {"ENCODING": encoding.glsl})
-    storage = _template().render(Channels(codec).context(), encode=defines["ENCODE"], decode=defines["DECODE"])
+    channels = Channels(codec)
+    storage = _template().render(channels.context(), encode=defines["ENCODE"], decode=defines["DECODE"])
     try:
         program = read_glsl(f"{source.text}\n{storage}")
     except TranslationError as error:
         # At the place in the file that it was included from.
         raise TranslationError(source.explain(re.sub(r"^(\d+):\d+: ", r"0:\1: ", str(error)))) from error
-    encode = "nearest_encode" if encoding.is_precise else str(defines["ENCODE"])
+    encode = "nearest_encode" if channels.numbers.is_precise else str(defines["ENCODE"])
     own = {"encode": encode, "decode": str(defines["DECODE"])}
     roots = {own.get(name, name): name for name in PUBLIC}
     return reduced(program, roots, prefix, encoding.prefix)

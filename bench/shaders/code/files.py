@@ -6,8 +6,8 @@ import re
 import textwrap
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Any
 
-from ....encodings.codecs.codec import Codec
 from ...ground.output.errors import UsageError
 from ..languages.words import is_translated
 from ..translator.tree import Program, TranslationError
@@ -31,7 +31,7 @@ class Code:
         interface: how its functions are called.
     """
 
-    codec: Codec
+    codec: Any
     language: str
     prefix: str
     body: str
@@ -63,12 +63,12 @@ class Code:
         return {self.name: self.text(head).encode(), **beside}
 
 
-def file_name(codec: Codec, language: str) -> str:
+def file_name(codec: Any, language: str) -> str:
     """What the file of a codec's code is called."""
     return identifier(codec.name) + LANGUAGES[language].ending
 
 
-def code_of(codec: Codec, language: str, prefix: str = "") -> Code:
+def code_of(codec: Any, language: str, prefix: str = "") -> Code:
     """A codec's code in a language.
 
     Args:
@@ -80,16 +80,11 @@ def code_of(codec: Codec, language: str, prefix: str = "") -> Code:
         UsageError: the encoding has what cannot be translated.
         ShaderError: its GLSL cannot be read, or is of half arithmetic or a chain.
     """
-    if codec.encoding.before:
-        raise UsageError(f"{codec.encoding.name}: a chain of codecs is not written; write each codec of it")
-    if codec.encoding.patch:
-        raise UsageError(f"{codec.encoding.name}: ranges of patches are measured, and no code is written for them")
-    if what := codec.storage.only_measured:
-        raise UsageError(f"{codec.name}: {what} are measured, and no code is written for them; take unorm or snorm")
+    _check_written(codec)
     prefix = prefix or identifier(codec.name)
     try:
         program = program_of(codec, prefix)
-        interface = interface_of(codec, prefix, _takes_view(program, prefix))
+        interface = interface_of(codec, prefix, _parameters(program, prefix))
         writer = LANGUAGES[language].writer
         sizes: dict[str, tuple[int, int, int]] = {name: table.shape for name, table in interface.tables.items()}
         body = writer(prefix, sizes).program(program)
@@ -98,7 +93,7 @@ def code_of(codec: Codec, language: str, prefix: str = "") -> Code:
     return Code(codec, language, prefix, body, interface)
 
 
-def _untranslatable_reason(codec: Codec, said: str) -> str:
+def _untranslatable_reason(codec: Any, said: str) -> str:
     """Why a file is not translated; the place is in the user's file where that is GLSL."""
     encoding = codec.encoding
     if encoding.source is None or not is_translated(encoding.source):
@@ -107,5 +102,14 @@ def _untranslatable_reason(codec: Codec, said: str) -> str:
     return f"{encoding.source}: it is measured, but cannot be written in other languages: {what}"
 
 
-def _takes_view(program: Program, prefix: str) -> bool:
-    return len(program.function(f"{prefix}_encode").parameters) > 1
+def _parameters(program: Program, prefix: str) -> set[str]:
+    """The names of what the encoder takes."""
+    return {parameter.name for parameter in program.function(f"{prefix}_encode").parameters}
+
+
+def _check_written(codec: Any) -> None:
+    """Raises UsageError for what is measured alone."""
+    if getattr(codec.encoding, "before", None):
+        raise UsageError(f"{codec.encoding.name}: a chain of codecs is not written; write each codec of it")
+    if getattr(codec.encoding, "patch", 0):
+        raise UsageError(f"{codec.encoding.name}: ranges of patches are measured, and no code is written for them")

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
 
-from ....encodings.catalogue import ENCODINGS
-from ....encodings.codecs.codec import Codec
-from ....encodings.codecs.encoding import Encoding
 from ....encodings.storages.rounding import store_texel
-from ...ground.angles import angles_deg
-from .channels import WORD, Channels
-from .reference import Reference, bytes_turned, reference, signed
+from .channels import Channels
+from .kinds.table import kind_of
+from .reference import Reference, reference, signed
 from .run import runner
 from .run.interface import Interface, Ran
 
@@ -29,8 +28,8 @@ DECODED, OF_ERROR = 2.0**-19, 1 / 8
 MOST_SINGULAR = 5e-3
 # As many texels of a user's own encoder may be other ones of the same normals.
 MOST_SINGULAR_TEXELS = 0.02
-# How much farther off the texel of a search may be, in degrees: two codes that are as near in float32.
-SEARCHED_DEG = 1e-3
+# How much farther off the texel of a search may be, in degrees of normals: two codes that are as near in float32.
+SEARCHED = 1e-3
 EPSILON = 2.0**-23
 
 
@@ -39,79 +38,96 @@ class Agreement:
     """How a file's results differ from the catalogue's.
 
     Attributes:
-        count: of normals.
-        differing: texels that are not the catalogue's.
+        count: of values.
+        texels: how many different ones these have in the catalogue.
+        differing: values whose texel is not the catalogue's.
         steps: by how many steps of the storage a number differs at most.
         are_ties: whether no number differs by more than a step or CODE, whichever is larger.
         share: how many of the texels may differ.
-        worse_deg: how much farther off a texel that differs is decoded, at most.
+        worse: how much farther off a texel that differs is decoded, at most, in `unit`.
         unpacked: numbers that do not come back from the texels, or from the render target, as the catalogue's do.
         targets: texels that the render target's own conversion would make other than `pack` does.
         decoded: by how much a decoded component differs at most.
-        far: normals of which one differs by more than DECODED and OF_ERROR allow, or is no number.
+        far: values of which one differs by more than DECODED and OF_ERROR allow, or is no number.
         searches: whether the encoder takes the best of several codes.
         is_ours: whether it is the catalogue's.
+        plural: what the values are, in words.
+        unit: what errors of them are counted in.
     """
 
     count: int
+    texels: int
     differing: int
     steps: int
     are_ties: bool
     share: float
-    worse_deg: float
+    worse: float
     unpacked: int
     targets: int
     decoded: float
     far: int
     searches: bool
-    is_ours: bool = True
+    is_ours: bool
+    plural: str
+    unit: str
 
     @property
     def holds(self) -> bool:
         """Whether it is the catalogue's but for ties."""
         is_rare = self.differing <= self.share * self.count
-        agrees = is_rare or self.worse_deg <= SEARCHED_DEG if self.searches else is_rare and self.are_ties
+        agrees = is_rare or self.worse <= SEARCHED if self.searches else is_rare and self.are_ties
         # Next to a pole a longitude may be any, and the normal is the same.
-        is_singular = self.differing <= MOST_SINGULAR_TEXELS * self.count and self.worse_deg <= SEARCHED_DEG
+        is_singular = self.differing <= MOST_SINGULAR_TEXELS * self.count and self.worse <= SEARCHED
         agrees |= is_singular and not self.is_ours
         is_decoded = self.far <= MOST_SINGULAR * self.count
         return agrees and is_decoded and not self.unpacked and not self.targets
 
     @property
+    def _share_text(self) -> str:
+        return f"{self.differing} of {self.count} {self.plural}"
+
+    @property
     def says(self) -> str:
         """The agreement in words, as a file's head has it."""
         if not self.differing:
-            codes = f"all {self.count} texels are equal, bit for bit"
+            codes = f"all {self.texels} texels of {self.count} {self.plural} are equal, bit for bit"
         elif self.searches:
-            near = "as near" if self.worse_deg <= SEARCHED_DEG else f"up to {self.worse_deg:.1g} degrees farther off"
-            codes = f"{self.differing} of {self.count} texels differ, {near}: a search finds several codes alike"
+            near = "as near" if self.worse <= SEARCHED else f"up to {self.worse:.1g} {self.unit} farther off"
+            codes = f"the texels of {self._share_text} differ, {near}: a search finds several codes alike"
         else:
             steps = f"{self.steps} step{'s' * (self.steps != 1)}"
-            codes = f"{self.differing} of {self.count} texels differ, by {steps} at most"
+            codes = f"the texels of {self._share_text} differ, by {steps} at most"
         codes += "" if self.are_ties or self.searches else ", which is more than a tie"
         wrong = f"; {self.unpacked} numbers come back otherwise" if self.unpacked else ""
         wrong += f"; {self.targets} texels of the render target differ" if self.targets else ""
         far = f", {self.far} of them next to where the map is singular" if self.far else ""
         decoded = f"within {self.decoded / EPSILON:.3g} x 2^-23" if self.decoded else "equal"
-        return f"{codes}; decoded normals are {decoded}{far}{wrong}"
+        return f"{codes}; decoded {self.plural} are {decoded}{far}{wrong}"
 
 
-def is_catalogues(encoding: Encoding) -> bool:
-    """Whether an encoding is the catalogue's, or a variant of one."""
-    return encoding.name.partition(":")[0] in ENCODINGS
+def interface_of(codec: Any, prefix: str, parameters: Collection[str]) -> Interface:
+    """What the functions of a codec's code are called with.
 
-
-def interface_of(codec: Codec, prefix: str, takes_view: bool) -> Interface:
-    """What the functions of a codec's code are called with."""
-    encoding = codec.encoding
-    size = encoding.components + encoding.sign_bits
-    tables = {f"{prefix}_{name}": table for name, table in encoding.tables().items()}
+    Args:
+        codec: of any kind.
+        parameters: the names of what its functions take, of which settings are left.
+    """
+    kind, channels = kind_of(codec), Channels(codec)
+    tables = codec.encoding.tables() if hasattr(codec.encoding, "tables") else {}
     return Interface(
-        prefix, size, encoding.sign_bits, Channels(codec).words, takes_view, tables, is_catalogues(encoding)
+        prefix,
+        channels.numbers.size,
+        channels.numbers.sign_bits,
+        channels.words,
+        tuple(place for name, place in kind.settings.items() if name in parameters),
+        {f"{prefix}_{name}": table for name, table in tables.items()},
+        kind.is_ours(codec),
+        kind.given(codec),
+        kind.result(codec),
     )
 
 
-def agreement(codec: Codec, language: str, path: Path, interface: Interface) -> Agreement:
+def agreement(codec: Any, language: str, path: Path, interface: Interface) -> Agreement:
     """Run a file and compare it.
 
     Raises:
@@ -123,10 +139,10 @@ def agreement(codec: Codec, language: str, path: Path, interface: Interface) -> 
     return compared(codec, expected, ran)
 
 
-def compared(codec: Codec, expected: Reference, ran: Ran) -> Agreement:
+def compared(codec: Any, expected: Reference, ran: Ran) -> Agreement:
     """How the results of a file differ from the catalogue's."""
     channels = Channels(codec)
-    found = np.stack([_bits(channels, at, ran.words) for at in range(len(channels.channels))], axis=1)
+    found = np.stack([channels.bits_in(ran.words, at) for at in range(len(channels.channels))], axis=1)
     apart = np.stack(
         [
             np.abs(signed(c, found[:, at]) - signed(c, expected.integers[:, at]))
@@ -134,24 +150,30 @@ def compared(codec: Codec, expected: Reference, ran: Ran) -> Agreement:
         ],
         axis=1,
     )
+    kind = kind_of(codec)
     differs = (ran.words != expected.words).any(axis=1)
     same = ~differs
-    off = np.abs(ran.decoded.astype(np.float64) - expected.decoded)[same]
-    allowed = DECODED + OF_ERROR * np.abs(expected.decoded - expected.n).max(axis=1, keepdims=True)[same]
+    given = expected.n[:, : expected.decoded.shape[1]].astype(np.float64)
+    units = kind.units(given)
+    off = (np.abs(ran.decoded.astype(np.float64) - expected.decoded) / units)[same]
+    allowed = DECODED + OF_ERROR * (np.abs(expected.decoded - given) / units).max(axis=1, keepdims=True)[same]
     return Agreement(
         count=len(differs),
+        texels=len(np.unique(expected.words, axis=0)),
         differing=int(differs.sum()),
         steps=int(apart.max(initial=0)),
         are_ties=bool(((apart <= 1) | (_numbers_apart(expected, ran) <= CODE)).all()),
-        share=MOST_SHARE + max(codec.storage.levels(at) for at in range(len(channels.channels))) * CODE,
-        worse_deg=_worse(expected, ran, differs),
+        share=MOST_SHARE + max(channels.numbers.storage.levels(at) for at in range(len(channels.channels))) * CODE,
+        worse=_worse(codec, expected, ran, differs),
         unpacked=int((ran.unpacked[same] != expected.stored[same]).any(axis=1).sum())
         + int((ran.from_targets != expected.stored)[same].any(axis=1).sum()),
-        targets=int(_targets_apart(codec, expected, ran, same)),
+        targets=int(_targets_apart(channels, expected, ran, same)),
         decoded=float(off.max(initial=0.0)),
         far=int((~(off <= allowed)).any(axis=1).sum()),
-        searches=codec.encoding.searches or codec.encoding.is_precise,
-        is_ours=is_catalogues(codec.encoding),
+        searches=kind.searches(codec),
+        is_ours=kind.is_ours(codec),
+        plural=kind.plural,
+        unit=kind.unit,
     )
 
 
@@ -161,27 +183,19 @@ def _numbers_apart(expected: Reference, ran: Ran) -> np.ndarray:
     return np.abs(ran.unpacked[:, :count].astype(np.float64) - expected.stored[:, :count])
 
 
-def _worse(expected: Reference, ran: Ran, differs: np.ndarray) -> float:
-    """How much farther off the decoded normals of other texels are, at most, in degrees."""
+def _worse(codec: Any, expected: Reference, ran: Ran, differs: np.ndarray) -> float:
+    """How much farther off what other texels decode to is, at most."""
     if not differs.any():
         return 0.0
-    ours = angles_deg(expected.n[differs], ran.decoded[differs])
-    return float((ours - angles_deg(expected.n[differs], expected.decoded[differs])).max())
+    errors = kind_of(codec).errors
+    ours = errors(expected.n[differs], ran.decoded[differs])
+    return float((ours - errors(expected.n[differs], expected.decoded[differs])).max())
 
 
-def _targets_apart(codec: Codec, expected: Reference, ran: Ran, same: np.ndarray) -> int:
+def _targets_apart(channels: Channels, expected: Reference, ran: Ran, same: np.ndarray) -> int:
     """Texels of the render target, as its own conversion stores them, that are not the expected ones."""
-    target, apart = codec.storage.target, np.zeros(len(same), bool)
-    count = Channels(codec).bytes if codec.storage.is_packed else codec.encoding.components
-    for at in range(count):
+    target, apart = channels.numbers.storage.target, np.zeros(len(same), bool)
+    for at in range(channels.parts or channels.numbers.count):
         stored = np.asarray(store_texel(jnp.asarray(ran.targets[:, at]), target, at))
         apart |= stored != expected.texels[:, at]
     return int((apart & same).sum())
-
-
-def _bits(channels: Channels, at: int, words: np.ndarray) -> np.ndarray:
-    """The bits of a number in texels, uint32 of shape (count,)."""
-    channel = channels.channels[at]
-    bits = bytes_turned(words, channels.bytes) if channel.is_across else words
-    word = bits[:, channel.first // WORD]
-    return word >> np.uint32(channel.first % WORD) & np.uint32((1 << channel.bits) - 1)

@@ -45,6 +45,8 @@ from .tree import (
 # What others call of a codec's program, each behind the program's prefix.
 PUBLIC = ("encode", "decode", "pack", "unpack", "to_target", "from_target")
 INDENT = "    "
+# Whole numbers below this are written with all their digits.
+MOST_DIGITS = 2**24
 FIELDS = "xyzw"
 # Of an array, in a line.
 ELEMENTS = 6
@@ -407,6 +409,8 @@ def shortest(text: str) -> str:
     import numpy as np
 
     number = np.float32(text)
+    if number.is_integer() and abs(number) < MOST_DIGITS:
+        return with_a_point(f"{number:.0f}")
     return with_a_point(str(number)) if np.isfinite(number) else text
 
 

@@ -46,9 +46,22 @@ def built(path: Path, interface: Interface, tool: str, options: Sequence[str]) -
 
 def _macros(interface: Interface) -> list[str]:
     prefix, words = interface.prefix, interface.words
-    types = {"RUN_VEC3": f"{prefix}_vec3", "RUN_VEC4": f"{prefix}_vec4", "RUN_CODE": f"{prefix}_vec{interface.size}"}
+    kinds = {"RUN_VEC4": 4, "RUN_CODE": interface.size, "RUN_KIND": interface.result}
+    types = {name: "float" if size == 1 else f"{prefix}_vec{size}" for name, size in kinds.items()}
     types["RUN_TEXEL"] = f"{prefix}_uvec{words}" if words > 1 else "uint32_t"
-    return macros(interface.defines | types)
+    return macros(interface.defines_with(lambda places: _listed(places, prefix)) | types)
+
+
+def _listed(places: Sequence[str], prefix: str) -> str:
+    """What is given, of structures: n.xy is a structure of n.x and n.y."""
+    return ", ".join(_given(place, prefix) for place in places)
+
+
+def _given(place: str, prefix: str) -> str:
+    row, _, fields = place.partition(".")
+    if len(fields) < 2:
+        return place
+    return f"({prefix}_vec{len(fields)}){{{', '.join(f'{row}.{field}' for field in fields)}}}"
 
 
 def macros(values: dict[str, object]) -> list[str]:

@@ -5,26 +5,23 @@
 [[vk::binding(1, 0)]] RWStructuredBuffer<float4> run_made;
 [[vk::binding(2, 0)]] RWStructuredBuffer<uint4> run_words;
 
-float4 run_row(float2 v) { return float4(v, 0.0, 0.0); }
-float4 run_row(float3 v) { return float4(v, 0.0); }
 uint4 run_words_of(uint word) { return uint4(word, 0u, 0u, 0u); }
 uint4 run_words_of(uint2 words) { return uint4(words, 0u, 0u); }
 uint4 run_words_of(uint4 words) { return words; }
 
-#if RUN_VIEW
-#define RUN_WITH_VIEW , run_given[3u * i + 1u].xyz
-#else
-#define RUN_WITH_VIEW
-#endif
 #if RUN_SIGN
 #define RUN_WITH_SIGN , code[RUN_SIZE - 1]
 #else
 #define RUN_WITH_SIGN
 #endif
-#if RUN_SIZE == 2
+#if RUN_SIZE == 1
+#define RUN_CODE float
+#elif RUN_SIZE == 2
 #define RUN_CODE float2
-#else
+#elif RUN_SIZE == 3
 #define RUN_CODE float3
+#else
+#define RUN_CODE float4
 #endif
 #if RUN_WORDS == 1
 #define RUN_TEXEL uint
@@ -40,13 +37,14 @@ void main(uint3 id : SV_DispatchThreadID) {
     uint rows, stride, i = id.x;
     run_given.GetDimensions(rows, stride);
     if (i >= rows / 3u) return;
-    RUN_CODE code = RUN_ENCODE(run_given[3u * i].xyz RUN_WITH_VIEW);
+    float4 n = run_given[3u * i], view = run_given[3u * i + 1u];
+    RUN_CODE code = RUN_ENCODE(RUN_VALUE);
     RUN_TEXEL words = RUN_PACK(code);
-    RUN_CODE unpacked = RUN_UNPACK(words ^ asuint(run_given[3u * i].w) RUN_WITH_SIGN);
+    RUN_CODE unpacked = RUN_UNPACK(words ^ asuint(view.w) RUN_WITH_SIGN);
     run_words[i] = run_words_of(words);
-    run_made[5u * i] = run_row(code);
-    run_made[5u * i + 1u] = run_row(unpacked);
-    run_made[5u * i + 2u] = run_row(RUN_DECODE(unpacked RUN_WITH_VIEW));
+    run_made[5u * i] = float4(code RUN_REST);
+    run_made[5u * i + 1u] = float4(unpacked RUN_REST);
+    run_made[5u * i + 2u] = float4(RUN_DECODE(unpacked RUN_SETTINGS) RUN_RESULT_REST);
     run_made[5u * i + 3u] = RUN_TO_TARGET(code);
-    run_made[5u * i + 4u] = run_row(RUN_FROM_TARGET(run_given[3u * i + 2u] RUN_WITH_SIGN));
+    run_made[5u * i + 4u] = float4(RUN_FROM_TARGET(run_given[3u * i + 2u] RUN_WITH_SIGN) RUN_REST);
 }

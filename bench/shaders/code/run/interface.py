@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -25,28 +25,44 @@ class Interface:
 
     Attributes:
         prefix: P, what their names begin with.
-        size: how many numbers a code has, 2 or 3, a sign bit's among them.
+        size: how many numbers a code has, 1 to 4, a sign bit's among them.
         sign_bits: 1 where the last number of a code is a sign that is kept elsewhere, else 0.
         words: how many 32-bit integers a texel has: 1, 2 or 4.
-        takes_view: whether `P_encode` and `P_decode` take the view-space position.
+        settings: where in the rows `n` and `view` what both `P_encode` and `P_decode` are given besides lies: view.xyz.
         tables: the look-up tables by name, float32 of shape (height, width, channels).
         is_ours: whether nobody else's code is in the file.
+        value: where what `P_encode` is given lies.
+        result: how many numbers `P_decode` gives.
     """
 
     prefix: str
     size: int
     sign_bits: int
     words: int
-    takes_view: bool
+    settings: tuple[str, ...] = ()
     tables: Mapping[str, np.ndarray] = field(default_factory=dict)
     is_ours: bool = True
+    value: tuple[str, ...] = ("n.xyz",)
+    result: int = 3
+
+    @property
+    def takes_view(self) -> bool:
+        """Whether `P_encode` and `P_decode` take the view-space position."""
+        return "view.xyz" in self.settings
 
     @property
     def defines(self) -> dict[str, object]:
         """The macros by which the shaders here call the six functions."""
+        return self.defines_with(", ".join)
+
+    def defines_with(self, listed: Callable[[Sequence[str]], str]) -> dict[str, object]:
+        """The same, where what is given is written otherwise than n.xyz, view.x."""
         named = {name.upper(): f"{self.prefix}_{name}" for name in PUBLIC}
-        facts = {"SIZE": self.size, "SIGN": self.sign_bits, "WORDS": self.words, "VIEW": int(self.takes_view)}
-        return {f"RUN_{name}": value for name, value in {**named, **facts}.items()}
+        facts = {"SIZE": self.size, "SIGN": self.sign_bits, "WORDS": self.words, "RESULT": self.result}
+        given = {"VALUE": listed((*self.value, *self.settings)), "SETTINGS": listed(("", *self.settings))}
+        # What fills rows of four behind a code and behind what it is decoded to.
+        rest = {name: ", 0.0" * (4 - size) for name, size in (("REST", self.size), ("RESULT_REST", self.result))}
+        return {f"RUN_{name}": value for name, value in {**named, **facts, **given, **rest}.items()}
 
 
 class Ran(NamedTuple):
@@ -56,7 +72,7 @@ class Ran(NamedTuple):
         codes: float32 of shape (count, size).
         words: uint32 of shape (count, words).
         unpacked: of those words; float32 of shape (count, size).
-        decoded: of those codes; float32 of shape (count, 3).
+        decoded: of those codes; float32 of shape (count, result).
         targets: of the codes; float32 of shape (count, 4).
         from_targets: of the texels that were given; float32 of shape (count, size).
     """
@@ -69,7 +85,7 @@ class Ran(NamedTuple):
     from_targets: np.ndarray
 
 
-# Normals and views of shape (count, 3) and texels of shape (count, 4) to what the functions give, up to BLOCK at once.
+# Values and settings of shape (count, 3 or 4) and texels of shape (count, 4) to what the functions give, up to BLOCK.
 Run = Callable[[np.ndarray, np.ndarray, np.ndarray], Ran]
 
 
@@ -92,7 +108,8 @@ class Runner:
 
         Args:
             path: the file; its tables lie next to it where the language needs that.
-            n, view: unit normals and view-space positions, float32 of shape (count, 3).
+            n, view: what functions are given, as unit normals and view-space positions; float32 of shape (count, 3 or
+                4), of `view` the first three are used.
             texels: what `P_from_target` is given, float32 of shape (count, 4). A sign is the code's own.
 
         Raises:
@@ -113,11 +130,11 @@ def blocks(count: int) -> Iterator[slice]:
 def rows_of(n: np.ndarray, view: np.ndarray, texels: np.ndarray) -> np.ndarray:
     """What a shader is given: three rows of four numbers for each normal, float32 of shape (GIVEN count, 4).
 
-    The fourth number of a normal is 0. By its bits the words change before they are unpacked, so that no compiler can
+    The fourth number of a view is 0. By its bits the words change before they are unpacked, so that no compiler can
     see that it unpacks what it has packed: Mesa makes a of (a + b) - b.
     """
     given = np.zeros((len(n), GIVEN, 4), np.float32)
-    given[:, 0, :3], given[:, 1, :3], given[:, 2] = n, view, texels
+    given[:, 0, : n.shape[1]], given[:, 1, :3], given[:, 2] = n, view[:, :3], texels
     return given.reshape(-1, 4)
 
 
@@ -126,4 +143,4 @@ def ran_of(made: np.ndarray, words: np.ndarray, interface: Interface) -> Ran:
     rows, size = made.reshape(-1, MADE, 4), interface.size
     words = np.ascontiguousarray(words.reshape(-1, 4)[:, : interface.words])
     code, unpacked, decoded, target, back = np.ascontiguousarray(rows.transpose(1, 0, 2))
-    return Ran(code[:, :size], words, unpacked[:, :size], decoded[:, :3], target, back[:, :size])
+    return Ran(code[:, :size], words, unpacked[:, :size], decoded[:, : interface.result], target, back[:, :size])

@@ -8,17 +8,13 @@ extern "C" void run_set_table(size_t at, const float *texels, uint width, uint h
     *run_tables[at] = texture2d<float>{texels, width, height};
 }
 
-#if RUN_VIEW
-#define RUN_WITH_VIEW , view
-#else
-#define RUN_WITH_VIEW
-#endif
 #if RUN_SIGN
 #define RUN_WITH_SIGN , code[RUN_SIZE - 1]
 #else
 #define RUN_WITH_SIGN
 #endif
 
+static void run_row(float *made, float v) { made[0] = v; }
 template <class V> static void run_row(float *made, V v) {
     for (int i = 0; i < sized<V>::count; ++i) made[i] = v[i];
 }
@@ -28,15 +24,15 @@ static void run_words(uint *words, uint4 v) { words[0] = v.x, words[1] = v.y, wo
 
 extern "C" void run_six(size_t count, const float *given, float *made, uint *words) {
     for (size_t i = 0; i < count; ++i, given += 12, made += 20, words += 4) {
-        float3 n = {given[0], given[1], given[2]}, view = {given[4], given[5], given[6]};
+        float4 n = {given[0], given[1], given[2], given[3]}, view = {given[4], given[5], given[6], 0.0f};
         float4 texel = {given[8], given[9], given[10], given[11]};
-        auto code = RUN_ENCODE(n RUN_WITH_VIEW RUN_ENCODE_TABLES);
+        auto code = RUN_ENCODE(RUN_VALUE RUN_ENCODE_TABLES);
         auto packed = RUN_PACK(code);
         auto unpacked = RUN_UNPACK(packed RUN_WITH_SIGN);
         (void)view;
         run_row(made, code);
         run_row(made + 4, unpacked);
-        run_row(made + 8, RUN_DECODE(unpacked RUN_WITH_VIEW RUN_DECODE_TABLES));
+        run_row(made + 8, RUN_DECODE(unpacked RUN_SETTINGS RUN_DECODE_TABLES));
         run_row(made + 12, RUN_TO_TARGET(code));
         run_row(made + 16, RUN_FROM_TARGET(texel RUN_WITH_SIGN));
         run_words(words, packed);

@@ -22,7 +22,8 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
 
         def run(n: np.ndarray, view: np.ndarray, texels: np.ndarray) -> Ran:
             np.savez(place / "given.npz", n=n, view=view, texels=texels)
-            facts = (interface.prefix, str(int(interface.takes_view)), str(interface.sign_bits))
+            places = (",".join(interface.value), ",".join(interface.settings))
+            facts = (interface.prefix, *places, str(interface.sign_bits))
             run_apart(path, children.python(f"{__package__}.python_child", str(path.resolve()), str(place), *facts))
             with np.load(place / "made.npz") as made:
                 return _run_result(made, interface, len(n))
@@ -32,10 +33,14 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
 
 def _run_result(made: np.lib.npyio.NpzFile, interface: Interface, count: int) -> Ran:
     """What the functions gave. What does not depend on its normal, a function gives once."""
-    sizes = (interface.size, interface.words, interface.size, 3, 4, interface.size)
-    given = [made[name] for name in Ran._fields]
-    given[1] = given[1].reshape(*given[1].shape[: given[1].ndim - (interface.words > 1)], interface.words)
+    sizes = (interface.size, interface.words, interface.size, interface.result, 4, interface.size)
+    given = [_in_rows(made[name], size) for name, size in zip(Ran._fields, sizes, strict=True)]
     return Ran(*(np.broadcast_to(one, (count, size)) for one, size in zip(given, sizes, strict=True)))
+
+
+def _in_rows(made: np.ndarray, size: int) -> np.ndarray:
+    """An array of scalars as rows of one number."""
+    return made[..., None] if size == 1 else made
 
 
 def how() -> str:

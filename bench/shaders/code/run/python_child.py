@@ -1,13 +1,15 @@
 """The process that runs a file of NumPy:
 
-    python -m normalbench.bench.shaders.code.run.python_child FILE FOLDER PREFIX TAKES_VIEW SIGN_BITS
+    python -m normalbench.bench.shaders.code.run.python_child FILE FOLDER PREFIX VALUE SETTINGS SIGN_BITS
 
-It reads given.npz of the folder (n, view, texels) and writes made.npz, with the names of `interface.Ran`.
+VALUE and SETTINGS say where in n and view lies what the functions are given: n.xy,view.x. It reads given.npz of the
+folder (n, view, texels) and writes made.npz, with the names of `interface.Ran`.
 """
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Mapping
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
@@ -31,20 +33,28 @@ def imported(path: Path) -> ModuleType:
     return module
 
 
+def _taken(rows: Mapping[str, np.ndarray], place: str) -> np.ndarray:
+    """Some of the numbers of rows: n.xy; of one number an array of scalars."""
+    name, _, fields = place.partition(".")
+    taken = rows[name][..., ["xyzw".index(field) for field in fields]]
+    return taken[..., 0] if len(fields) == 1 else taken
+
+
 def main(words: list[str]) -> None:
     """Run the six functions. Raises whatever they raise."""
     children.limit_this_process()
-    path, folder, (prefix, takes_view, sign_bits) = Path(words[0]), Path(words[1]), words[2:]
+    path, folder, (prefix, value, settings, sign_bits) = Path(words[0]), Path(words[1]), words[2:]
     module = imported(path)
     six = {name: getattr(module, f"{prefix}_{name}") for name in PUBLIC}
     with np.load(folder / "given.npz") as given:
-        n, view, texels = given["n"], given["view"], given["texels"]
-    rays = (view,) if int(takes_view) else ()
-    code = six["encode"](n, *rays)
+        rows = {name: given[name] for name in ("n", "view")}
+        texels = given["texels"]
+    behind = [_taken(rows, place) for place in settings.split(",") if place]
+    code = six["encode"](*(_taken(rows, place) for place in value.split(",")), *behind)
     sign = (code[..., -1],) if int(sign_bits) else ()
     packed = six["pack"](code)
     unpacked = six["unpack"](packed, *sign)
-    decoded, back = six["decode"](unpacked, *rays), six["from_target"](texels, *sign)
+    decoded, back = six["decode"](unpacked, *behind), six["from_target"](texels, *sign)
     made = Ran(code, packed, unpacked, decoded, six["to_target"](code), back)
     np.savez(folder / "made.npz", **made._asdict())
 

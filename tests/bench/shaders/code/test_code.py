@@ -16,9 +16,11 @@ from normalbench.bench.door.code_command import SHIPPED
 from normalbench.bench.shaders.code.channels import Channels
 from normalbench.bench.shaders.code.emit import LANGUAGES
 from normalbench.bench.shaders.code.files import code_of
-from normalbench.bench.shaders.code.reference import normals, reference
+from normalbench.bench.shaders.code.kinds.normal import normals
+from normalbench.bench.shaders.code.reference import reference
+from normalbench.bench.shaders.code.run.interface import Ran
 from normalbench.bench.shaders.code.tables import dds, header
-from normalbench.bench.shaders.code.verify import agreement
+from normalbench.bench.shaders.code.verify import agreement, compared
 from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.bench.subjects.codecs.user_encodings import encodings_named
 from normalbench.bench.tables.cost import measure as cost
@@ -26,7 +28,8 @@ from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.storages.storage import STORAGES
 
 # One of each that is made otherwise: plain, precise, with a view, a sign, tables, levels, polynomials, an axis, a
-# parameter, floats of each size, numbers across bytes, signed ones, and the ways to round.
+# parameter, floats of each size, numbers across bytes, signed ones, the ways to round, centred numbers, floats of any
+# form, signed integers over a power of two, and words of 64 bits.
 CODECS = (
     "octahedral/rgb10a2",
     "octahedral_precise/rgb8_12_12_snorm",
@@ -41,6 +44,12 @@ CODECS = (
     "stereographic/rg16_snorm/truncate_half",
     "xyz/rgba32f",
     "hemi_octahedral/rgba16f/truncate",
+    "octahedral/centred:8:8",
+    "octahedral/float:4:3",
+    "octahedral/ufloat:8:7/truncate",
+    "octahedral_precise/snorm_full:8:7",
+    "xyz/unorm:20:17:20",
+    "cube/snorm:18:18:4/truncate",
 )
 
 
@@ -188,6 +197,16 @@ def test_written_code_costs_the_catalogues_instructions(language, tmp_path):
             assert found == ours, f"{one.name} {operation}: {found} instructions, the catalogue's {ours}"
 
 
+def test_a_texel_is_counted_once():
+    """A byte has 256 texels, however many normals have them."""
+    codec = codec_of("octahedral/unorm:4:4")
+    expected = reference(codec)
+    ran = Ran(expected.stored, expected.words, expected.stored, expected.decoded, expected.texels, expected.stored)
+    found = compared(codec, expected, ran)
+    assert found.holds and found.says.startswith(f"all {len(np.unique(expected.words))} texels of 65536 normals")
+    assert len(np.unique(expected.words)) == 256
+
+
 MANY_WORDS = """
 #define SCALE 0.75
 float halves(float x) { return mod(x + 3.0, 2.0) - 1.0; }
@@ -244,7 +263,7 @@ def test_code_prints_one_file_that_says_what_it_is(run):
         r"mean 0\.492\d degrees, RMS 0\.719\d; the largest of all directions is 11\.9\d degrees; 22\.\d+ was met", head
     )
     assert re.search(r"Instructions: \d+ to encode and \d+ to decode|Instructions: not counted", head)
-    assert "of 65536 texels" in head or "all 65536 texels" in head
+    assert re.search(r"texels of (\d+ of )?65536 normals", head)
     assert "normalbench code spheremap --storage rg8 --to glsl --prefix sm" in head
     assert "MIT License" in head
     assert "vec2 sm_encode(vec3 n) {" in out

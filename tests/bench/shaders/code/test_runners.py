@@ -20,8 +20,8 @@ pytestmark = pytest.mark.slow
 FOLDER = Path(__file__).parents[3] / "inputs" / "code"
 ENDINGS = {"python": "py", "msl": "metal"}
 STEPS = np.array([[[3.0, 0.5], [5.0, 0.25]]], np.float32)
-SPHEREMAP = Interface("spheremap_rg8", 2, 0, 1, False)
-SCALED = Interface("scaled_rg32f", 3, 1, 2, True, {"scaled_steps": STEPS})
+SPHEREMAP = Interface("spheremap_rg8", 2, 0, 1)
+SCALED = Interface("scaled_rg32f", 3, 1, 2, ("view.xyz",), {"scaled_steps": STEPS})
 OTHERS = [name for name in LANGUAGES if name != "python"]
 
 
