@@ -12,20 +12,23 @@ from pathlib import Path
 from typing import Any
 
 from ...encodings.codecs.codec import Codec
+from ...encodings.codecs.kind import CURVE, NORMAL
+from ...encodings.storages.storage import ROUNDINGS
 from ...gbuffer.gl.device import NoDeviceError
 from ...gbuffer.gl.shader import ShaderError
 from ..ground.choose import choose
 from ..ground.options.code import CodeOptions
-from ..ground.options.targets import what_is_left
+from ..ground.options.targets import that_fit, what_is_left
 from ..ground.output.errors import MissingError, UsageError, leave_out, tell
 from ..ground.output.progress import progress
 from ..ground.output.writing import check_folder, check_is_folder, check_writable, say, whole_file, write
 from ..shaders.code.emit import LANGUAGES
 from ..shaders.code.files import Code, code_of, file_name
-from ..shaders.code.kinds.normal import is_catalogues
+from ..shaders.code.kinds.table import kind_of
 from ..shaders.code.run import runner
 from ..shaders.code.verify import Agreement, agreement
 from ..shaders.languages.source_options import in_names
+from ..subjects.codecs.kinds.codecs import codecs_of_kind, kind_named
 from ..subjects.codecs.names import codecs_named, fitting
 from .code_figures import figures, head
 
@@ -75,7 +78,13 @@ def _check_prefix(prefix: str) -> None:
         )
 
 
-def _codecs(options: CodeOptions) -> list[Codec]:
+def _codecs(options: CodeOptions) -> list[Any]:
+    kind = kind_named(options.codec, options.of)
+    if kind is not NORMAL:
+        rounded = choose("rounding", options.rounding, dict(zip(ROUNDINGS, ROUNDINGS, strict=True)))
+        if rounded != ["nearest"] and kind is not CURVE:
+            raise UsageError(f"--rounding is for normals and curves; codes of {kind.name} are rounded to the nearest")
+        return that_fit(codecs_of_kind(kind, options.codec, options.storage or "", rounded))
     storages = options.storage or (SHIPPED if options.check else "rgba8")
     codecs, left_out = fitting(codecs_named(options.codec, storages, options.rounding))
     if not options.check or options.storage:
@@ -84,16 +93,16 @@ def _codecs(options: CodeOptions) -> list[Codec]:
     return codecs
 
 
-def _write(codecs: Sequence[Codec], languages: Sequence[str], options: CodeOptions, output: Path | None) -> int:
+def _write(codecs: Sequence[Any], languages: Sequence[str], options: CodeOptions, output: Path | None) -> int:
     return max((_write_codec(codec, languages, options.prefix, output) for codec in codecs), default=0)
 
 
-def _write_codec(codec: Codec, languages: Sequence[str], prefix: str, output: Path | None) -> int:
+def _write_codec(codec: Any, languages: Sequence[str], prefix: str, output: Path | None) -> int:
     """A codec in each language; 1 where one differs from the catalogue's."""
     status = 0
     # Measured once, and only where something is written.
-    said = cache(partial(figures, codec))
-    own = replace(codec, encoding=codec.encoding.own or codec.encoding)
+    said = cache(partial(figures, codec) if isinstance(codec, Codec) else list)
+    own = replace(codec, encoding=getattr(codec.encoding, "own", None) or codec.encoding)
     made = [(code, verified(code)) for code in _all_made([own], languages, prefix)]
     for code, row in made:
         language = code.language
@@ -130,7 +139,7 @@ def _witness(code: Code) -> tuple[str, Row]:
     return next(((name, row) for name, row in rows if row["verdict"] != NOT_RUN), ("", {"verdict": NOT_RUN}))
 
 
-def _all_made(codecs: Sequence[Codec], languages: Sequence[str], prefix: str) -> list[Code]:
+def _all_made(codecs: Sequence[Any], languages: Sequence[str], prefix: str) -> list[Code]:
     """The code of each codec in each language; what cannot be written is named on standard error.
 
     Raises:
@@ -146,11 +155,17 @@ def _all_made(codecs: Sequence[Codec], languages: Sequence[str], prefix: str) ->
     return what_is_left(made, complaints)
 
 
-def _command(codec: Codec, language: str, prefix: str) -> str:
-    name = codec.encoding.name if is_catalogues(codec.encoding) else codec.encoding.citation
-    words = ["normalbench", "code", name, "--storage", codec.storage.name, "--to", language]
-    words += ["--rounding", codec.rounding] if codec.rounding != "nearest" else []
+def _command(codec: Any, language: str, prefix: str) -> str:
+    kind = kind_of(codec)
+    name = codec.encoding.name if kind.is_ours(codec) else codec.encoding.citation
+    words = ["normalbench", "code", name, *([] if kind.kind is NORMAL else ["--of", kind.kind.name])]
+    words += ["--storage", codec.storage.name, "--to", language]
+    words += ["--rounding", _rounding(codec)] if _rounding(codec) != "nearest" else []
     return shlex.join([*words, *(["--prefix", prefix] if prefix else [])])
+
+
+def _rounding(codec: Any) -> str:
+    return getattr(codec, "rounding", "nearest")
 
 
 def _save(code: Code, said: Iterable[str], output: Path | None) -> None:
@@ -169,7 +184,7 @@ def verified(code: Code) -> Row:
     row: Row = {
         "encoding": codec.encoding.name,
         "storage": codec.storage.name,
-        "rounding": codec.rounding,
+        "rounding": _rounding(codec),
         "language": code.language,
     }
     try:
@@ -197,7 +212,7 @@ def _figures(found: Agreement, how: str) -> Row:
 
 
 def _check(
-    codecs: Sequence[Codec], languages: Sequence[str], options: CodeOptions, format: str, output: Path | None
+    codecs: Sequence[Any], languages: Sequence[str], options: CodeOptions, format: str, output: Path | None
 ) -> int:
     if output:
         check_writable(output)
@@ -217,7 +232,7 @@ def _check(
 
 
 def _by_codec(rows: Sequence[Row]) -> list[Row]:
-    """A row for each codec, with a column for each language: how many values have another texel than the catalogue's."""
+    """A row for each codec, with a column for each language: of how many values the texel is another one."""
     found: dict[tuple[str, str, str], Row] = {}
     for row in rows:
         key = (row["encoding"], row["storage"], row["rounding"])

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from importlib.metadata import version
-from types import MappingProxyType
 from typing import Any
 
 from ...encodings.codecs.codec import Codec
-from ...encodings.codecs.encoding import AXES, Encoding
 from ..ground.options.counts import DEFAULT_COUNT
 from ..shaders.code.emit import LANGUAGES
 from ..shaders.code.files import Code
-from ..shaders.code.kinds.normal import is_catalogues
+from ..shaders.code.kinds.table import kind_of
 from ..shaders.code.twin import has_twin
 from ..subjects.normals.normal_sets import NORMAL_SETS
 from ..tables.cost import measure as cost
@@ -21,16 +19,9 @@ from ..tables.quality import measure as quality
 # Figures that differ by less are the same.
 SAME = 1e-3
 STAGE, FAMILY, FAMILY_TITLE = "fragment", "navi21", "AMD RDNA 2 (navi21, RADV)"
-HOLDS: Mapping[str, str] = MappingProxyType(
-    {
-        "sphere": "unit vectors of the whole sphere",
-        "hemisphere": "unit vectors with z >= 0",
-        "view": "unit vectors that face the viewer; `view` is the view-space position, with the viewer at the origin",
-    }
-)
 
 
-def head(code: Code, codec: Codec, command: str, verified: str, said: Sequence[str]) -> list[str]:
+def head(code: Code, codec: Any, command: str, verified: str, said: Sequence[str]) -> list[str]:
     """The paragraphs above a file's functions.
 
     Args:
@@ -40,10 +31,8 @@ def head(code: Code, codec: Codec, command: str, verified: str, said: Sequence[s
         verified: how its results compare with the catalogue's.
         said: its codec's figures, see `figures`.
     """
-    encoding = codec.encoding
-    compared = (
-        verified.replace(" are equal, bit", " are the catalogue's, bit", 1) if is_catalogues(encoding) else verified
-    )
+    encoding, kind = codec.encoding, kind_of(codec)
+    compared = verified.replace(" are equal, bit", " are the catalogue's, bit", 1) if kind.is_ours(codec) else verified
     tables = [
         f"Table: {name}, {table.shape[1]} x {table.shape[0]} texels of {table.shape[2]} floats of 32 bits."
         for name, table in code.interface.tables.items()
@@ -54,7 +43,8 @@ def head(code: Code, codec: Codec, command: str, verified: str, said: Sequence[s
         f"{code.prefix}_from_target. {LANGUAGES[code.language].advice}",
         "",
         f"Encoding: {encoding.title}. Source: {encoding.citation}.",
-        f"Storage: {codec.storage.title}, {codec.bits} bits, rounded to {codec.rounding}. Normals: {_held(encoding)}.",
+        f"Storage: {codec.storage.title}, {codec.bits} bits, rounded to {getattr(codec, 'rounding', 'nearest')}. "
+        f"{kind.plural.capitalize()}: {kind.held(codec)}.",
         *said,
         *tables,
         f"Verified: {compared}.",
@@ -63,20 +53,11 @@ def head(code: Code, codec: Codec, command: str, verified: str, said: Sequence[s
     ]
 
 
-def _held(encoding: Encoding) -> str:
-    """The normals that a file's functions take."""
-    if encoding.own is None:
-        return HOLDS[encoding.domain]
-    # The component that the turn makes a table's z.
-    half = AXES[encoding.axis][1][-1]
-    return f"unit vectors with {half} {'>=' if encoding.sign > 0 else '<='} 0"
-
-
-def _licence(codec: Codec) -> str:
+def _licence(codec: Any) -> str:
     licence = "MIT License, Copyright (c) 2026 The normalbench authors"
     return (
         f"{licence}."
-        if is_catalogues(codec.encoding)
+        if kind_of(codec).is_ours(codec)
         else f"Encode and decode are yours. The other functions: {licence}."
     )
 

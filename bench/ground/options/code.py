@@ -13,6 +13,14 @@ class CodeOptions(Sources):
     """Which codecs, in which languages."""
 
     codec: Annotated[str, Option("CODEC", f"Encodings or files, {Names}.", files=True)] = "octahedral"
+    of: Annotated[
+        str,
+        Option(
+            "--of",
+            "What the codes are of: normal, motion, curve (roughness and the like), light or depth. Default: what the "
+            "names say.",
+        ),
+    ] = ""
     storage: Annotated[
         str | None, Option("--storage", f"Storages, {Names}. Default: rgba8; with --check, those that people ship.")
     ] = None

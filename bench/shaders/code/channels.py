@@ -73,6 +73,7 @@ class Channel:
         most: the largest integer.
         rounding: one of `storage.ROUNDINGS`.
         form: of a float.
+        share: as of `Numbers`.
         is_offset: whether its integer is kept `integer` more than itself, so that none is negative.
         words: how many words the texel has.
         pieces: where its bits lie, if numbers are laid across channels.
@@ -86,6 +87,7 @@ class Channel:
     most: int
     rounding: str
     form: FloatForm | None
+    share: str
     is_offset: bool
     words: int
     pieces: tuple[Piece, ...] = ()
@@ -117,6 +119,11 @@ class Channel:
         """Exponent and mantissa, and whether there is a sign, as `float_bits` is given them."""
         assert self.form
         return f"{self.form.exponent}, {self.form.mantissa}, {'true' if self.form.is_signed else 'false'}"
+
+    @property
+    def share_words(self) -> str:
+        """The largest integer and whether there is a sign, as `fixed_code` is given them."""
+        return f"{self.scale}, {'true' if self.share == 'signed' else 'false'}"
 
     def rounded(self, x: str) -> str:
         """x in [-1, 1] as a whole number."""
@@ -168,7 +175,7 @@ class Channels:
     @property
     def words(self) -> int:
         """How many integers of 32 bits a texel is: 1, 2 or 4."""
-        least = -(-sum(self.numbers.storage.bits) // WORD)
+        least = -(-self._end // WORD)
         return least if least < 3 else 4
 
     @property
@@ -179,7 +186,12 @@ class Channels:
     @property
     def parts(self) -> int:
         """How many channels numbers are laid across."""
-        return -(-sum(self.numbers.storage.bits) // self.part) if self.part else 0
+        return -(-self._end // self.part) if self.part else 0
+
+    @property
+    def _end(self) -> int:
+        """Behind the last bit of the numbers, counted from the first channel's highest."""
+        return self.numbers.skipped + sum(self.numbers.storage.bits)
 
     @cached_property
     def channels(self) -> list[Channel]:
@@ -195,6 +207,7 @@ class Channels:
                 storage.most(at),
                 rounding,
                 storage.float_form(at) if storage.kind == "float" else None,
+                self.numbers.share,
                 storage.kind == "snorm" and (storage.is_packed or storage.is_centred),
                 self.words,
                 self._pieces(at),
@@ -204,14 +217,16 @@ class Channels:
 
     def _first_bit(self, at: int) -> int:
         bits = self.numbers.storage.bits
-        return self.part * self.parts - sum(bits[: at + 1]) if self.part else sum(bits[:at])
+        before = self.numbers.skipped + sum(bits[:at])
+        return self.part * self.parts - before - bits[at] if self.part else before
 
     def _pieces(self, at: int) -> tuple[Piece, ...]:
         """The bits of a number, by the channels that they lie in."""
         if not self.part:
             return ()
         bits = self.numbers.storage.bits
-        start, end = sum(bits[:at]), sum(bits[: at + 1])
+        start = self.numbers.skipped + sum(bits[:at])
+        end = start + bits[at]
         found = []
         for part in range(start // self.part, -(-end // self.part)):
             low, high = max(start, part * self.part), min(end, (part + 1) * self.part)
@@ -247,7 +262,10 @@ class Channels:
         if self.part:
             spread = ", then ".join(f"{c.bits} bits of {c.name}" for c in self.channels)
             what = "byte" if self.part == 8 else f"channel of {self.part}"
-            return f"{spread}, from the highest bit of the first {what} on"
+            place = ("first", "second", "third", "fourth")[self.numbers.skipped // self.part]
+            bit = self.part - self.numbers.skipped % self.part
+            begin = "the highest bit" if bit == self.part else f"bit {bit - 1}"
+            return f"{spread}, from {begin} of the {place} {what} on"
         places = (f"{c.name} in bits {c.first % WORD} to {c.first % WORD + c.bits - 1}" for c in self.channels)
         owners = (f" of the {('first', 'second', 'third', 'fourth')[c.first // WORD]}" for c in self.channels)
         return ", ".join(p + (o if self.words > 1 else "") for p, o in zip(places, owners, strict=True))
@@ -260,6 +278,9 @@ class Channels:
             if not self.part:
                 return ""
             return f"Each is a float of {first.form.exponent} bits of exponent and {first.form.mantissa} of mantissa."
+        if first.share == "signed":
+            half = first.integer // 2
+            return f"Up to {half} it is the integer nearest to code {half}; above, that of -code."
         x = "(code / 2 + 1/2)" if self.numbers.is_biased else "code"
         scales = dict.fromkeys(str(c.integer) for c in self.channels)
         offset = f", and {' or '.join(scales)} more" if first.is_offset else ""
@@ -279,7 +300,7 @@ class Channels:
             "size": numbers.size,
             "layout": self.layout,
             "rule": self.rule,
-            "target": numbers.storage.target.title,
+            "target": numbers.target.title,
             "texels": [self._texel_text(word) for word in range(self.words)],
             **(self._across_fields() if self.part else {"parts": []}),
         }

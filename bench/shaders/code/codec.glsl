@@ -4,4 +4,10 @@
 #include "vec.glsl"
 #include ENCODING
 #include "turned.glsl"
+
+#ifdef COLOUR_ENCODE
+// Of light without a fourth number.
+vec4 colour_encode(vec3 light) { return COLOUR_ENCODE(vec4(light, 0.0)); }
+vec3 colour_decode(vec4 e) { return COLOUR_DECODE(e).xyz; }
+#endif
 #include "storage.glsl"

@@ -101,4 +101,4 @@ def program_of(codec: Any, prefix: str) -> Program:
     encode = "nearest_encode" if channels.numbers.is_precise else str(defines["ENCODE"])
     own = {"encode": encode, "decode": str(defines["DECODE"])}
     roots = {own.get(name, name): name for name in PUBLIC}
-    return reduced(program, roots, prefix, encoding.prefix)
+    return reduced(program, roots, prefix, encoding.prefix, kind.bound(codec))

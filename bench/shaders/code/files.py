@@ -8,11 +8,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
+from ....encodings.codecs.kind import NORMAL
 from ...ground.output.errors import UsageError
 from ..languages.words import is_translated
 from ..translator.tree import Program, TranslationError
 from ..translator.writer import identifier
 from .emit import LANGUAGES, program_of
+from .kinds.table import kind_of
 from .run.interface import Interface
 from .tables import table_files
 from .verify import interface_of
@@ -65,7 +67,13 @@ class Code:
 
 def file_name(codec: Any, language: str) -> str:
     """What the file of a codec's code is called."""
-    return identifier(codec.name) + LANGUAGES[language].ending
+    return prefix_of(codec) + LANGUAGES[language].ending
+
+
+def prefix_of(codec: Any) -> str:
+    """What the names of a codec's functions begin with: its kind, but of normals, its encoding and its storage."""
+    kind = kind_of(codec).kind
+    return identifier(codec.name if kind is NORMAL else f"{kind.name} {codec.encoding.name}/{codec.storage.name}")
 
 
 def code_of(codec: Any, language: str, prefix: str = "") -> Code:
@@ -81,7 +89,7 @@ def code_of(codec: Any, language: str, prefix: str = "") -> Code:
         ShaderError: its GLSL cannot be read, or is of half arithmetic or a chain.
     """
     _check_written(codec)
-    prefix = prefix or identifier(codec.name)
+    prefix = prefix or prefix_of(codec)
     try:
         program = program_of(codec, prefix)
         interface = interface_of(codec, prefix, _parameters(program, prefix))
@@ -96,10 +104,11 @@ def code_of(codec: Any, language: str, prefix: str = "") -> Code:
 def _untranslatable_reason(codec: Any, said: str) -> str:
     """Why a file is not translated; the place is in the user's file where that is GLSL."""
     encoding = codec.encoding
-    if encoding.source is None or not is_translated(encoding.source):
+    source = getattr(encoding, "source", None)
+    if source is None or not is_translated(source):
         return said if re.match(r"\S+:\d+: ", said) else f"{encoding.glsl}: {said}"
     what = re.sub(r"^\S*?:?\d+:(\d+:)? ", "", said).replace("is not a type that is known here", "parameters or types")
-    return f"{encoding.source}: it is measured, but cannot be written in other languages: {what}"
+    return f"{source}: it is measured, but cannot be written in other languages: {what}"
 
 
 def _parameters(program: Program, prefix: str) -> set[str]:
@@ -113,3 +122,5 @@ def _check_written(codec: Any) -> None:
         raise UsageError(f"{codec.encoding.name}: a chain of codecs is not written; write each codec of it")
     if getattr(codec.encoding, "patch", 0):
         raise UsageError(f"{codec.encoding.name}: ranges of patches are measured, and no code is written for them")
+    if getattr(codec.storage, "curved", 0):
+        raise UsageError(f"{codec.name}: {codec.storage.title} converts colours by itself; write the curve srgb, in r8")

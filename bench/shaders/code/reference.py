@@ -11,6 +11,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from ....encodings.storages.depth_storage import fixed, from_fixed
 from ....encodings.storages.words import float_words, floats_of
 from ....encodings.vec import Vec2, Vec3, Vec4
 from .channels import Channel, Channels
@@ -103,6 +104,8 @@ def _integers(channel: Channel, texels: np.ndarray) -> np.ndarray:
     numbers = texels.astype(np.float64)
     if channel.form:
         return float_words(numbers, channel.form)
+    if channel.share:
+        return np.asarray(fixed(jnp.asarray(texels), channel.integer, channel.share == "signed"))
     whole = np.rint(numbers * channel.integer).astype(np.int64) + channel.is_offset * channel.integer
     return (whole & (1 << channel.bits) - 1).astype(np.uint32)
 
@@ -129,6 +132,8 @@ def values_of(channel: Channel, integers: np.ndarray) -> np.ndarray:
     """The texel's numbers that bits stand for, float32 of shape (count,)."""
     if channel.form:
         return floats_of(integers, channel.form)
+    if channel.share:
+        return np.asarray(from_fixed(jnp.asarray(integers), channel.integer, channel.share == "signed"))
     whole = signed(channel, integers) - channel.is_offset * channel.integer
     return whole.astype(np.float32) * np.float32(1 / channel.integer)
 

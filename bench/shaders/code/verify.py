@@ -194,7 +194,7 @@ def _worse(codec: Any, expected: Reference, ran: Ran, differs: np.ndarray) -> fl
 
 def _targets_apart(channels: Channels, expected: Reference, ran: Ran, same: np.ndarray) -> int:
     """Texels of the render target, as its own conversion stores them, that are not the expected ones."""
-    target, apart = channels.numbers.storage.target, np.zeros(len(same), bool)
+    target, apart = channels.numbers.target, np.zeros(len(same), bool)
     for at in range(channels.parts or channels.numbers.count):
         stored = np.asarray(store_texel(jnp.asarray(ran.targets[:, at]), target, at))
         apart |= stored != expected.texels[:, at]

@@ -5,19 +5,40 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
+from dataclasses import fields, is_dataclass
 from itertools import count
+from types import MappingProxyType
+from typing import Any
 
-from .tree import Assign, Call, Declare, Function, Member, Name, Program, Table, inside, plain_name, size_of
+from .tokens import with_a_point
+from .tree import (
+    Assign,
+    Binary,
+    Call,
+    Declare,
+    Function,
+    Literal,
+    Member,
+    Name,
+    Program,
+    Table,
+    inside,
+    plain_name,
+    size_of,
+)
 
-# A parameter that functions have for others' sake.
-VIEW = "view"
+# Parameters that functions have for others' sake.
+SETTINGS = ("view", "range", "near", "far")
 # What an encoding's own functions are called where others go around them: no reader takes them for another pair.
-INNER = {"encode": "own_code", "decode": "own_normal"}
-# Whoever calls one of them with a view calls the other with it.
+INNER = {"encode": "own_code", "decode": "own_value"}
+# Whoever calls one of them with a setting calls the other with it.
 PAIR = ("encode", "decode")
+ONE = "1.0"
 
 
-def reduced(program: Program, roots: Mapping[str, str], prefix: str, own: str) -> Program:
+def reduced(
+    program: Program, roots: Mapping[str, str], prefix: str, own: str, bound: Mapping[str, float] = MappingProxyType({})
+) -> Program:
     """What the functions of some names need, and no more.
 
     Args:
@@ -25,6 +46,7 @@ def reduced(program: Program, roots: Mapping[str, str], prefix: str, own: str) -
         roots: what functions are to be called, by the name that they have.
         prefix: what every name begins with.
         own: what the names of an encoding's own functions begin with, which the prefix stands for.
+        bound: settings of the encoder and the decoder that are numbers.
 
     Raises:
         TranslationError: one of these functions could not be read.
@@ -33,7 +55,12 @@ def reduced(program: Program, roots: Mapping[str, str], prefix: str, own: str) -
     kept = _reached_names(program, [keys[name] for name in roots])
     functions = [f for f in program.functions if f.name in kept]
     _keep_changes_inside(functions)
-    _leave_out_views(functions, {keys[name] for name, called in roots.items() if called in PAIR})
+    pair = {keys[name] for name, called in roots.items() if called in PAIR}
+    for setting, value in bound.items():
+        for function in (one for one in functions if one.name in pair):
+            _bind(function, setting, value)
+    for setting in SETTINGS:
+        _leave_out(setting, functions, pair)
     used = {node.name for f in functions for node in inside(f.body) if isinstance(node, Name)}
     constants = _used_constants(program.constants, used)
     _rename(functions, {keys[name]: f"{prefix}_{called}" for name, called in roots.items()}, prefix, own)
@@ -87,12 +114,36 @@ def _keep_changes_inside(functions: list[Function]) -> None:
             parameter.is_changed = parameter.is_changed and (function.name, at) in seen
 
 
-def _leave_out_views(functions: list[Function], pair: set[str]) -> None:
-    """Takes the view from functions that do not read it; from both or neither of a pair."""
-    at = {f.name: [p.name for p in f.parameters].index(VIEW) for f in functions if VIEW in _parameter_names(f)}
+def _bind(function: Function, setting: str, value: float) -> None:
+    """Puts a number in the place of a parameter that nothing assigns to."""
+    if setting not in _parameter_names(function):
+        return
+    function.parameters = [one for one in function.parameters if one.name != setting]
+    function.body = _with_number(function.body, setting, with_a_point(f"{value!r}"))
+
+
+def _with_number(node: Any, name: str, text: str) -> Any:
+    """A part of a tree with a number for a name; x * 1 and x / 1 are x."""
+    if isinstance(node, Name) and node.name == name:
+        return Literal("float", text)
+    if isinstance(node, list):
+        return [_with_number(one, name, text) for one in node]
+    if not is_dataclass(node):
+        return node
+    for field in fields(node):
+        setattr(node, field.name, _with_number(getattr(node, field.name), name, text))
+    match node:
+        case Binary(_, "*" | "/", left, Literal(_, text)) if text == ONE:
+            return left
+    return node
+
+
+def _leave_out(setting: str, functions: list[Function], pair: set[str]) -> None:
+    """Takes a setting from functions that do not read it; from both or neither of a pair."""
+    at = {f.name: _parameter_names(f).index(setting) for f in functions if setting in _parameter_names(f)}
     unread: set[str] = set()
     for function in functions:
-        if function.name in at and not _reads_view(function, at, unread):
+        if function.name in at and not _reads(setting, function, at, unread):
             unread.add(function.name)
     if not pair <= unread:
         unread -= pair
@@ -107,11 +158,11 @@ def _parameter_names(function: Function) -> list[str]:
     return [p.name for p in function.parameters]
 
 
-def _reads_view(function: Function, at: Mapping[str, int], unread: set[str]) -> bool:
-    """Whether a function does more with the view than hand it to functions that do not read it."""
+def _reads(setting: str, function: Function, at: Mapping[str, int], unread: set[str]) -> bool:
+    """Whether a function does more with a setting than hand it to functions that do not read it."""
     calls = (node for node in inside(function.body) if isinstance(node, Call) and node.name in unread)
     handed_on = {id(node) for call in calls for node in inside(call.arguments[at[call.name]])}
-    return any(isinstance(n, Name) and n.name == VIEW and id(n) not in handed_on for n in inside(function.body))
+    return any(isinstance(n, Name) and n.name == setting and id(n) not in handed_on for n in inside(function.body))
 
 
 def _used_constants(constants: list[Declare], used: set[str]) -> list[Declare]:

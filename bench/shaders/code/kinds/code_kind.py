@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from .....encodings.codecs.kind import Kind
-from .....encodings.storages.storage import Storage
+from .....encodings.storages.storage import STORAGES, Storage
 
 # How many values a code is tried with.
 COUNT = 2**16
@@ -26,6 +26,8 @@ class Numbers:
         size: how many numbers the code's vector has; those that are not kept come back as 0.
         sign_bits: 1 where the last of them is a sign that is kept elsewhere, else 0.
         is_precise: whether the encoder takes the one of the codes around that decodes nearest.
+        skipped: how many bits are left out before numbers that lie across channels.
+        share: "unsigned" or "signed" of an integer as `storage.fixed_code` makes it, in sign and magnitude; else empty.
     """
 
     storage: Storage
@@ -34,6 +36,13 @@ class Numbers:
     size: int
     sign_bits: int = 0
     is_precise: bool = False
+    skipped: int = 0
+    share: str = ""
+
+    @property
+    def target(self) -> Storage:
+        """The format of the render target."""
+        return STORAGES["rgba8"] if self.skipped else self.storage.target
 
     @property
     def count(self) -> int:

@@ -1,0 +1,52 @@
+"""Codes of what materials are: roughness, occlusion, channels of colours."""
+
+from __future__ import annotations
+
+import jax.numpy as jnp
+import numpy as np
+
+from .....encodings.codecs.curve_codec import CurveCodec
+from .....encodings.codecs.kind import CURVE
+from .....encodings.storages.rounding import store_texel
+from .....gbuffer.codecs.curve.curve_passes import curve_constants
+from .code_kind import COUNT, CodeKind, Numbers
+from .own import by_device, is_in
+
+
+def _values(codec: CurveCodec) -> tuple[np.ndarray, np.ndarray]:
+    """Quantities from 0 to the range, both ends among them, evenly and as many in each octave, and the range."""
+    even, small = np.linspace(0, 1, COUNT // 2), np.geomspace(2.0**-20, 1, COUNT // 2)
+    x = np.concatenate([even, small])[:, None] * codec.range
+    return x.astype(np.float32), np.broadcast_to(np.array([codec.range, 0, 0], np.float32), (COUNT, 3))
+
+
+def _store(codec: CurveCodec, codes: np.ndarray) -> np.ndarray:
+    return np.asarray(store_texel(jnp.asarray(codes[:, 0]), codec.storage, 0, codec.rounds_to))[:, None]
+
+
+def _defines(codec: CurveCodec) -> dict[str, object]:
+    prefix = codec.encoding.prefix
+    functions = {"ENCODE": f"{prefix}_encode_curve", "DECODE": f"{prefix}_decode_curve"}
+    return {"CODE": "float", **functions, **curve_constants(codec.encoding)}
+
+
+KIND = CodeKind(
+    kind=CURVE,
+    plural="quantities",
+    given=lambda _: ("n.x",),
+    settings={},
+    result=lambda _: 1,
+    defines=_defines,
+    numbers=lambda codec: Numbers(codec.storage, (codec.rounds_to,), False, 1),
+    values=_values,
+    stored=lambda codec, n, _: codec.stored(n[:, 0]),
+    decoded=lambda codec, code, _: codec.encoding.decode(code, codec.range),
+    by_device=by_device(1, 1, _store),
+    has_twin=is_in(CURVE),
+    is_ours=is_in(CURVE),
+    errors=lambda given, back: np.abs(back[:, 0].astype(np.float64) - given[:, 0]),
+    unit="",
+    held=lambda codec: f"from 0 to {codec.range:g}",
+    units=lambda given: np.broadcast_to(given.max(), (len(given), 1)),
+    bound=lambda codec: {"range": codec.range},
+)

@@ -1,0 +1,86 @@
+"""Codes of depth."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import MappingProxyType
+
+import jax.numpy as jnp
+import numpy as np
+
+from .....encodings.codecs.depth_codec import DepthCodec
+from .....encodings.codecs.kind import DEPTH
+from .....encodings.storages.depth_storage import store_depth
+from .....encodings.vec import CONSTANTS
+from .....gbuffer.codecs.harness import check_functions
+from .code_kind import COUNT, CodeKind, Numbers
+from .own import by_device, is_in
+
+NEAR, FAR = 0.125, 1024.0
+
+
+def _values(codec: DepthCodec) -> tuple[np.ndarray, np.ndarray]:
+    """Depths between the planes, as many in each octave and as many evenly, with either sign where a code has one; and
+    the planes."""
+    depth = np.concatenate([np.geomspace(NEAR, FAR, COUNT // 2), np.linspace(NEAR, FAR, COUNT // 2)])
+    if codec.encoding.signed:
+        depth *= np.where(np.arange(COUNT) % 2, -1.0, 1.0)
+    return depth.astype(np.float32)[:, None], np.broadcast_to(np.array([NEAR, _far(codec), 0], np.float32), (COUNT, 3))
+
+
+def _far(codec: DepthCodec) -> float:
+    return _bound(codec).get("far", FAR)
+
+
+def _bound(codec: DepthCodec) -> dict[str, float]:
+    """Where floats hold the depth in the scene's own units, the far plane is at 1."""
+    return {"far": 1.0} if codec.encoding.own_units and codec.storage.is_open else {}
+
+
+def _numbers(codec: DepthCodec) -> Numbers:
+    storage = codec.storage
+    if storage.home != "packed":
+        return Numbers(storage.format, ("nearest",), False, 1)
+    # Across the last channels of the target.
+    kept = replace(storage.format, name=storage.name, title=storage.title, bits=(storage.bits,), part=8)
+    form = "signed" if codec.encoding.signed else "unsigned"
+    return Numbers(kept, ("nearest",), False, 1, skipped=sum(storage.format.bits) - storage.bits, share=form)
+
+
+def _store(codec: DepthCodec, codes: np.ndarray) -> np.ndarray:
+    return np.asarray(store_depth(jnp.asarray(codes[:, 0]), codec.storage, codec.encoding.signed))[:, None]
+
+
+def _defines(codec: DepthCodec) -> dict[str, object]:
+    encoding = codec.encoding
+    check_functions(encoding.glsl, encoding.signatures)
+    functions = {"ENCODE": f"{encoding.prefix}_encode_depth", "DECODE": f"{encoding.prefix}_decode_depth"}
+    return {"CODE": "float", **functions, **CONSTANTS, **encoding.constants}
+
+
+def _held(codec: DepthCodec) -> str:
+    sign = "; its sign is that of the normal's z" if codec.encoding.signed else ""
+    own = "in the scene's units" if _bound(codec) else "from `near` to `far`"
+    return f"-z of the view-space position, {own}{sign}"
+
+
+KIND = CodeKind(
+    kind=DEPTH,
+    plural="depths",
+    given=lambda _: ("n.x",),
+    settings=MappingProxyType({"near": "view.x", "far": "view.y"}),
+    result=lambda _: 1,
+    defines=_defines,
+    numbers=_numbers,
+    values=_values,
+    stored=lambda codec, n, view: codec.stored(n[:, 0], view[:, 0], jnp.float32(FAR)),
+    decoded=lambda codec, code, view: codec.depths(code, view[:, 0], jnp.float32(FAR)),
+    by_device=by_device(1, 1, _store),
+    has_twin=is_in(DEPTH),
+    is_ours=is_in(DEPTH),
+    errors=lambda given, back: np.abs(back[:, 0].astype(np.float64) - given[:, 0]) / np.abs(given[:, 0]),
+    unit="of the depth",
+    held=_held,
+    units=np.abs,
+    bound=_bound,
+)

@@ -1,0 +1,47 @@
+"""Users' codes of something else than normals: what their two functions make of values, by OpenGL."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from .....encodings.catalogue import BY_KIND
+from .....encodings.codecs.kind import Kind
+from .....gbuffer.codecs.own.own_passes import tried
+from .....gbuffer.gl.device import device
+
+# The planes of a code, to the planes as they come back from the storage.
+Store = Callable[[Any, Any], Any]
+
+
+def is_in(kind: Kind) -> Callable[[Any], bool]:
+    """(codec) -> whether its encoding is the catalogue's."""
+    return lambda codec: BY_KIND[kind].get(codec.encoding.name) is codec.encoding
+
+
+def by_device(size: int, result: int, store: Callable[[Any, np.ndarray], np.ndarray]) -> Any:
+    """What `CodeKind.by_device` is: a code is computed by OpenGL, stored by JAX, and decoded by OpenGL.
+
+    Args:
+        size: how many numbers the code has.
+        result: how many a decoder gives.
+        store: (codec, codes of shape (count, size)) -> the codes as they come back.
+    """
+
+    def run(codec: Any, n: np.ndarray, view: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        encoding, given, more = codec.encoding, _wide(n), _wide(view)
+        is_unit = getattr(encoding, "is_unit", False)
+        codes = tried(device(), encoding.glsl, encoding.prefix, 1, given, more).codes[:, :size]
+        stored = store(codec, codes * np.float32(2) - np.float32(1) if is_unit else codes)
+        read = stored * np.float32(0.5) + np.float32(0.5) if is_unit else stored
+        back = tried(device(), encoding.glsl, encoding.prefix, 1, given, more, _wide(read)).back[0]
+        return stored, back[:, :result]
+
+    return run
+
+
+def _wide(rows: np.ndarray) -> np.ndarray:
+    """Rows of four numbers, float32, zeros behind the given ones."""
+    return np.pad(rows.astype(np.float32), ((0, 0), (0, 4 - rows.shape[1])))

@@ -1,0 +1,96 @@
+"""Codecs of every kind as they are named on the command line: encodings and files of yours, and storages."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+from .....encodings.catalogue import BY_KIND
+from .....encodings.codecs.curve_codec import CurveCodec
+from .....encodings.codecs.depth_codec import DepthCodec
+from .....encodings.codecs.kind import CURVE, DEPTH, LIGHT, MOTION, NORMAL, AnyEncoding, Kind
+from .....encodings.codecs.light_codec import LightCodec
+from .....encodings.codecs.motion_codec import MotionCodec
+from .....encodings.storages.depth_storage import DEPTH_STORAGES, depth_storage_of
+from .....encodings.storages.storage import CURVE_STORAGES, LIGHT_STORAGES, MOTION_STORAGES
+from ....ground.choose import choose
+from ....ground.options.storage_names import storages_named, storages_said
+from ....ground.output.errors import UsageError
+from ....shaders.languages.words import file_of, names_an_encoder, split_names
+from .named import kind_of as kind_of_file
+from .named import own_codes_named
+
+# Of a kind, the storages by their names, and codecs of an encoding in some of them.
+Made = Callable[[Any, str, str], Iterator[Any]]
+
+
+def _motion(encoding: Any, storages: str, _: str) -> Iterator[MotionCodec]:
+    return (MotionCodec(encoding, one) for one in storages_named(storages, MOTION_STORAGES, "motion storage"))
+
+
+def _curve(encoding: Any, storages: str, rounding: str) -> Iterator[CurveCodec]:
+    found = storages_named(storages, CURVE_STORAGES, "curve storage")
+    return (CurveCodec(encoding, one, encoding.usual_range, rounding) for one in found)
+
+
+def _light(encoding: Any, storages: str, _: str) -> Iterator[LightCodec]:
+    return (LightCodec(encoding, one) for one in storages_named(storages, LIGHT_STORAGES, "light storage"))
+
+
+def _depth(encoding: Any, storages: str, _: str) -> Iterator[DepthCodec]:
+    said = {word: one and depth_storage_of(one) for word, one in storages_said(storages, DEPTH_STORAGES).items()}
+    known = {**DEPTH_STORAGES, **{word: one for word, one in said.items() if one}}
+    return (DepthCodec(encoding, one) for one in choose("depth storage", ",".join(said), known))
+
+
+MADE: Mapping[Kind, Made] = MappingProxyType({MOTION: _motion, CURVE: _curve, LIGHT: _light, DEPTH: _depth})
+NAMED: Mapping[str, Kind] = MappingProxyType({kind.name: kind for kind in (NORMAL, *MADE)})
+
+
+def kind_named(names: str, of: str) -> Kind:
+    """The kind that encodings are of: the one that is said, or what comma-separated names say; of normals in doubt.
+
+    Raises:
+        UsageError: an unknown kind, or names that several kinds have.
+    """
+    if of:
+        (kind,) = choose("kind", of, NAMED)
+        return kind
+    words = split_names(names)
+    if files := [word for word in words if names_an_encoder(word)]:
+        return _kind_of_file(Path(file_of(files[0])))
+    found = [kind for kind in NAMED.values() if set(words) <= set(BY_KIND[kind])]
+    if len(found) > 1 and NORMAL not in found:
+        several = ", ".join(kind.name for kind in found)
+        raise UsageError(f"{names}: codes of {several} have this name; say which with --of, as in --of {found[0].name}")
+    return found[0] if found else NORMAL
+
+
+def _kind_of_file(path: Path) -> Kind:
+    """What a user's file is of: of normals, unless its functions' names say otherwise."""
+    from ..user_encodings import encodings_named
+
+    try:
+        encodings_named(str(path))
+    except UsageError as error:
+        own = kind_of_file(path, str(error))
+        return own.kind if own and own.kind in MADE else NORMAL
+    return NORMAL
+
+
+def codecs_of_kind(kind: Kind, names: str, storages: str, roundings: Sequence[str]) -> list[Any]:
+    """Codecs of another kind than normals; in each encoding's first usual storage where none is named.
+
+    Raises:
+        UsageError: an unknown name.
+    """
+    encodings: list[AnyEncoding] = own_codes_named(kind, names, BY_KIND[kind])
+    made = (
+        codec
+        for encoding in encodings
+        for rounding in roundings
+        for codec in MADE[kind](encoding, storages or encoding.storages[0], rounding)  # pyright: ignore[reportAttributeAccessIssue]
+    )
+    return list(dict.fromkeys(made))

@@ -1,0 +1,167 @@
+"""Code of motion vectors, depth, light and curves: run in each language, and equal to the catalogue's."""
+
+import re
+from pathlib import Path
+
+import pytest
+from languages import require_runner
+
+from normalbench.bench.shaders.code.emit import LANGUAGES
+from normalbench.bench.shaders.code.files import code_of
+from normalbench.bench.shaders.code.verify import agreement
+from normalbench.bench.subjects.codecs.kinds.codecs import NAMED, codecs_of_kind, kind_named
+from normalbench.encodings.catalogue import BY_KIND
+
+# Of each kind, codes and storages that are made otherwise: shares, polynomials, powers, floats, and integers.
+CODECS = (
+    ("motion", "cube_root", "rg16_snorm"),
+    ("motion", "linear", "rg16f"),
+    ("motion", "log", "rg8_centred"),
+    ("motion", "sqrt", "float:4:5"),
+    ("curve", "srgb", "r8"),
+    ("curve", "log", "r16f"),
+    ("curve", "ray_bits", "rgb10a2"),
+    ("curve", "squared", "unorm:5"),
+    ("light", "plain", "rgba16f"),
+    ("light", "plain", "r11g11b10f"),
+    ("light", "rgbm", "rgba8"),
+    ("depth", "linear", "r32f"),
+    ("depth", "linear", "unorm:20"),
+    ("depth", "linear_sign", "packed24"),
+    ("depth", "reversed_window", "depth32f"),
+    ("depth", "logarithmic", "packed16"),
+)
+
+
+def codec_of(kind, names, storage):
+    (codec,) = codecs_of_kind(NAMED[kind], names, storage, ["nearest"])
+    assert not codec.misfit
+    return codec
+
+
+def agreement_of(codec, language, folder: Path, text=None):
+    code = code_of(codec, language, "p")
+    for name, data in code.files([]).items():
+        (folder / name).write_bytes(data)
+    if text is not None:
+        (folder / code.name).write_text(text(code.body))
+    return agreement(codec, language, folder / code.name, code.interface)
+
+
+def pairs() -> list:
+    """Each codec with each language; those whose runner starts slowly are slow."""
+    every = [(*codec, language) for codec in CODECS for language in LANGUAGES]
+    return [pytest.param(*one, marks=[] if one[-1] in ("c", "python") else [pytest.mark.slow]) for one in every]
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("kind, name, storage, language", pairs())
+def test_the_code_of_a_kind_gives_the_catalogues_texels(kind, name, storage, language, tmp_path):
+    """2^16 values: texels, numbers that come back, and render targets."""
+    require_runner(language)
+    found = agreement_of(codec_of(kind, name, storage), language, tmp_path)
+    assert found.holds, found.says
+
+
+@pytest.mark.parametrize("kind", ["motion", "curve", "depth"])
+def test_the_code_of_every_encoding_of_a_kind_is_written(kind, tmp_path):
+    """In the first storage where each usually lies, in C."""
+    require_runner("c")
+    for name in BY_KIND[NAMED[kind]]:
+        found = agreement_of(codec_of(kind, name, ""), "c", tmp_path)
+        assert found.holds, f"{name}: {found.says}"
+
+
+# What is changed in C, and what must notice.
+MUTANTS = {
+    "a scale": (("motion", "linear", "rg16_snorm"), "* 32767.0f", "* 32766.0f"),
+    "swapped numbers": (("motion", "linear", "rg16_snorm"), "x | (y << 16)", "y | (x << 16)"),
+    "a range": (("curve", "log", "r8"), "log2f(1.0f + 31.0f)", "log2f(1.0f + 30.0f)"),
+    "a plane": (("depth", "linear", "r32f"), "return number;", "return number * 1.001f;"),
+    "a byte": (("depth", "linear", "packed16"), "x >> 8", "x >> 7"),
+    "a channel": (("light", "rgbm", "rgba8"), "code.y, 0.0f", "code.x, 0.0f"),
+}
+
+
+@pytest.mark.parametrize("fault", MUTANTS)
+def test_a_wrong_number_in_the_code_of_a_kind_is_noticed(fault, tmp_path):
+    """Each fault alone makes the comparison fail."""
+    require_runner("c")
+    named, old, new = MUTANTS[fault]
+
+    def changed(text: str) -> str:
+        assert old in text, text
+        return text.replace(old, new)
+
+    found = agreement_of(codec_of(*named), "c", tmp_path, changed)
+    assert not found.holds, found.says
+
+
+def test_a_setting_that_nothing_reads_is_no_parameter():
+    """A range of 1 is left out with its quotient; `near` is not taken where the far plane is enough."""
+    roughness = code_of(codec_of("curve", "linear", "r8"), "glsl", "p").body
+    assert "float p_encode(float x)" in roughness and "return x;" in roughness
+    assert "p_encode(float depth, float far)" in code_of(codec_of("depth", "linear", "packed16"), "glsl", "p").body
+    assert "p_encode(float depth)" in code_of(codec_of("depth", "linear", "r32f"), "glsl", "p").body
+    assert "vec4 p_encode(vec3 light)" in code_of(codec_of("light", "rgbm", "rgba8"), "glsl", "p").body
+
+
+OWN_MOTION = """
+float2 EncodeVelocity(float2 velocity) { return velocity * 0.499 + 0.5; }
+float2 DecodeVelocity(float2 code) { return (code - 0.5) / 0.499; }
+"""
+OWN_ROUGHNESS = "float PackRoughness(float roughness) { return sqrt(roughness); }\n"
+OWN_ROUGHNESS += "float UnpackRoughness(float code) { return code * code; }\n"
+OWN = {"motion": (OWN_MOTION, "rg16"), "curve": (OWN_ROUGHNESS, "r8")}
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("kind", OWN)
+def test_a_users_code_of_a_kind_is_written(kind, tmp_path):
+    """HLSL of a user in C and Python, compared with what OpenGL makes of it; the kind is what its names say."""
+    require_runner("c")
+    text, storage = OWN[kind]
+    path = tmp_path / "mine.hlsl"
+    path.write_text(text)
+    assert kind_named(str(path), "").name == kind
+    codec = codec_of(kind, str(path), storage)
+    for language in ("c", "python"):
+        found = agreement_of(codec, language, tmp_path)
+        assert found.holds, f"{language}: {found.says}"
+
+
+# The command.
+
+
+@pytest.mark.usefixtures("gl")
+def test_the_command_finds_the_kind_and_says_it(run):
+    """A name that one kind has needs no --of; the head has the kind, and the command that was typed."""
+    status, out, err = run("code", "cube_root", "--storage", "rg16_snorm", "--to", "c")
+    assert (status, err) == (0, "")
+    head = " ".join(line.removeprefix("//").strip() for line in out.partition("\n\n")[0].splitlines())
+    assert "normalbench code cube_root --of motion --storage rg16_snorm --to c" in head
+    assert re.search(r"texels of (\d+ of )?65536 motions", head) and "in screens a frame" in head
+
+
+@pytest.mark.usefixtures("gl")
+def test_a_kind_is_checked_as_normals_are(run):
+    """A row of each codec."""
+    status, out, _ = run("code", "--check", "srgb,gamma_2_2", "--of", "curve", "--storage", "r8", "--to", "c")
+    assert status == 0 and {"srgb", "gamma_2_2", "equal"} <= set(out.split()), out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["linear"], "say which with --of"),
+        (["linear", "--of", "sound"], "unknown kind 'sound'"),
+        (["cube_root", "--rounding", "truncate"], "rounded to the nearest"),
+        (["plain", "--of", "light", "--storage", "srgb8_a8"], "made for"),
+        (["linear", "--of", "light", "--storage", "srgb8_a8"], "by itself"),
+        (["linear_sign", "--storage", "depth16"], "no room for a sign"),
+    ],
+)
+def test_what_cannot_be_written_of_a_kind_is_a_line(run, arguments, said):
+    status, out, err = run("code", *arguments)
+    assert (status, out) == (2, "")
+    assert said in err and err.count("\n") == 1, err
