@@ -246,7 +246,7 @@ class GlslParser(Parser):
 
     def _declaration(self) -> list[Statement]:
         """One statement for each name; a constant that stands for another is that other."""
-        is_constant = self._skip("const")
+        is_constant, is_precise = self._skip("const"), self._next_token.text == "precise"
         kind, is_open = self._kind(), self._next_token.text == "[" and self._text_ahead(1) == "]"
         self._at += 2 * is_open
         kind = self._sized(kind)
@@ -254,6 +254,9 @@ class GlslParser(Parser):
         while self._skip(","):
             found += [d for d in [self._declarator(kind, is_constant, is_open)] if d]
         self._take(";")
+        for declared in found:
+            if isinstance(declared, Declare):
+                declared.is_precise = is_precise
         return found
 
     def _declarator(self, kind: str, is_constant: bool, is_open: bool) -> Statement | None:

@@ -31,6 +31,7 @@ class GlslWriter(Writer):
 
     functions: Mapping[str, str] = MappingProxyType({"atan2": "atan"})
     reserved = RESERVED
+    has_precise = True
 
     def _struct(self, struct: Struct) -> str:
         fields = "".join(f"{INDENT}{self._kind(kind)} {name};\n" for name, kind in struct.kinds.items())
@@ -57,6 +58,8 @@ class EsslWriter(GlslWriter):
     """GLSL ES 3.1 and later."""
 
     head = "precision highp float;\nprecision highp int;"
+    # A word of GLSL ES 3.2.
+    has_precise = False
 
     def _table(self, table: Table) -> str:
         return f"uniform highp sampler2D {table.name};"

@@ -66,6 +66,7 @@ class HlslWriter(Writer):
         "associatedtype property where each expand internal This get set init is as none"
     )
     has_templates = True
+    has_precise = True
     # A choice by components that is longer than this is a function of its own: it would be written for each of them.
     most_letters = 120
 

@@ -177,10 +177,13 @@ class Statement:
 
 @dataclass
 class Declare(Statement):
+    """`is_precise` where no compiler may compute the value otherwise than it is written."""
+
     kind: str
     name: str
     value: Expression | None
     is_constant: bool = False
+    is_precise: bool = False
 
 
 @dataclass

@@ -73,6 +73,7 @@ class Writer:
         splats: whether a function of vectors takes no scalar in place of one.
         has_rich_parameters: whether functions take and give arrays, and change what they are given.
         assigns_to_parts: whether several components of a vector are assigned to at once.
+        has_precise: whether a variable can be said to be computed as it is written.
         has_templates: whether `a < b, c > (d)` may be read as a template and a call.
         kinds: types' names where they are not GLSL's.
         functions: built-in functions' names where they are not GLSL's.
@@ -83,6 +84,7 @@ class Writer:
     functions: Mapping[str, str] = {}
     reserved: frozenset[str] = frozenset()
     float_suffix = ""
+    has_precise = False
     has_templates = False
     head = ""
     has_tables = True
@@ -262,7 +264,8 @@ class Writer:
         return f"{mark[0] * 2}{self._text(target)}"
 
     def _local_text(self, declared: Declare) -> str:
-        return ("const " if declared.is_constant else "") + self._declaration_text(declared)
+        precise = "precise " if declared.is_precise and self.has_precise else ""
+        return precise + ("const " if declared.is_constant else "") + self._declaration_text(declared)
 
     def _declaration_text(self, declared: Declare) -> str:
         kind, _, count = declared.kind.partition("[")

@@ -28,6 +28,7 @@ CODECS = (
     ("depth", "linear", "r32f"),
     ("depth", "linear", "unorm:20"),
     ("depth", "linear_sign", "packed24"),
+    ("depth", "window", "packed24"),
     ("depth", "reversed_window", "depth32f"),
     ("depth", "logarithmic", "packed16"),
 )
