@@ -6,6 +6,7 @@ from .table import Column, Role
 
 ENCODING = Column("encoding", "How a normal becomes a few numbers.", Role.KEY)
 STORAGE = Column("storage", "The texel format that the numbers are stored in.", Role.KEY)
+ROUNDING = Column("rounding", "How the storage rounds.", Role.KEY)
 BACKEND = Column(
     "backend", "jax emulates the storage; glsl encodes in a shader into the real target and decodes from it.", Role.KEY
 )

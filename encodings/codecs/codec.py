@@ -35,6 +35,18 @@ def numbers_misfit(storage: Storage, levels: Sequence[int]) -> str | None:
     return None
 
 
+def codec_name(encoding: str, storage: str, rounding: str) -> str:
+    """What a codec is called; rounding to the nearest is not said."""
+    return f"{encoding}/{storage}" + ("" if rounding == "nearest" else f"/{rounding}")
+
+
+def rounding_misfit(storage: Storage, rounding: str) -> str | None:
+    """Why the numbers of a storage cannot be rounded so, one of `storage.ROUNDINGS`; None where they can."""
+    if storage.kind == "float" and rounding == "truncate_half":
+        return f"{storage.title} is of floats, and {rounding} is for fixed point"
+    return None
+
+
 @dataclass(frozen=True)
 class Codec:
     """An encoding, the storage of its components, and how that rounds: one of `storage.ROUNDINGS`.
@@ -56,7 +68,7 @@ class Codec:
 
     @property
     def name(self) -> str:
-        return f"{self.encoding.name}/{self.storage.name}" + ("" if self.rounding == "nearest" else f"/{self.rounding}")
+        return codec_name(self.encoding.name, self.storage.name, self.rounding)
 
     @property
     def misfit(self) -> str | None:
@@ -70,8 +82,10 @@ class Codec:
         levels = [encoding.levels_of(channel) for channel in range(encoding.components)]
         if len(levels) > storage.channels:
             return numbers_misfit(storage, levels)
-        if storage.kind == "float" and (encoding.is_precise or self.rounding == "truncate_half"):
-            return f"{storage.title} is of floats, and {self._rounding_text} is for fixed point"
+        if misfit := rounding_misfit(storage, self.rounding):
+            return misfit
+        if storage.kind == "float" and encoding.is_precise:
+            return f"{storage.title} is of floats, and precise rounding is for fixed point"
         if encoding.is_precise and self.rounding != "nearest":
             return "it is rounded precisely, not otherwise"
         if encoding.is_half and encoding.patch:
@@ -79,10 +93,6 @@ class Codec:
         if encoding.is_half and self._not_in_half:
             return f"{self._not_in_half} for half arithmetic"
         return numbers_misfit(storage, levels)
-
-    @property
-    def _rounding_text(self) -> str:
-        return "precise rounding" if self.encoding.is_precise else self.rounding
 
     @property
     def _not_in_half(self) -> str:

@@ -8,17 +8,18 @@ from dataclasses import dataclass
 from ..rotation import Frame
 from ..storages.rounding import store_number
 from ..storages.storage import Storage, of_unit
-from ..vec import TINY, Vec4
-from .codec import numbers_misfit
+from ..vec import TINY, Vec4, select
+from .codec import codec_name, numbers_misfit, rounding_misfit
 from .frame_encoding import FrameEncoding
 
 
 @dataclass(frozen=True)
 class FrameCodec:
-    """A frame encoding and the storage of its numbers."""
+    """A frame encoding, the storage of its numbers, and how that rounds; numbers of few values to the nearest."""
 
     encoding: FrameEncoding
     storage: Storage
+    rounding: str = "nearest"
 
     def __post_init__(self) -> None:
         if self.encoding.is_unit:
@@ -26,12 +27,12 @@ class FrameCodec:
 
     @property
     def name(self) -> str:
-        return f"{self.encoding.name}/{self.storage.name}"
+        return codec_name(self.encoding.name, self.storage.name, self.rounding)
 
     @property
     def misfit(self) -> str | None:
         """Why the storage cannot hold what the encoding makes; None where it can."""
-        return numbers_misfit(self.storage, self.encoding.levels)
+        return numbers_misfit(self.storage, self.encoding.levels) or rounding_misfit(self.storage, self.rounding)
 
     @property
     def bits(self) -> int:
@@ -54,15 +55,29 @@ class FrameCodec:
             return max(2.0 ** (1 - self.storage.float_form(self.encoding.hand_in).one), TINY)
         return 1.0 / self.storage.scale(self.encoding.hand_in)
 
+    def rounding_of(self, component: int) -> str:
+        """How a component rounds: one of few values to the nearest, whatever the others do."""
+        has_levels = component < self.encoding.components and self.encoding.levels[component]
+        return "nearest" if has_levels else self.rounding
+
     def store(self, code: Vec4) -> Vec4:
         """A code (float32, any shape) as it comes back from the storage."""
-        count = self.encoding.components
-        return Vec4(*(store_number(c, self.storage, i) if i < count else 0.0 * c for i, c in enumerate(code)))
+        return Vec4(
+            *(
+                store_number(c, self.storage, i, self.rounding_of(i)) if i < self.encoding.components else 0.0 * c
+                for i, c in enumerate(code)
+            )
+        )
 
     def stored(self, frame: Frame) -> Vec4:
         """The code of frames as it comes back from the storage."""
         code = self.store(self.encoding.encode(frame, self.least))
-        return self.store(self.encoding.settle(frame, code)) if self.encoding.settle else code
+        if not self.encoding.settle:
+            return code
+        settled = self.encoding.settle(frame, code)
+        # A number that is stored already stays: cut off again it could lose a step.
+        kept = zip(settled, code, self.store(settled), strict=True)
+        return Vec4(*(select(number == before, before, after) for number, before, after in kept))
 
     def round_trip(self, frame: Frame) -> Frame:
         """Frames (float32, any shape, as `frame_of` makes them) encoded, stored and decoded."""

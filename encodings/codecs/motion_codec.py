@@ -12,7 +12,7 @@ from typing import Any
 from ..storages.rounding import store_number
 from ..storages.storage import Storage, of_unit
 from ..vec import Vec2
-from .codec import numbers_misfit
+from .codec import codec_name, numbers_misfit, rounding_misfit
 
 NUMBERS = 2
 
@@ -75,10 +75,11 @@ class MotionEncoding:
 
 @dataclass(frozen=True)
 class MotionCodec:
-    """A motion encoding and the storage of its two numbers, the first of the storage's channels."""
+    """A motion encoding, the storage of its two numbers, the first of the storage's channels, and how that rounds."""
 
     encoding: MotionEncoding
     storage: Storage
+    rounding: str = "nearest"
 
     def __post_init__(self) -> None:
         if self.encoding.is_unit:
@@ -86,12 +87,12 @@ class MotionCodec:
 
     @property
     def name(self) -> str:
-        return f"{self.encoding.name}/{self.storage.name}"
+        return codec_name(self.encoding.name, self.storage.name, self.rounding)
 
     @property
     def misfit(self) -> str | None:
         """Why the storage cannot hold what the encoding makes; None where it can."""
-        return numbers_misfit(self.storage, [0] * NUMBERS)
+        return numbers_misfit(self.storage, [0] * NUMBERS) or rounding_misfit(self.storage, self.rounding)
 
     @property
     def bits(self) -> int:
@@ -128,7 +129,7 @@ class MotionCodec:
             largest: the range, float32 scalar; not used where `needs_range` is not.
         """
         code = self.encoding.encode(motion, self._range_or_one(largest))
-        return Vec2(*(store_number(c, self.storage, i) for i, c in enumerate(code)))
+        return Vec2(*(store_number(c, self.storage, i, self.rounding) for i, c in enumerate(code)))
 
     def round_trip(self, motion: Vec2, largest) -> Vec2:
         """Motions encoded, stored and decoded; see `stored`."""

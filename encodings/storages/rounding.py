@@ -6,9 +6,9 @@ integer, NaN takes the lower end; what comes back is the integer times the float
 OpenGL 4.6, section 2.3.5, with the choices it leaves open made as the devices tested make them (`test_storage.py`).
 
 Half floats round to nearest even, or are cut off: GL allows both, and both ship. To truncate is to cut off the texel:
-UNORM goes down, which is toward -1 in the code; SNORM and floats go toward zero. `truncate_half` is what engines that
-pack by hand write to make up for that, floor(x (2^n - 1/2)). Where a device does not round as a codec asks, the shader
-rounds before the write (`storage.glsl`), and the row says so.
+UNORM goes down, which is toward -1 in the code; SNORM, centred or not, and floats go toward zero. `truncate_half` is
+what engines that pack by hand write to make up for that, floor(x (2^n - 1/2)). Where a device does not round as a codec
+asks, the shader rounds before the write (`storage.glsl`), and the row says so.
 
 Numbers in float64 stand for the exact map: the same integers and floats, products and reciprocals in float64.
 """

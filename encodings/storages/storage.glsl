@@ -113,7 +113,9 @@ uint part_from(uint held, int first, int bits, int channel, int size) {
 // where floats lie there, of STORAGE_EXPONENT bits of exponent, and STORAGE_SIGNED. STORAGE_CENTRED is 1 where SNORM's integers lie in UNORM
 // channels. SHADER_ROUNDS is 1 where the shader must round before the write, by channel as STORAGE_ROUNDING.
 const float storage_scale[] = STORAGE_SCALE;
-const int storage_bits[] = STORAGE_BITS, storage_rounding[] = STORAGE_ROUNDING;
+const int storage_bits[] = STORAGE_BITS;
+// A pass may say otherwise of a texel.
+int storage_rounding[] = STORAGE_ROUNDING;
 
 vec4 round_texel(vec4 texel) {
     for (int i = 0; i < 4; ++i)
@@ -183,8 +185,9 @@ vec4 from_texel(vec4 texel) {
 vec4 to_texel(vec4 code) {
     vec4 texel;
     for (int i = 0; i < 4; ++i) {
-        float scale = storage_scale[i], number = clamp(code[i], -1.0, 1.0) * scale;
-        texel[i] = ((SHADER_ROUNDS != 0 ? roundEven(number) : number) + scale) / (2.0 * scale + 1.0);
+        float scale = storage_scale[i], inside = clamp(code[i], -1.0, 1.0), number = inside * scale;
+        float whole = round_whole(inside, scale, storage_rounding[i]);
+        texel[i] = ((SHADER_ROUNDS != 0 ? whole : number) + scale) / (2.0 * scale + 1.0);
     }
     return texel;
 }

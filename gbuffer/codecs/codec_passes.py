@@ -82,7 +82,10 @@ def rounding_defines(
     Returns:
         "device" where the format's own conversion rounds so, else "shader"; and the macros.
     """
-    is_native = not storage.is_packed and device.native_rounding(storage.target) == rounding
+    # Cut off, a centred integer goes toward its zero in the middle, and not toward that of its target.
+    is_cut_otherwise = storage.is_centred and rounding != "nearest"
+    is_own = storage.is_packed or is_cut_otherwise
+    is_native = not is_own and device.native_rounding(storage.target) == rounding
     roundings = channels or [rounding] * storage.channels
     return "device" if is_native else "shader", storage_defines(storage, roundings, not is_native)
 

@@ -693,6 +693,7 @@ def frames(
     *,
     encoding: Names = ...,
     storage: Names | None = ...,
+    rounding: Names = ...,
     frames: Names = ...,
     backend: Names = ...,
     count: int = ...,
@@ -712,6 +713,7 @@ def frames(
     Args:
         encoding: Tangent frame codes or files of yours, comma-separated, or all; `normalbench list` shows them.
         storage: Tangent frame storages, comma-separated, or all; `normalbench list` shows them. Default: each code's usual.
+        rounding: nearest, truncate, truncate_half; comma-separated, or all.
         frames: Tangent frame sets or mesh files, whose vertices are taken, comma-separated, or all; `normalbench list` shows them.
         backend: jax, glsl; comma-separated, or all.
         count: Tangent frames in a uniform set.
@@ -729,6 +731,7 @@ def vectors(
     *,
     encoding: Names = ...,
     storage: Names | None = ...,
+    rounding: Names = ...,
     backend: Names = ...,
     speed: Names = ...,
     size: Names = ...,
@@ -749,6 +752,7 @@ def vectors(
     Args:
         encoding: Motion codes or files of yours, comma-separated, or all; `normalbench list` shows them.
         storage: Motion storages, comma-separated, or all; `normalbench list` shows them. Default: each code's usual.
+        rounding: nearest, truncate, truncate_half; comma-separated, or all.
         backend: jax, glsl; comma-separated, or all.
         speed: Speeds in pixels a frame, comma-separated.
         size: WIDTHxHEIGHT of the image.

@@ -6,7 +6,7 @@ import re
 from collections.abc import Collection, Mapping
 
 from ....encodings.storages.rules import BY_RULE, KINDS, storage_of
-from ....encodings.storages.storage import FORMATS, STORAGES, Storage
+from ....encodings.storages.storage import FORMATS, ROUNDINGS, STORAGES, Storage
 from ..choose import choose, unknown_name
 from ..output.errors import UsageError
 from ..spelling import channels_of, spelled
@@ -39,6 +39,11 @@ def storages_named(names: str, known: Mapping[str, Storage] = STORAGES, what: st
         raise unknown_name(what, unknown, known, f"all, {', '.join(known)}; or bits, such as unorm:9:7")
     chosen = choose(what, ",".join(said), {**known, **{word: one for word, one in said.items() if one}, **own})
     return list(dict.fromkeys(chosen))
+
+
+def roundings_named(names: str, known: Collection[str] = ROUNDINGS) -> list[str]:
+    """Ways to round by their comma-separated names. Raises UsageError for an unknown one."""
+    return choose("rounding", names, {name: name for name in known})
 
 
 def storages_said(names: str, own: Collection[str] = ()) -> dict[str, Storage | None]:

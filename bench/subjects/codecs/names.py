@@ -13,10 +13,9 @@ from ....encodings.catalogue import ENCODINGS
 from ....encodings.codecs.codec import Codec
 from ....encodings.codecs.encoding import Encoding
 from ....encodings.codecs.variants import ARITHMETICS, DECLARED, FLOAT, HALF, in_half
-from ....encodings.storages.storage import ROUNDINGS
 from ....encodings.vec import Vec3
 from ...ground.choose import choose, names_a_file
-from ...ground.options.storage_names import storages_named
+from ...ground.options.storage_names import roundings_named, storages_named
 from ...ground.options.words import Words, given_in
 from ...ground.output.errors import MissingError, UsageError, by_reason, tell
 from ...shaders.code.twin import NoTwinError, has_twin
@@ -43,7 +42,7 @@ def codecs_named(
     made = (
         Codec(encoding, storage, rounding)
         for storage in storages_named(storages)
-        for rounding in choose("rounding", roundings, dict(zip(ROUNDINGS, ROUNDINGS, strict=True)))
+        for rounding in roundings_named(roundings)
         for encoding in chosen
     )
     # One with a storage of its own is one codec, however many storages are named.

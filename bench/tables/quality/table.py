@@ -83,7 +83,7 @@ def _angle_column(name: str, says: str, drops: int = 0) -> Column:
 COLUMNS = (
     shared.ENCODING,
     shared.STORAGE,
-    Column("rounding", "How the storage rounds.", KEY),
+    shared.ROUNDING,
     Column("normals", "The set of normals that was measured on.", KEY),
     shared.BACKEND,
     shared.BITS,

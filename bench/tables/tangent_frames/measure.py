@@ -137,6 +137,7 @@ def measure(case: Case) -> Row:
     row = TABLE.empty() | {
         "encoding": case.codec.encoding.name,
         "storage": case.codec.storage.name,
+        "rounding": case.codec.rounding,
         "frame_set": case.frame_set.name,
         "backend": case.backend,
         "bits": case.codec.bits,

@@ -12,7 +12,7 @@ from ....encodings.storages.storage import FRAME_STORAGES
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_count
-from ...ground.options.storage_names import storages_named
+from ...ground.options.storage_names import roundings_named, storages_named
 from ...ground.options.targets import that_fit
 from ...subjects.codecs.kinds.named import own_codes_named
 from ..table import NoOutputs, Row, Sheet, Step, Work, each
@@ -46,10 +46,12 @@ def cases(options: FramesOptions) -> list[measure.Case]:
 
 def codecs(options: FramesOptions) -> list[FrameCodec]:
     """The codecs asked for; those that do not fit are named on standard error."""
+    roundings = roundings_named(options.rounding)
     return that_fit(
-        FrameCodec(encoding, storage)
+        FrameCodec(encoding, storage, rounding)
         for encoding in own_codes_named(FRAME, options.encoding, FRAME_ENCODINGS, "frame encoding")
         for storage in storages_named(options.storage or ",".join(encoding.storages), FRAME_STORAGES, "frame storage")
+        for rounding in roundings
     )
 
 
@@ -81,13 +83,13 @@ def in_order(rows: Sequence[Row]) -> list[Row]:
 
 
 def _codec_of(row: Row) -> tuple:
-    return row["frame_set"], row["encoding"], row["storage"]
+    return row["frame_set"], row["encoding"], row["storage"], row["rounding"]
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     measured = [row for row in rows if row["rotation_rms_deg"] is not None]
     chosen = [row for row in measured if row["backend"] == measured[0]["backend"]]
-    names = ("encoding", "storage", "bits", "rotation_mean_deg", "rotation_rms_deg", "rotation_max_deg")
+    names = ("encoding", "storage", "rounding", "bits", "rotation_mean_deg", "rotation_rms_deg", "rotation_max_deg")
     names += ("effective_bits", "limit_rms_deg", "hands_lost")
     if chosen:
         title = f"tangent frames, degrees between the true and the decoded one, by {chosen[0]['backend']}"

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from ....reports.charts.chart import MUTED, Axis, Chart, Kind, Mark, Names, Scale, distinct
+from ....reports.page.codec_key import CodecKey
 from ..charts import having, one_backend
 from ..table import Row
 from .order import place
@@ -73,7 +74,7 @@ def vector_lines(rows: Sequence[Row]) -> dict[str, list[Row]]:
     for row in sorted(rows, key=lambda row: row["speed"]):
         if row["error_mean_px"] > 0:
             ending = f" range {row['range']:g}" if several and row.get("range") else ""
-            lines.setdefault(f"{row['encoding']} {row['storage']}{ending}", []).append(row)
+            lines.setdefault(f"{CodecKey.of(row).label}{ending}", []).append(row)
     return lines
 
 
@@ -85,5 +86,5 @@ def _finding_sentence(rows: Sequence[Row]) -> str:
         part = [row for row in rows if (row["bits"], row["speed"]) == (bits, least)]
         if part:
             best = min(part, key=lambda row: row["error_mean_px"])
-            said.append(f"{best['encoding']} {best['storage']} of {bits} bits ({best['error_mean_px']:.2g})")
+            said.append(f"{CodecKey.of(best).label} of {bits} bits ({best['error_mean_px']:.2g})")
     return f"At {least:g} pixels a frame these lose least, in pixels: {', '.join(said)}"

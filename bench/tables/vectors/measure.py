@@ -63,9 +63,9 @@ class Case:
 
 
 @cache
-def _compiled_trip(encoding: MotionEncoding, storage: Storage) -> Callable[..., Any]:
+def _compiled_trip(encoding: MotionEncoding, storage: Storage, rounding: str) -> Callable[..., Any]:
     def trip(motions, largest, scales):
-        return jnp.stack(MotionCodec(encoding, fixed(storage, scales)).round_trip(Vec2(*motions), largest))
+        return jnp.stack(MotionCodec(encoding, fixed(storage, scales), rounding).round_trip(Vec2(*motions), largest))
 
     return jax.jit(trip)
 
@@ -73,7 +73,7 @@ def _compiled_trip(encoding: MotionEncoding, storage: Storage) -> Callable[..., 
 @contextmanager
 def _trip_by_jax(codec: MotionCodec, largest: float) -> Iterator[tuple[Trip, How]]:
     like, scales = shared(codec.storage, NUMBERS)
-    compiled = _compiled_trip(codec.encoding, like)
+    compiled = _compiled_trip(codec.encoding, like, codec.rounding)
 
     def trip(motions: np.ndarray) -> np.ndarray:
         return np.asarray(compiled(np.ascontiguousarray(motions.T), np.float32(largest), scales)).T
@@ -114,6 +114,7 @@ def _case_columns(case: Case, speed: float) -> Row:
     return TABLE.empty() | {
         "encoding": case.codec.encoding.name,
         "storage": case.codec.storage.name,
+        "rounding": case.codec.rounding,
         "backend": case.backend,
         "range": case.largest if case.codec.needs_range or case.codec.encoding.own_range else None,
         "size": case.size,

@@ -12,7 +12,7 @@ from ....encodings.storages.storage import MOTION_STORAGES
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_numbers, checked_sides, in_range
-from ...ground.options.storage_names import storages_named
+from ...ground.options.storage_names import roundings_named, storages_named
 from ...ground.options.targets import that_fit
 from ...subjects.codecs.kinds.named import own_codes_named
 from ..charts import but_without_twins, one_backend
@@ -25,7 +25,7 @@ from .table import VectorsOptions
 MAX_SIDE, MAX_POINTS = 2**16, 2**24
 SPEEDS, RANGES = (1e-6, 1e5), (1e-3, 16.0)
 # What tells a line of a sheet or a chart from another.
-LINE = ("encoding", "storage", "backend", "range", "size")
+LINE = ("encoding", "storage", "rounding", "backend", "range", "size")
 
 
 def cases(options: VectorsOptions) -> list[measure.Case]:
@@ -55,10 +55,12 @@ def cases(options: VectorsOptions) -> list[measure.Case]:
 
 def codecs(options: VectorsOptions) -> list[MotionCodec]:
     """The codecs asked for; those that do not fit are named on standard error."""
+    roundings = roundings_named(options.rounding)
     return that_fit(
-        MotionCodec(encoding, storage)
+        MotionCodec(encoding, storage, rounding)
         for encoding in own_codes_named(MOTION, options.encoding, MOTION_ENCODINGS)
         for storage in storages_named(options.storage or ",".join(encoding.storages), MOTION_STORAGES, "motion storage")
+        for rounding in roundings
     )
 
 
@@ -76,8 +78,12 @@ def in_order(rows: Sequence[Row]) -> list[Row]:
     best: dict[tuple, float] = {}
     for row in sorted(rows, key=lambda row: row["speed"], reverse=True):
         error = row["error_mean_px"]
-        best[row["encoding"], row["storage"]] = math.inf if error is None else error
-    return sorted(rows, key=lambda row: (row["bits"], best[row["encoding"], row["storage"]], *map(str, _line(row))))
+        best[_code(row)] = math.inf if error is None else error
+    return sorted(rows, key=lambda row: (row["bits"], best[_code(row)], *map(str, _line(row))))
+
+
+def _code(row: Row) -> tuple:
+    return row["encoding"], row["storage"], row["rounding"]
 
 
 def _line(row: Row) -> tuple:
@@ -100,7 +106,7 @@ def _said(value: object) -> object:
 
 def _shown(done: Measured) -> Iterator[Sheet]:
     rows = but_without_twins(done.rows)
-    names = ("encoding", "storage", "bits", "backend", "range")
+    names = ("encoding", "storage", "rounding", "bits", "backend", "range")
     sheets = {
         "error_mean_px": ("mean error in pixels, by speed in pixels a frame", ("still_px", "least_px")),
         "drift_px": ("drift in pixels after 16 frames, by speed", ()),
@@ -116,7 +122,7 @@ def _shown(done: Measured) -> Iterator[Sheet]:
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     measured = one_backend([row for row in rows if row["error_mean_px"] is not None])
     if measured:
-        names = ("encoding", "storage", "bits", "still_px", "least_px")
+        names = ("encoding", "storage", "rounding", "bits", "still_px", "least_px")
         title = f"motion vectors, mean error in pixels by speed, {measured[0]['size']}"
         yield Sheet(title, _by_speed(measured, "error_mean_px", names))
 

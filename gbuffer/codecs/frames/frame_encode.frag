@@ -13,7 +13,11 @@ void main() {
     Frame frame = frame_of(normal.xyz, texelFetch(tangents, pixel, 0).xyz, normal.w);
     vec4 code = FRAME_ENCODE(frame, FRAME_LEAST);
 #if FRAME_SETTLES
-    code = FRAME_SETTLE(frame, unbiased(round_texel(biased(code))));
+    vec4 stored = unbiased(round_texel(biased(code)));
+    code = FRAME_SETTLE(frame, stored);
+    // A number that is stored already stays: cut off again it could lose a step.
+    for (int i = 0; i < 4; ++i)
+        if (code[i] == stored[i]) storage_rounding[i] = 0;
 #endif
     texel = to_texel(code);
 }

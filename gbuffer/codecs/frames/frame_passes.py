@@ -36,7 +36,7 @@ class FramePasses(Passes):
     """A frame codec on a GL device; a context manager that releases what it holds there.
 
     Attributes:
-        rounded_by: "device" where the format's own conversion rounds to nearest, else "shader".
+        rounded_by: "device" where the format's own conversion rounds as the codec asks, else "shader".
 
     Raises:
         ShaderError: the encoding's GLSL does not compile.
@@ -45,7 +45,8 @@ class FramePasses(Passes):
 
     def __init__(self, device: Device, codec: FrameCodec):
         encoding, storage = codec.encoding, codec.storage
-        self.rounded_by, rounds = rounding_defines(device, storage)
+        channels = [codec.rounding_of(channel) for channel in range(storage.channels)]
+        self.rounded_by, rounds = rounding_defines(device, storage, codec.rounding, channels)
         defines = frame_defines(encoding, codec.least) | rounds
         shaders, names = ("frame_encode.frag", "frame_decode.frag"), {"FRAME_ENCODING": encoding.glsl}
         super().__init__(device, shaders, defines, names, {"texels": storage.target})

@@ -32,7 +32,7 @@ class MotionPasses(Passes):
     """A motion codec on a GL device; a context manager that releases what it holds there.
 
     Attributes:
-        rounded_by: "device" where the format's own conversion rounds to nearest, else "shader".
+        rounded_by: "device" where the format's own conversion rounds as the codec asks, else "shader".
 
     Raises:
         ShaderError: the encoding's GLSL does not compile.
@@ -41,7 +41,7 @@ class MotionPasses(Passes):
 
     def __init__(self, device: Device, codec: MotionCodec):
         storage = codec.storage
-        self.rounded_by, rounds = rounding_defines(device, storage)
+        self.rounded_by, rounds = rounding_defines(device, storage, codec.rounding)
         defines = motion_defines(codec.encoding, codec.needs_range) | rounds
         shaders, names = ("motion_encode.frag", "motion_decode.frag"), {"MOTION_ENCODING": codec.encoding.glsl}
         super().__init__(device, shaders, defines, names, {"texels": storage.target})

@@ -139,6 +139,23 @@ def test_every_code_keeps_its_hand_and_its_limit(request, backend):
             assert row["effective_bits"] < row["bits"], row
 
 
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("storage", ["rgba8", "rgba16f", "unorm:12:12:7:1"])
+def test_numbers_that_are_cut_off_are_so_in_both_languages(storage):
+    """The error is about twice that of the nearest, the hand stays, and what is stored already is not cut off again."""
+    (chosen,) = storages_named(storage)
+
+    def row(rounding: str, backend: str) -> dict:
+        codec = FrameCodec(FRAME_ENCODINGS["octahedral_angle"], chosen, rounding)
+        return frames.measure(frames.Case(codec, rotations(2**14, 3), backend))
+
+    nearest, cut, by_gl = row("nearest", "jax"), row("truncate", "jax"), row("truncate", "glsl")
+    assert cut["rounding"] == "truncate" and not cut["hands_lost"]
+    assert 1.8 < cut["rotation_rms_deg"] / nearest["rotation_rms_deg"] < 2.3, cut
+    for name in ("normal_max_deg", "rotation_rms_deg", "rotation_max_deg"):
+        assert cut[name] == pytest.approx(by_gl[name], rel=1e-3), name
+
+
 def test_an_angle_about_the_true_normal_would_be_lost_at_the_seam():
     """What `settle` is for: without it rounding takes normals to the other side, and their tangents anywhere."""
     settled = FRAME_ENCODINGS["octahedral_angle"]

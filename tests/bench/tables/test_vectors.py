@@ -4,6 +4,7 @@ import json
 import math
 from functools import cache
 
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
@@ -16,6 +17,7 @@ from normalbench.bench.tables.vectors.paths import FRAMES, POINTS, Paths
 from normalbench.encodings.catalogue import MOTION_ENCODINGS
 from normalbench.encodings.codecs.motion_codec import MotionCodec
 from normalbench.encodings.storages.storage import MOTION_STORAGES
+from normalbench.encodings.vec import Vec2
 from normalbench.gbuffer.gl.device import NoDeviceError
 
 WIDTH, HEIGHT = SIZE = (1920, 1080)
@@ -23,13 +25,40 @@ QUICK = ["vectors", "--backend", "jax", "--count", "256", "--format", "json"]
 
 
 @cache
-def row(codec: str, speed: float, largest: float = 1.0, backend: str = "jax") -> dict:
+def row(codec: str, speed: float, largest: float = 1.0, backend: str = "jax", rounding: str = "nearest") -> dict:
     """The row of a code such as linear/rg16 at a speed."""
     encoding, storage = codec.split("/")
-    made = MotionCodec(MOTION_ENCODINGS[encoding], MOTION_STORAGES[storage])
+    made = MotionCodec(MOTION_ENCODINGS[encoding], MOTION_STORAGES[storage], rounding)
     (found,) = vectors.measure(vectors.Case(made, backend, largest, (speed,), Paths(POINTS, 0, SIZE)))
     assert found["skipped"] is None, found
     return found
+
+
+def test_half_floats_that_are_cut_off_are_short_by_up_to_a_unit():
+    """Toward zero: no motion comes back longer, and points lag. The mean error is twice that of the nearest, since a
+    rectangle's points are twice as far from its corner, on average, as from its middle."""
+    motions = np.random.default_rng(5).uniform(-0.1, 0.1, (2, 2**14)).astype(np.float32)
+    codec = MotionCodec(MOTION_ENCODINGS["linear"], MOTION_STORAGES["rg16f"], "truncate")
+    found = np.array(codec.round_trip(Vec2(*map(jnp.asarray, motions)), np.float32(1)))
+    unit = np.spacing(np.abs(motions).astype(np.float16)).astype(np.float32)
+    short = np.abs(motions) - np.abs(found)
+    assert (short >= 0).all() and (short < unit * 1.001).all()
+    assert float((short / unit).mean()) == pytest.approx(0.5, abs=0.02)
+    nearest, cut = (row("linear/rg16f", 16, rounding=rounding) for rounding in ("nearest", "truncate"))
+    assert cut["error_mean_px"] == pytest.approx(2 * nearest["error_mean_px"], rel=0.01)
+    assert cut["drift_px"] > 5 * nearest["drift_px"]
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("storage", ["rg16f", "rg8", "rg8_snorm", "rg8_centred"])
+@pytest.mark.parametrize("rounding", ["truncate", "truncate_half"])
+def test_both_languages_cut_off_alike(storage, rounding):
+    if (storage, rounding) == ("rg16f", "truncate_half"):
+        assert "fixed point" in str(MotionCodec(MOTION_ENCODINGS["linear"], MOTION_STORAGES[storage], rounding).misfit)
+        return
+    by_jax, by_gl = (row(f"linear/{storage}", 64, 1.0, backend, rounding) for backend in ("jax", "glsl"))
+    for name in ("error_mean_px", "error_max_px", "still_px"):
+        assert by_jax[name] == pytest.approx(by_gl[name], rel=2e-3, abs=1e-6), name
 
 
 def mean_in_a_rectangle(a: float, b: float) -> float:
