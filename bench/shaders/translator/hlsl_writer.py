@@ -14,9 +14,12 @@ from .tree import (
     Declare,
     Elements,
     Expression,
+    For,
+    Index,
     Literal,
     Name,
     Program,
+    Statement,
     Table,
     inside,
     size_of,
@@ -77,6 +80,18 @@ class HlslWriter(Writer):
         self._constants = {constant.name for constant in constants}
         text = super()._program(program)
         return "".join(f"{made}\n\n" for _, made in self._choices.values()) + text
+
+    def _statement(self, statement: Statement, indent: str) -> str:
+        """A loop over an array of constants is unrolled: its elements are then numbers of the instructions."""
+        text = super()._statement(statement, indent)
+        if not isinstance(statement, For) or not _has_ends(statement) or not self._reads_array(statement):
+            return text
+        above = self._comments(statement, indent)
+        return f"{above}{indent}[unroll]\n{text.removeprefix(above)}"
+
+    def _reads_array(self, loop: For) -> bool:
+        arrays = (node.value for node in inside(loop.body) if isinstance(node, Index) and node.value.kind.endswith("]"))
+        return any(isinstance(array, Name) and array.name in self._constants for array in arrays)
 
     def _table(self, table: Table) -> str:
         return f"Texture2D<float4> {table.name};"
@@ -154,3 +169,11 @@ class HlslWriter(Writer):
                 return f"{self._kind(value.kind)}({', '.join([self._text(given[0])] * size)})"
             return f"({self._text(given[0])}).{'x' * size}"
         return super()._construct(value)
+
+
+def _has_ends(loop: For) -> bool:
+    """Whether a loop begins at a number and ends at one."""
+    match loop.start, loop.condition:
+        case Declare(_, _, Literal()), Binary(_, _, Name(), Literal()):
+            return True
+    return False

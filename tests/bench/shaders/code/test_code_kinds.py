@@ -107,6 +107,13 @@ def test_a_setting_that_nothing_reads_is_no_parameter():
     assert "vec4 p_encode(vec3 light)" in code_of(codec_of("light", "rgbm", "rgba8"), "glsl", "p").body
 
 
+def test_hlsl_unrolls_loops_over_constants_alone():
+    """The polynomials of a logarithm and a power; no loop of another kind."""
+    codec = codec_of("motion", "cube_root", "rg16_snorm")
+    assert code_of(codec, "hlsl", "p").body.count("    [unroll]\n    for (int i = ") == 2
+    assert "[unroll]" not in code_of(codec, "glsl", "p").body
+
+
 OWN_MOTION = """
 float2 EncodeVelocity(float2 velocity) { return velocity * 0.499 + 0.5; }
 float2 DecodeVelocity(float2 code) { return (code - 0.5) / 0.499; }
