@@ -75,8 +75,11 @@ class FrameCodec:
         if not self.encoding.settle:
             return code
         settled = self.encoding.settle(frame, code)
-        # A number that is stored already stays: cut off again it could lose a step.
-        kept = zip(settled, code, self.store(settled), strict=True)
+        stored = self.store(settled)
+        if self.rounding == "nearest":
+            return stored
+        # What is stored already stays, as to the nearest it does by itself: cut off again it could lose a step.
+        kept = zip(settled, code, stored, strict=True)
         return Vec4(*(select(number == before, before, after) for number, before, after in kept))
 
     def round_trip(self, frame: Frame) -> Frame:

@@ -15,13 +15,10 @@ from ....encodings.codecs.curve_codec import CurveCodec
 from ....encodings.storages.dither import Dither
 from ....encodings.storages.rounding import from_srgb, to_srgb
 from ....gbuffer.codecs.curve.curve_passes import CurvePasses
-from ....gbuffer.gl.device import FormatError, NoDeviceError, device
-from ....gbuffer.gl.shader import ShaderError
-from ...shaders.code.twin import NoTwinError
+from ....gbuffer.gl.device import device
+from ..unmeasurable import UNMEASURABLE
 from .table import TABLE
 
-# Why a device may not be able to give a row.
-UNMEASURABLE = (NoDeviceError, ShaderError, FormatError, NoTwinError)
 WIDTH = 256
 # The share of the range from which on relative errors count, and the steps of colours that a viewer sees.
 FROM, STEPS = 0.01, 255.0

@@ -16,15 +16,13 @@ from ....encodings.codecs.depth_codec import REBUILDS, DepthCodec
 from ....encodings.shared.position import Camera
 from ....encodings.vec import Vec2
 from ....gbuffer.codecs.depth.depth_passes import DepthPasses, Rebuilt
-from ....gbuffer.gl.device import FormatError, NoDeviceError, device
-from ....gbuffer.gl.shader import ShaderError
+from ....gbuffer.gl.device import device
 from ...shaders.code.twin import NoTwinError
+from ..unmeasurable import UNMEASURABLE
 from .frames import Frame, seen
 from .points import Points
 from .table import TABLE
 
-# Why a device may not be able to give a row.
-UNMEASURABLE = (NoDeviceError, ShaderError, FormatError, NoTwinError)
 # A distance stands for depths that are up to this share of it nearer or farther.
 BAND = 1 / 16
 ASPECT = 16 / 9

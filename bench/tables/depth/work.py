@@ -37,6 +37,7 @@ from ...ground.spelling import OTHER_WORDS
 from ...subjects.codecs.kinds.named import own_codes_named
 from ..charts import but_without_twins, having
 from ..table import Measured, Row, Sheet, Step, Tick, Work, each
+from ..unmeasurable import UNMEASURABLE
 from . import measure
 from .charts import charts, depth_chart
 from .frames import check_and_say, frames_named
@@ -243,7 +244,7 @@ def _curve(case: measure.Case) -> list[Row]:
 
 
 @dataclass(frozen=True)
-class Seen:
+class Surface:
     """A scene's depths, or a frame's.
 
     Attributes:
@@ -276,16 +277,16 @@ class Seen:
 
 
 @cache
-def _seen(device: Device) -> Seen:
+def _seen(device: Device) -> Surface:
     """The pictures' scene, rendered once: it is asked for before anything is measured, and again for the pictures."""
     plan = Plan(SIZE, 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 2, False, 1.0)
     scene = SCENE.make(Setting())
     with rendering(device, PIPELINES["prepass"], scene, plan) as made:
         made.draw()
-        return Seen(SCENE.name, -made.gbuffer()[0][..., 2], scene.view.fov)
+        return Surface(SCENE.name, -made.gbuffer()[0][..., 2], scene.view.fov)
 
 
-def _pictured(folder: Path, cases: Iterable[measure.Case]) -> Seen | None:
+def _pictured(folder: Path, cases: Iterable[measure.Case]) -> Surface | None:
     """What the pictures show: the scene, or None where each case has a frame of its own. Raises as `_scene`."""
     if not any(case.frame for case in cases):
         return _scene(folder, cases)
@@ -293,15 +294,15 @@ def _pictured(folder: Path, cases: Iterable[measure.Case]) -> Seen | None:
     return None
 
 
-def _seen_by(case: measure.Case, scene: Seen | None) -> Seen:
+def _seen_by(case: measure.Case, scene: Surface | None) -> Surface:
     """What the pictures of a case show."""
     if case.frame:
-        return Seen(case.frame.name, case.frame.surface(case.camera), case.camera.fov)
+        return Surface(case.frame.name, case.frame.surface(case.camera), case.camera.fov)
     assert scene
     return scene
 
 
-def _scene(folder: Path, cases: Iterable[measure.Case]) -> Seen:
+def _scene(folder: Path, cases: Iterable[measure.Case]) -> Surface:
     """What the pictures show, rendered in 32-bit floats.
 
     Raises:
@@ -322,7 +323,7 @@ def _scene(folder: Path, cases: Iterable[measure.Case]) -> Seen:
 
 
 def _write_pictures(
-    cases: Iterable[measure.Case], pictured: Seen | None, folder: Path, tick: Callable[[str], None]
+    cases: Iterable[measure.Case], pictured: Surface | None, folder: Path, tick: Callable[[str], None]
 ) -> None:
     """Two pictures of each case, and for each range a sheet of them all."""
     sheets: dict[str, dict[str, dict[str, np.ndarray]]] = {}
@@ -349,7 +350,7 @@ def _write_pictures(
 def _through(case: measure.Case, points: measure.Points) -> measure.Measured:
     try:
         return measure.through(case, points)
-    except measure.UNMEASURABLE:
+    except UNMEASURABLE:
         return measure.through(replace(case, backend="jax"), points)
 
 

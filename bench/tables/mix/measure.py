@@ -13,9 +13,9 @@ import numpy as np
 from ....encodings.codecs.codec import Codec
 from ....gbuffer.codecs.codec_passes import Decoded
 from ....gbuffer.codecs.mixing.passes import BY_DEVICE, SIDE, MixPasses
-from ....gbuffer.gl.device import Device, FormatError, NoDeviceError, device
-from ....gbuffer.gl.shader import ShaderError
-from ...shaders.code.twin import NoTwinError, has_twin
+from ....gbuffer.gl.device import Device, device
+from ...shaders.code.twin import has_twin
+from ..unmeasurable import UNMEASURABLE
 from .figures import Figures, outside, percent
 from .means import BY_NORMALS, STORED_AGAIN
 from .model import BY_MODEL, MODEL, WAYS, Given, Texels, Way
@@ -26,7 +26,6 @@ from .table import AGREE_DEG, OF_INTEGER, TABLE
 from .worst import climbed
 
 Row = dict[str, Any]
-UNMEASURABLE = (NoDeviceError, ShaderError, FormatError, NoTwinError)
 # JAX compiles for one number of normals.
 BLOCK = 2**14
 # The share of results, in percent, that a way to mix must explain.

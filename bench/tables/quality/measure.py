@@ -21,8 +21,7 @@ from ....encodings.storages.rounding import Scale, fixed, shared
 from ....encodings.storages.storage import Storage
 from ....encodings.vec import Vec3
 from ....gbuffer.codecs.codec_passes import CodecPasses
-from ....gbuffer.gl.device import FormatError, NoDeviceError, device
-from ....gbuffer.gl.shader import ShaderError
+from ....gbuffer.gl.device import device
 from ...ground.machine.cores import on_all_cores
 from ...ground.native.elementwise import NotElementwiseError
 from ...ground.native.library import LARGE, NoCompilerError
@@ -33,14 +32,15 @@ from ...measures.metrics.totals import Statistics, Total, Worst, psnr_db, statis
 from ...measures.native.meter import NativeMeter
 from ...measures.worst_case import exact_figures
 from ...shaders.code import trip as wgsl_trip
-from ...shaders.code.twin import NoTwinError, has_twin
+from ...shaders.code.twin import has_twin
 from ...subjects.codecs.half import compute as half_compute
 from ...subjects.codecs.half.round_trip import HalfPasses
 from ...subjects.normals.normal_sets import CHUNK, CHUNK_WIDTH, Chunk, NormalSet, from_arrays
+from ..unmeasurable import UNMEASURABLE as BY_BACKEND
 from .table import TABLE
 
 # Why a device may not be able to give a row.
-UNMEASURABLE = (NoDeviceError, ShaderError, FormatError, NoTwinError, MissingError)
+UNMEASURABLE = (*BY_BACKEND, MissingError)
 # How many cases share a set's chunks: each keeps its own histogram.
 TOGETHER = 16
 # How many chunks the C compiler's code measures in turn: with fewer, what Python does for each shows.

@@ -18,18 +18,16 @@ from ....encodings.codecs.frame_codec import FrameCodec
 from ....encodings.rotation import frame_of
 from ....encodings.vec import Vec3
 from ....gbuffer.codecs.frames.frame_passes import FramePasses
-from ....gbuffer.gl.device import FormatError, NoDeviceError, device
-from ....gbuffer.gl.shader import ShaderError
+from ....gbuffer.gl.device import device
 from ...measures.metrics.code_limits import is_measurable
 from ...measures.worst_case.frame_search import worst_frame
 from ...shaders.code.twin import NoTwinError
+from ..unmeasurable import UNMEASURABLE
 from .limits import HANDS, frame_effective_bits, frame_limit, frames_broken
 from .sets import CHUNK, Frames, FrameSet
 from .table import TABLE
 
 WHAT = ("normal", "tangent", "rotation")
-# Why a device may not be able to give a row.
-UNMEASURABLE = (NoDeviceError, ShaderError, FormatError, NoTwinError)
 WIDTH = 256
 
 Row = dict[str, Any]

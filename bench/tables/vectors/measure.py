@@ -19,14 +19,11 @@ from ....encodings.storages.rounding import fixed, shared
 from ....encodings.storages.storage import Storage
 from ....encodings.vec import Vec2
 from ....gbuffer.codecs.motion.motion_passes import MotionPasses
-from ....gbuffer.gl.device import FormatError, NoDeviceError, device
-from ....gbuffer.gl.shader import ShaderError
-from ...shaders.code.twin import NoTwinError
+from ....gbuffer.gl.device import device
+from ..unmeasurable import UNMEASURABLE
 from .paths import FRAMES, POINTS, Paths
 from .table import TABLE
 
-# Why a device may not be able to give a row.
-UNMEASURABLE = (NoDeviceError, ShaderError, FormatError, NoTwinError)
 CHUNK, WIDTH = FRAMES * POINTS, 256
 # Along x and y, both ways: where motions are looked for that are just told from rest, from 2^-60 of a screen on.
 DIRECTIONS = np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
