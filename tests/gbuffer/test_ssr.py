@@ -317,9 +317,11 @@ def test_cost_grows_with_steps_rays_and_pixels(gl):
 
 
 def test_a_mirror_has_no_noise(gl):
-    """Any seed and any number of rays give one image, and the same frame again."""
+    """Any seed and any number of rays give one image, and the same frame again. On a GPU two programs may be a unit in
+    the last place apart."""
     first, other = (traced(gl, hall(0.0), f":{chosen}", SMALL) for chosen in ("rays=1", "rays=4:seed=7"))
-    assert np.array_equal(first.reflected[first.mirror], other.reflected[first.mirror])
+    apart = np.abs(first.reflected - other.reflected)[first.mirror].max()
+    assert apart <= (0 if gl.is_software else 2.0**-22), apart
     again = traced(gl, hall(0.0), ":rays=4:seed=7", SMALL)
     assert np.array_equal(again.reflected, other.reflected)
     assert not np.array_equal(first.reflected, other.reflected), "what is rough has noise"
