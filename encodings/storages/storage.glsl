@@ -110,12 +110,17 @@ uint part_from(uint held, int first, int bits, int channel, int size) {
 // Of one storage: STORAGE_KIND is its kind, STORAGE_BIASED 1 where a number c is kept as c/2 + 1/2; by channel
 // STORAGE_SCALE, the integers that stand for 1, and STORAGE_BITS. STORAGE_PART is the bits of each channel that numbers
 // lie across as integers, or 0 where each has a channel; then STORAGE_MOST are the largest integers. STORAGE_FLOATS is 1
-// where floats lie there, of STORAGE_EXPONENT bits of exponent, and STORAGE_SIGNED. STORAGE_CENTRED is 1 where SNORM's integers lie in UNORM
-// channels. SHADER_ROUNDS is 1 where the shader must round before the write, by channel as STORAGE_ROUNDING.
+// where floats lie there, of STORAGE_EXPONENT bits of exponent, and STORAGE_SIGNED. STORAGE_CENTRED is 1 where SNORM's
+// integers lie in UNORM channels. SHADER_ROUNDS is 1 where the shader must round before the write, by channel as
+// STORAGE_ROUNDING.
 const float storage_scale[] = STORAGE_SCALE;
 const int storage_bits[] = STORAGE_BITS;
-// A pass may say otherwise of a texel.
+#ifdef STORAGE_ROUNDS_TWICE
+// A pass that stores a texel twice says otherwise of what is stored already.
 int storage_rounding[] = STORAGE_ROUNDING;
+#else
+const int storage_rounding[] = STORAGE_ROUNDING;
+#endif
 
 vec4 round_texel(vec4 texel) {
     for (int i = 0; i < 4; ++i)

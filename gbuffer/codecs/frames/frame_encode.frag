@@ -1,6 +1,7 @@
 #version 430
 // Encodes textures of tangent frames into the render target under test.
 #include "frame_code.glsl"
+#define STORAGE_ROUNDS_TWICE
 #include "storage.glsl"
 
 uniform sampler2D normals;  // normal, hand
