@@ -126,7 +126,12 @@ def _agree(rows: dict[str, Any]) -> str:
         found.setdefault(key, {})[row["backend"]] = row["psnr_db"]
     apart = [abs(by["glsl"] - by["jax"]) for by in found.values() if len(by) == 2]
     bound = math.ceil(1e4 * max(apart)) / 1e4
-    return f"{len(apart)} rows of `quality` by GLSL on the H200 are within {bound:.4f} dB of those by JAX."
+    by_both = [row for row in rows["whole"] if "psnr_db_by_llvmpipe" in row]
+    off = math.ceil(1e2 * max(abs(row["psnr_db"] - row["psnr_db_by_llvmpipe"]) for row in by_both)) / 1e2
+    return (
+        f"{len(apart)} rows of `quality` by GLSL on the H200 are within {bound:.4f} dB of those by JAX, and\n"
+        f"images through {len(by_both)} engines' whole layouts within {off:.2f} dB of the software rasteriser's."
+    )
 
 
 def _cost(rows: dict[str, Any]) -> str:

@@ -212,7 +212,9 @@ def _ticks_spec(axis: Axis) -> Spec:
         names = {f"{at:g}": name for at, name in axis.ticks}
         said = f"{json.dumps(names)}[toString(datum.value)]" if any(_is_word(tick) for tick in axis.ticks) else ""
         shown: Spec = {"values": [at for at, _ in axis.ticks], "grid": not said, "domain": not said, "ticks": not said}
-        return shown | ({"labelExpr": said} if said else {"format": "~g"})
+        # "~g" writes 10 as 1e+1 beside 9.
+        is_whole = all(float(at).is_integer() for at, _ in axis.ticks)
+        return shown | ({"labelExpr": said} if said else {"format": "d" if is_whole else "~g"})
     if axis.scale == Scale.COUNT:
         return {"values": list(axis.counts), "format": "d"}
     # Thousands on a linear axis are no powers of ten.

@@ -22,7 +22,11 @@ def curves_chart(rows: Sequence[Row]) -> Chart:
     Args:
         rows: of the curves table, one back end: encoding, rounding, range, bits, display_max.
     """
-    points = [{"line": _called(row), "x": row["bits"], "y": row["display_max"]} for row in rows]
+    points = [
+        {"line": _called(row), "curve": _curve(row), "how": row["rounding"], "x": row["bits"], "y": row["display_max"]}
+        for row in rows
+    ]
+    ways = distinct(points, "how")
     least = min(row["bits"] for row in rows)
     best = min((row for row in rows if row["bits"] == least), key=lambda row: row["display_max"])
     return Chart(
@@ -31,18 +35,28 @@ def curves_chart(rows: Sequence[Row]) -> Chart:
         subtitle="Largest distance of a colour's channel on the sRGB curve, over the bits of its code",
         description="The largest distance of a channel from its decode on the sRGB curve, in 255ths, logarithmic, over "
         "the bits of the code; a line for each curve and way to round. The figures are in the table.",
-        x=Axis(title="bits", scale=Scale.LINEAR),
+        x=Axis(title="bits", ticks=tuple((float(bits), str(bits)) for bits in distinct(rows, "bits"))),
         y=Axis(title="largest distance, steps of 8-bit sRGB", scale=Scale.LOG),
         rows=tuple(points),
-        colour=Names("line", distinct(points, "line")),
+        colour=Names("curve", distinct(points, "curve")),
+        dash=Names("how", ways) if len(ways) > 1 else None,
         marks=(
-            Mark(kind=Kind.LINES, by=("line",), colour="line", tips=(("line", "curve"), ("x", "bits"), ("y", "steps"))),
-            Mark(kind=Kind.ENDS, by=("line",), colour="line", text="line"),
+            Mark(
+                kind=Kind.LINES,
+                by=("line",),
+                colour="curve",
+                dash="how" if len(ways) > 1 else "solid",
+                tips=(("line", "curve"), ("x", "bits"), ("y", "steps")),
+            ),
+            Mark(kind=Kind.ENDS, by=("line",), colour="curve", text="line"),
         ),
     )
 
 
+def _curve(row: Row) -> str:
+    return f"{row['encoding']}" + ("" if row["range"] == 1 else f", range {row['range']:g}")
+
+
 def _called(row: Row) -> str:
     """A curve, and how it is rounded where that is not to the nearest."""
-    way = "" if row["rounding"] == "nearest" else f", {row['rounding']}"
-    return f"{row['encoding']}{way}" + ("" if row["range"] == 1 else f", range {row['range']:g}")
+    return _curve(row) + ("" if row["rounding"] == "nearest" else f", {row['rounding']}")
