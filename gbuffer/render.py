@@ -19,6 +19,7 @@ from .frame.resource import Resource
 from .frame.resources import FINAL, GBUFFER, TERMS
 from .gl.device import Device, read_pixels
 from .layouts.words import LayoutError
+from .pipelines import PIPELINES
 from .readback.resolve import RESOLVE, RESOLVED
 from .readback.unpack import UNPACK, UNPACKED
 from .scenes.scene import Scene
@@ -169,9 +170,11 @@ def check(device: Device, pipeline: Pipeline, plan: Plan, is_metal_rough: bool =
     layout, light = plan.layout, plan.light_buffer
     if is_metal_rough:
         check_metal_rough(pipeline)
-    missing = sorted(pipeline.needs - (layout.metal_rough_components if is_metal_rough else layout.components))
-    if missing:
-        raise LayoutError(f"{pipeline.name} needs {', '.join(missing)}, which layout {layout.name} does not keep")
+    components = layout.metal_rough_components if is_metal_rough else layout.components
+    if missing := sorted(pipeline.needs - components):
+        without = [other.name for other in PIPELINES.values() if other.needs and other.needs <= components]
+        does = f"; {' and '.join(without)} can do without" if without else ""
+        raise LayoutError(f"{pipeline.name} needs {', '.join(missing)}, which layout {layout.name} does not keep{does}")
     if not pipeline.has_gbuffer:
         return
     if plan.light_targets not in pipeline.light_targets:

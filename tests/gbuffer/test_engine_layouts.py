@@ -17,7 +17,7 @@ from normalbench.encodings.storages.storage import STORAGES
 from normalbench.gbuffer.frame.plan import Plan
 from normalbench.gbuffer.layouts.layout import Layout
 from normalbench.gbuffer.layouts.presets import LAYOUTS
-from normalbench.gbuffer.layouts.words import Target, least_carried, spelt_out
+from normalbench.gbuffer.layouts.words import LayoutError, Target, least_carried, spelt_out
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import check, rendering
 from normalbench.gbuffer.scenes.catalogue import SCENES
@@ -123,6 +123,13 @@ def test_a_whole_layout_takes_the_bytes_of_its_engine():
         if one.is_whole
     }
     assert found == WHOLE
+
+
+def test_a_pipeline_that_a_layout_does_not_suit_names_one_that_it_does(gl):
+    granite = plan(LAYOUTS["granite"])
+    said = r"^hybrid needs kind, which layout granite does not keep; deferred can do without$"
+    with pytest.raises(LayoutError, match=said):
+        check(gl, PIPELINES["hybrid"], granite, is_metal_rough=True)
 
 
 def test_a_layout_of_a_normal_alone_says_so():
