@@ -7,6 +7,9 @@ from .table import Column, Role
 ENCODING = Column("encoding", "How a normal becomes a few numbers.", Role.KEY)
 STORAGE = Column("storage", "The texel format that the numbers are stored in.", Role.KEY)
 ROUNDING = Column("rounding", "How the storage rounds.", Role.KEY)
+ROUNDING_OR_DITHERED = Column(
+    "rounding", "How the numbers are rounded; dithered adds blue noise of a step before the nearest.", Role.KEY
+)
 BACKEND = Column(
     "backend", "jax emulates the storage; glsl encodes in a shader into the real target and decodes from it.", Role.KEY
 )

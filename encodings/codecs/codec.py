@@ -13,7 +13,7 @@ import numpy as np
 from ..storages.dither import Dither
 from ..storages.local_range import back, bits_of_bounds, bounds, within
 from ..storages.rounding import numbers_around, store_number
-from ..storages.storage import BITS_32, FORMS, Storage, of_unit
+from ..storages.storage import BITS_32, DITHERED, FORMS, Storage, of_unit
 from ..vec import Vec3, dot, jnp, select
 from .encoding import Encoding
 
@@ -41,7 +41,9 @@ def codec_name(encoding: str, storage: str, rounding: str) -> str:
 
 
 def rounding_misfit(storage: Storage, rounding: str) -> str | None:
-    """Why the numbers of a storage cannot be rounded so, one of `storage.ROUNDINGS`; None where they can."""
+    """Why the numbers of a storage cannot be rounded so, by one of ROUNDINGS or DITHERED; None where they can."""
+    if storage.kind == "float" and rounding == DITHERED:
+        return f"{storage.title}: the steps of floats are not even; noise is for fixed point"
     if storage.kind == "float" and rounding == "truncate_half":
         return f"{storage.title} is of floats, and {rounding} is for fixed point"
     return None

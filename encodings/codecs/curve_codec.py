@@ -9,9 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from ..storages.rounding import store_texel
-from ..storages.storage import Storage
-
-DITHERED = "dithered"
+from ..storages.storage import DITHERED, Storage, rounds_to
+from .codec import rounding_misfit
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,19 +91,12 @@ class CurveCodec:
         """Why the storage cannot hold what the encoding makes; None where it can: every one has a channel."""
         if self.storage.is_centred:
             return "centred numbers have a sign, and a curve's are from 0 to 1"
-        if self.is_dithered and self.storage.kind == "float":
-            return f"{self.storage.title}: the steps of floats are not even; noise is for fixed point"
-        return None
+        return rounding_misfit(self.storage, self.rounding)
 
     @property
     def is_dithered(self) -> bool:
         """Whether noise is added to the number."""
         return self.rounding == DITHERED
-
-    @property
-    def rounds_to(self) -> str:
-        """How what is written is rounded: one of `storage.ROUNDINGS`."""
-        return "nearest" if self.is_dithered else self.rounding
 
     @property
     def step(self) -> float:
@@ -129,7 +121,7 @@ class CurveCodec:
         Args:
             noise: what is added to the number before it is rounded, of the same shape.
         """
-        return store_texel(self.encoding.encode(x, self.range) + noise, self.storage, 0, self.rounds_to)
+        return store_texel(self.encoding.encode(x, self.range) + noise, self.storage, 0, rounds_to(self.rounding))
 
     def round_trip(self, x: Any, noise: Any = 0.0) -> Any:
         """Quantities encoded, stored and decoded; see `stored`."""

@@ -9,8 +9,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from ..storages.dither import Dither
 from ..storages.rounding import store_number
-from ..storages.storage import Storage, of_unit
+from ..storages.storage import DITHERED, Storage, of_unit, rounds_to
 from ..vec import Vec2
 from .codec import codec_name, numbers_misfit, rounding_misfit
 
@@ -75,7 +76,8 @@ class MotionEncoding:
 
 @dataclass(frozen=True)
 class MotionCodec:
-    """A motion encoding, the storage of its two numbers, the first of the storage's channels, and how that rounds."""
+    """A motion encoding, the storage of its two numbers, the first of the storage's channels, and how that rounds: one
+    of `storage.ROUNDINGS`, or DITHERED."""
 
     encoding: MotionEncoding
     storage: Storage
@@ -93,6 +95,15 @@ class MotionCodec:
     def misfit(self) -> str | None:
         """Why the storage cannot hold what the encoding makes; None where it can."""
         return numbers_misfit(self.storage, [0] * NUMBERS) or rounding_misfit(self.storage, self.rounding)
+
+    @property
+    def is_dithered(self) -> bool:
+        """Whether noise is added to its numbers before they are rounded to the nearest."""
+        return self.rounding == DITHERED
+
+    def dither(self, frame: int) -> Dither:
+        """The noise of a whole step for its numbers in a frame."""
+        return Dither(tuple(map(self.storage.step, range(NUMBERS))), frame)
 
     @property
     def bits(self) -> int:
@@ -121,19 +132,21 @@ class MotionCodec:
         """Whether motions beyond the range come back as the range."""
         return self.storage.kind != "float"
 
-    def stored(self, motion: Vec2, largest) -> Vec2:
+    def stored(self, motion: Vec2, largest, noise: Vec2 | None = None) -> Vec2:
         """The code of motions as it comes back from the storage.
 
         Args:
             motion: screens a frame, float32 of any shape.
             largest: the range, float32 scalar; not used where `needs_range` is not.
+            noise: what is added to the numbers before they are rounded, of the same shape; None for nothing.
         """
         code = self.encoding.encode(motion, self._range_or_one(largest))
-        return Vec2(*(store_number(c, self.storage, i, self.rounding) for i, c in enumerate(code)))
+        noisy, rounding = (code + noise if noise else code), rounds_to(self.rounding)
+        return Vec2(*(store_number(c, self.storage, i, rounding) for i, c in enumerate(noisy)))
 
-    def round_trip(self, motion: Vec2, largest) -> Vec2:
+    def round_trip(self, motion: Vec2, largest, noise: Vec2 | None = None) -> Vec2:
         """Motions encoded, stored and decoded; see `stored`."""
-        return self.encoding.decode(self.stored(motion, largest), self._range_or_one(largest))
+        return self.encoding.decode(self.stored(motion, largest, noise), self._range_or_one(largest))
 
     def _range_or_one(self, largest):
         return largest if self.needs_range else 1.0

@@ -39,6 +39,13 @@ class Dither:
         return noise
 
 
+def laid_out(noise: np.ndarray, width: int, count: int) -> np.ndarray:
+    """What is added to the codes of so many pixels of a picture `width` wide, row by row, where noise of shape (height,
+    width, 4) repeats: of shape (count, 4), as the shader reads it (`dither.glsl`)."""
+    rows, columns = np.divmod(np.arange(count), width)
+    return noise[rows % noise.shape[0], columns % noise.shape[1]]
+
+
 def _tile_from(place: int) -> np.ndarray:
     """The tile from a pixel on, the first one for place 0."""
     return np.roll(blue_noise(), [-int(SIZE * (place / RATIO**axis % 1.0)) for axis in (1, 2)], axis=(0, 1))

@@ -18,6 +18,13 @@ from types import MappingProxyType
 import numpy as np
 
 ROUNDINGS = ("nearest", "truncate", "truncate_half")
+# Noise of a step, then to the nearest: of codecs whose measure gives the noise.
+DITHERED = "dithered"
+
+
+def rounds_to(rounding: str) -> str:
+    """How a number is rounded once noise was added where that is asked for: one of ROUNDINGS."""
+    return "nearest" if rounding == DITHERED else rounding
 
 
 @dataclass(frozen=True)

@@ -41,6 +41,11 @@ def set_uniforms(program: Any, values: Mapping[str, Any]) -> None:
             program[name].value = value
 
 
+def dithering(noise: np.ndarray | None) -> tuple[dict[str, object], Tables]:
+    """The macro of `dither.glsl` and its look-up table, of noise of shape (height, width, 4) or of none."""
+    return {"DITHERED": int(noise is not None)}, lambda: {} if noise is None else {"dither": noise}
+
+
 class Passes:
     """A pass that encodes into targets and one that decodes from them; a context manager that releases both.
 

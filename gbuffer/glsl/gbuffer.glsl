@@ -11,19 +11,15 @@
 #endif
 
 #ifdef WRITES_GBUFFER
+#include "dither.glsl"
 layout(location = 0) out vec4 texels[TARGETS];
-#if DITHERED
-uniform sampler2D dither;  // what is added to the numbers of a normal's code, by pixel; it repeats
-#endif
 
 void write_gbuffer(Surface s) {
     float numbers[NUMBERS];
     mat3 axes = WORLD_SPACE != 0 ? mat3(view_to_world) : mat3(1.0);
     const float scales[] = NORMAL_SCALE;
     vec4 code = widen(encoded(direction_or_forward(axes * s.direction), axes * s.position, scales, NORMAL_BIASED != 0));
-#if DITHERED
-    code += texelFetch(dither, ivec2(gl_FragCoord.xy) % textureSize(dither, 0), 0);
-#endif
+    code = dithered(code);
     for (int i = 0; i < DEPTH; ++i) numbers[i] = code[i];
     numbers[DEPTH] = SIGN_IN_DEPTH != 0 ? code[SIGN_NUMBER] * -s.position.z : -s.position.z;
     for (int i = 0; i < 3; ++i) {

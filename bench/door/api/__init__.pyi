@@ -752,7 +752,7 @@ def vectors(
     Args:
         encoding: Motion codes or files of yours, comma-separated, or all; `normalbench list` shows them.
         storage: Motion storages, comma-separated, or all; `normalbench list` shows them. Default: each code's usual.
-        rounding: nearest, truncate, truncate_half; comma-separated, or all.
+        rounding: nearest, truncate, truncate_half, dithered; comma-separated, or all.
         backend: jax, glsl; comma-separated, or all.
         speed: Speeds in pixels a frame, comma-separated.
         size: WIDTHxHEIGHT of the image.

@@ -50,6 +50,10 @@ StorageNames = Annotated[
 Roundings = Annotated[
     str, Option("--rounding", "nearest, truncate, truncate_half; comma-separated, or all.", in_run=True)
 ]
+# Of a table that adds noise as well.
+RoundingsAndDithered = Annotated[
+    str, Option("--rounding", "nearest, truncate, truncate_half, dithered; comma-separated, or all.", in_run=True)
+]
 Normals = Annotated[str, Option("--normals", f"Normal sets or files, {Names}.", files=True, in_run=True)]
 Backends = Annotated[str, Option("--backend", "jax, glsl; comma-separated, or all.", in_run=True)]
 # Of a table that measures by WGSL on Vulkan as well.

@@ -32,7 +32,7 @@ DISPLAY = "on the sRGB curve, in steps of 8 bits, of quantities that are evenly 
 COLUMNS = (
     Column("encoding", "How a quantity becomes a number.", KEY),
     shared.STORAGE,
-    Column("rounding", "How the number is rounded; dithered adds blue noise of a step before the nearest.", KEY),
+    shared.ROUNDING_OR_DITHERED,
     shared.BACKEND,
     Column("range", "The largest quantity that is kept.", KEY),
     Column("bits", "Bits of the code: those of a channel."),

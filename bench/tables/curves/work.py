@@ -6,9 +6,9 @@ import math
 from collections.abc import Iterator, Sequence
 
 from ....encodings.catalogue import CURVE_ENCODINGS
-from ....encodings.codecs.curve_codec import DITHERED, CurveCodec
+from ....encodings.codecs.curve_codec import CurveCodec
 from ....encodings.codecs.kind import CURVE
-from ....encodings.storages.storage import CURVE_STORAGES
+from ....encodings.storages.storage import CURVE_STORAGES, DITHERED
 from ...ground.choose import choose
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.backends import backends_named

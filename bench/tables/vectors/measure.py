@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import cache
 from types import MappingProxyType
@@ -15,6 +15,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ....encodings.codecs.motion_codec import NUMBERS, MotionCodec, MotionEncoding
+from ....encodings.storages.dither import laid_out
 from ....encodings.storages.rounding import fixed, shared
 from ....encodings.storages.storage import Storage
 from ....encodings.vec import Vec2
@@ -33,6 +34,8 @@ Row = dict[str, Any]
 # float32 motions of shape (count, 2), in screens, to what they come back as.
 Trip = Callable[[np.ndarray], np.ndarray]
 How = dict[str, str]
+# What is added to the codes of CHUNK motions, by pixel of a picture of WIDTH: float32 of shape (height, width, 4).
+Noise = np.ndarray | None
 
 
 @dataclass(frozen=True)
@@ -61,27 +64,29 @@ class Case:
 
 @cache
 def _compiled_trip(encoding: MotionEncoding, storage: Storage, rounding: str) -> Callable[..., Any]:
-    def trip(motions, largest, scales):
-        return jnp.stack(MotionCodec(encoding, fixed(storage, scales), rounding).round_trip(Vec2(*motions), largest))
+    def trip(motions, largest, scales, noise):
+        codec, added = MotionCodec(encoding, fixed(storage, scales), rounding), None if noise is None else Vec2(*noise)
+        return jnp.stack(codec.round_trip(Vec2(*motions), largest, added))
 
     return jax.jit(trip)
 
 
 @contextmanager
-def _trip_by_jax(codec: MotionCodec, largest: float) -> Iterator[tuple[Trip, How]]:
+def _trip_by_jax(codec: MotionCodec, largest: float, noise: Noise) -> Iterator[tuple[Trip, How]]:
     like, scales = shared(codec.storage, NUMBERS)
     compiled = _compiled_trip(codec.encoding, like, codec.rounding)
+    added = None if noise is None else np.ascontiguousarray(laid_out(noise, WIDTH, CHUNK)[:, :NUMBERS].T)
 
     def trip(motions: np.ndarray) -> np.ndarray:
-        return np.asarray(compiled(np.ascontiguousarray(motions.T), np.float32(largest), scales)).T
+        return np.asarray(compiled(np.ascontiguousarray(motions.T), np.float32(largest), scales, added)).T
 
     yield trip, {"device": jax.devices()[0].device_kind, "rounded_by": "emulation"}
 
 
 @contextmanager
-def _trip_by_glsl(codec: MotionCodec, largest: float) -> Iterator[tuple[Trip, How]]:
+def _trip_by_glsl(codec: MotionCodec, largest: float, noise: Noise) -> Iterator[tuple[Trip, How]]:
     gl = device()
-    with MotionPasses(gl, codec) as passes:
+    with MotionPasses(gl, codec, noise) as passes:
 
         def trip(motions: np.ndarray) -> np.ndarray:
             return passes.round_trip(motions.reshape(-1, WIDTH, NUMBERS), largest).reshape(-1, NUMBERS)
@@ -89,7 +94,7 @@ def _trip_by_glsl(codec: MotionCodec, largest: float) -> Iterator[tuple[Trip, Ho
         yield trip, {"device": gl.renderer, "rounded_by": passes.rounded_by}
 
 
-Backend = Callable[[MotionCodec, float], AbstractContextManager[tuple[Trip, How]]]
+Backend = Callable[[MotionCodec, float, Noise], AbstractContextManager[tuple[Trip, How]]]
 BACKENDS: Mapping[str, Backend] = MappingProxyType({"jax": _trip_by_jax, "glsl": _trip_by_glsl})
 
 
@@ -97,14 +102,23 @@ def measure(case: Case) -> list[Row]:
     """A row for each speed; rows that the device cannot give have the reason in `skipped` and no figures."""
     rows = [_case_columns(case, speed) for speed in case.speeds]
     try:
-        with BACKENDS[case.backend](case.codec, case.largest) as (trip, how):
-            trip = _of_any_count(trip)
-            rest = trip(np.zeros((1, NUMBERS), np.float32))
-            both = {"still_px": _length_px(rest, case.paths.size), "least_px": _least_speed_px(trip, rest, case)}
+        with ExitStack() as stack:
+            # Rest, and what is just told from it, are exact cases: they have no noise.
+            exact, how = stack.enter_context(BACKENDS[case.backend](case.codec, case.largest, None))
+            still = _of_any_count(exact)
+            rest = still(np.zeros((1, NUMBERS), np.float32))
+            both = {"still_px": _length_px(rest, case.paths.size), "least_px": _least_speed_px(still, rest, case)}
+            trip = _noisy_trip(stack, case) if case.codec.is_dithered else exact
             found = [_figures(case, speed, trip, rest) for speed in case.speeds]
     except UNMEASURABLE as error:
         return [row | {"skipped": str(error)} for row in rows]
     return [row | both | figures | how for row, figures in zip(rows, found, strict=True)]
+
+
+def _noisy_trip(stack: ExitStack, case: Case) -> Trip:
+    """The trip with noise of its own for each frame, whose points lie below those of the frame before."""
+    noise = np.concatenate([case.codec.dither(frame).added[: POINTS // WIDTH] for frame in range(FRAMES)])
+    return stack.enter_context(BACKENDS[case.backend](case.codec, case.largest, noise))[0]
 
 
 def _case_columns(case: Case, speed: float) -> Row:
@@ -144,7 +158,7 @@ def _figures(case: Case, speed: float, trip: Trip, rest: np.ndarray) -> Row:
     """
     total, largest, lost, clipped, square = 0.0, 0.0, 0, 0, 0.0
     for motions in case.paths.chunks(speed):
-        found = trip(motions.reshape(-1, NUMBERS)).reshape(motions.shape)
+        found = _through(trip, motions)
         apart = (found.astype(np.float64) - motions) * case.paths.size
         errors = np.hypot(apart[..., 0], apart[..., 1])
         total, largest = total + errors.sum(), max(largest, errors.max())
@@ -159,6 +173,14 @@ def _figures(case: Case, speed: float, trip: Trip, rest: np.ndarray) -> Row:
         "clipped_percent": 100 * clipped / count if case.codec.clips else 0.0,
         "drift_px": math.sqrt(square / case.paths.count),
     }
+
+
+def _through(trip: Trip, motions: np.ndarray) -> np.ndarray:
+    """Motions of up to POINTS points in all frames as they come back. The last point is repeated up to POINTS, so that
+    every frame has its place."""
+    count = motions.shape[1]
+    whole = np.pad(motions, ((0, 0), (0, POINTS - count), (0, 0)), mode="edge")
+    return trip(whole.reshape(-1, NUMBERS)).reshape(whole.shape)[:, :count]
 
 
 def _least_speed_px(trip: Trip, rest: np.ndarray, case: Case) -> float:

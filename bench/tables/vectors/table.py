@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from ...ground.options.option import Backends, Names, Option, Roundings, Seed
+from ...ground.options.option import Backends, Names, Option, RoundingsAndDithered, Seed
 from ...shaders.languages.source_options import SourceOptions
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
@@ -19,7 +19,7 @@ class VectorsOptions(SourceOptions):
 
     encoding: Annotated[str, Option("--encoding", f"Motion codes or files of yours, {Names}.", files=True)] = "all"
     storage: Annotated[str | None, Option("--storage", f"Motion storages, {Names}. Default: each code's usual.")] = None
-    rounding: Roundings = "nearest"
+    rounding: RoundingsAndDithered = "nearest"
     backend: Backends = "jax,glsl"
     speed: Annotated[str, Option("--speed", "Speeds in pixels a frame, comma-separated.")] = "0.05,0.25,1,4,16,64"
     size: Annotated[str, Option("--size", "WIDTHxHEIGHT of the image.")] = "1920x1080"
@@ -33,7 +33,7 @@ class VectorsOptions(SourceOptions):
 COLUMNS = (
     Column("encoding", "How a motion vector becomes two numbers.", KEY),
     shared.STORAGE,
-    shared.ROUNDING,
+    shared.ROUNDING_OR_DITHERED,
     shared.BACKEND,
     Column(
         "range",

@@ -6,7 +6,7 @@ import numpy as np
 
 from ....encodings import vec
 from ....encodings.codecs.curve_codec import CurveCodec, CurveEncoding
-from ....encodings.storages.storage import STORAGES
+from ....encodings.storages.storage import STORAGES, rounds_to
 from ...gl.device import Device
 from ..codec_passes import rounding_defines
 from ..harness import Passes, check_functions, exact, set_uniforms
@@ -39,7 +39,7 @@ class CurvePasses(Passes):
     """
 
     def __init__(self, device: Device, codec: CurveCodec):
-        self.rounded_by, rounds = rounding_defines(device, codec.storage, codec.rounds_to)
+        self.rounded_by, rounds = rounding_defines(device, codec.storage, rounds_to(codec.rounding))
         # A curve's number is a texel's, whatever its format.
         rounds["STORAGE_BIASED"] = 0
         shaders, names = ("curve_encode.frag", "curve_decode.frag"), {"CURVE_ENCODING": codec.encoding.glsl}

@@ -6,10 +6,10 @@ import numpy as np
 
 from ....encodings import vec
 from ....encodings.codecs.motion_codec import MotionCodec, MotionEncoding
-from ....encodings.storages.storage import STORAGES
+from ....encodings.storages.storage import STORAGES, rounds_to
 from ...gl.device import Device
 from ..codec_passes import rounding_defines
-from ..harness import Passes, check_functions, exact, set_uniforms
+from ..harness import Passes, check_functions, dithering, exact, set_uniforms
 
 
 def motion_defines(encoding: MotionEncoding, needs_range: bool) -> dict[str, object]:
@@ -31,6 +31,9 @@ def motion_defines(encoding: MotionEncoding, needs_range: bool) -> dict[str, obj
 class MotionPasses(Passes):
     """A motion codec on a GL device; a context manager that releases what it holds there.
 
+    Args:
+        noise: what is added to the codes, by pixel, float32 of shape (height, width, 4); it repeats. None for nothing.
+
     Attributes:
         rounded_by: "device" where the format's own conversion rounds as the codec asks, else "shader".
 
@@ -39,12 +42,13 @@ class MotionPasses(Passes):
         FormatError: the device cannot render to the storage's format.
     """
 
-    def __init__(self, device: Device, codec: MotionCodec):
+    def __init__(self, device: Device, codec: MotionCodec, noise: np.ndarray | None = None):
         storage = codec.storage
-        self.rounded_by, rounds = rounding_defines(device, storage, codec.rounding)
-        defines = motion_defines(codec.encoding, codec.needs_range) | rounds
+        self.rounded_by, rounds = rounding_defines(device, storage, rounds_to(codec.rounding))
+        added, tables = dithering(noise)
+        defines = motion_defines(codec.encoding, codec.needs_range) | rounds | added
         shaders, names = ("motion_encode.frag", "motion_decode.frag"), {"MOTION_ENCODING": codec.encoding.glsl}
-        super().__init__(device, shaders, defines, names, {"texels": storage.target})
+        super().__init__(device, shaders, defines, names, {"texels": storage.target}, tables)
 
     def round_trip(self, motions: np.ndarray, largest: float) -> np.ndarray:
         """Motions in screens a frame, float32 of shape (height, width, 2), encoded, stored and decoded.

@@ -2,6 +2,7 @@
 
 import json
 import math
+from contextlib import ExitStack
 from functools import cache
 
 import jax.numpy as jnp
@@ -51,14 +52,60 @@ def test_half_floats_that_are_cut_off_are_short_by_up_to_a_unit():
 
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("storage", ["rg16f", "rg8", "rg8_snorm", "rg8_centred"])
-@pytest.mark.parametrize("rounding", ["truncate", "truncate_half"])
-def test_both_languages_cut_off_alike(storage, rounding):
-    if (storage, rounding) == ("rg16f", "truncate_half"):
+@pytest.mark.parametrize("rounding", ["truncate", "truncate_half", "dithered"])
+def test_both_languages_round_alike(storage, rounding):
+    if storage == "rg16f" and rounding != "truncate":
         assert "fixed point" in str(MotionCodec(MOTION_ENCODINGS["linear"], MOTION_STORAGES[storage], rounding).misfit)
         return
     by_jax, by_gl = (row(f"linear/{storage}", 64, 1.0, backend, rounding) for backend in ("jax", "glsl"))
     for name in ("error_mean_px", "error_max_px", "still_px"):
         assert by_jax[name] == pytest.approx(by_gl[name], rel=2e-3, abs=1e-6), name
+
+
+@pytest.mark.parametrize("storage", ["rg8", "rg8_snorm", "rg8_centred"])
+def test_the_mean_of_dithered_codes_is_the_number(storage):
+    """And each is off by a third of a step on average: by 1 - p for a share p of the pixels, by p for the others."""
+    codec = MotionCodec(MOTION_ENCODINGS["linear"], MOTION_STORAGES[storage], "dithered")
+    step = codec.storage.step(0)
+    numbers = np.random.default_rng(3).uniform(-0.95, 0.95, (2, 64, 1)).astype(np.float32)
+    noise = np.concatenate([codec.dither(frame).added.reshape(-1, 4)[:, :2] for frame in range(2)]).T[:, None]
+    given, added = np.broadcast_arrays(numbers, noise)
+    stored = np.array(codec.stored(Vec2(*map(jnp.asarray, given)), 1.0, Vec2(*map(jnp.asarray, added))), np.float64)
+    assert abs(stored.mean(axis=2) - numbers[..., 0]).max() < 2e-3 * step
+    assert abs(stored - numbers).mean() == pytest.approx(step / 3, rel=0.05)
+    assert abs(stored - numbers).max() < step * 1.001
+
+
+def test_noise_moves_from_frame_to_frame_so_that_errors_do_not_add_up():
+    """In steps, the errors e of a component have the density 1 - |e|, and each frame has its own."""
+    x, y = (side / (65535 / 2) for side in SIZE)
+    u, v = np.meshgrid(*[np.linspace(-1, 1, 402)[1:-1]] * 2)
+    share = (1 - abs(u)) * (1 - abs(v))
+    found = row("linear/rg16", 16.0, rounding="dithered")
+    assert found["error_mean_px"] == pytest.approx((np.hypot(x * u, y * v) * share).sum() / share.sum(), rel=0.01)
+    assert found["error_max_px"] < math.hypot(x, y)
+    assert found["drift_px"] == pytest.approx(math.sqrt(FRAMES * (x * x + y * y) / 6), rel=0.03)
+
+
+def test_slow_dithered_motion_does_not_drift_to_one_side():
+    """UNORM has a code half a step above rest and one half a step below, which dithered motions take in turn. What is
+    asked of single motions has no noise."""
+    dithered, nearest = (row("linear/rg8", 0.05, rounding=rounding) for rounding in ("dithered", "nearest"))
+    half = math.hypot(*(side / 255 for side in SIZE))
+    assert dithered["drift_px"] == pytest.approx(math.sqrt(FRAMES) * half, rel=0.03)
+    assert nearest["drift_px"] == pytest.approx(FRAMES * half, rel=0.05)
+    assert [dithered[name] for name in ("still_px", "least_px")] == [nearest[name] for name in ("still_px", "least_px")]
+
+
+def test_few_points_have_the_noise_of_their_frames():
+    """Point by point as with more of them: the motions of a frame lie where that frame's noise does."""
+    codec = MotionCodec(MOTION_ENCODINGS["linear"], MOTION_STORAGES["rg8"], "dithered")
+    case = vectors.Case(codec, "jax", 1.0, (1.0,), Paths(POINTS, 0, SIZE))
+    motions = next(case.paths.chunks(1.0))
+    with ExitStack() as stack:
+        trip = vectors._noisy_trip(stack, case)
+        many, few = vectors._through(trip, motions), vectors._through(trip, motions[:, :10])
+    assert np.array_equal(many[:, :10], few) and np.ptp(few, axis=0).any()
 
 
 def mean_in_a_rectangle(a: float, b: float) -> float:
@@ -250,6 +297,7 @@ BAD = {
     "an encoding": (["--encoding", "cubic"], ["'cubic'", "linear", "sqrt", "log"]),
     "a storage": (["--storage", "rg9"], ["'rg9'", "rg16_centred", "rgb10a2"]),
     "a back end": (["--backend", "vulkan"], ["'vulkan'", "jax", "glsl"]),
+    "a way to round": (["--rounding", "up"], ["'up'", "truncate", "dithered"]),
     "no speed": (["--speed", "0"], ["--speed 0", "1e-06"]),
     "a speed that is a word": (["--speed", "fast"], ["--speed fast", "numbers from"]),
     "a speed that is not a number": (["--speed", "nan"], ["--speed nan"]),

@@ -8,6 +8,7 @@ import numpy as np
 from .....encodings.codecs.curve_codec import CurveCodec
 from .....encodings.codecs.kind import CURVE
 from .....encodings.storages.rounding import store_texel
+from .....encodings.storages.storage import rounds_to
 from .....gbuffer.codecs.curve.curve_passes import curve_constants
 from .code_kind import COUNT, CodeKind, Numbers
 from .own import by_device, is_in
@@ -21,7 +22,7 @@ def _values(codec: CurveCodec) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _store(codec: CurveCodec, codes: np.ndarray) -> np.ndarray:
-    return np.asarray(store_texel(jnp.asarray(codes[:, 0]), codec.storage, 0, codec.rounds_to))[:, None]
+    return np.asarray(store_texel(jnp.asarray(codes[:, 0]), codec.storage, 0, rounds_to(codec.rounding)))[:, None]
 
 
 def _defines(codec: CurveCodec) -> dict[str, object]:
@@ -37,7 +38,7 @@ KIND = CodeKind(
     settings={},
     result=lambda _: 1,
     defines=_defines,
-    numbers=lambda codec: Numbers(codec.storage, (codec.rounds_to,), False, 1),
+    numbers=lambda codec: Numbers(codec.storage, (rounds_to(codec.rounding),), False, 1),
     values=_values,
     stored=lambda codec, n, _: codec.stored(n[:, 0]),
     decoded=lambda codec, code, _: codec.encoding.decode(code, codec.range),
