@@ -13,7 +13,7 @@ import numpy as np
 from ..storages.dither import Dither
 from ..storages.local_range import back, bits_of_bounds, bounds, within
 from ..storages.rounding import numbers_around, store_number
-from ..storages.storage import BITS_32, DITHERED, FORMS, Storage, of_unit
+from ..storages.storage import BITS_32, DITHERED, FORMS, Storage, of_unit, rounds_to
 from ..vec import Vec3, dot, jnp, select
 from .encoding import Encoding
 
@@ -51,7 +51,7 @@ def rounding_misfit(storage: Storage, rounding: str) -> str | None:
 
 @dataclass(frozen=True)
 class Codec:
-    """An encoding, the storage of its components, and how that rounds: one of `storage.ROUNDINGS`.
+    """An encoding, the storage of its components, and how that rounds: one of `storage.ROUNDINGS`, or DITHERED.
 
     An encoding of numbers in [0, 1] fills every storage with these, signed ones as well. One that packs by itself has a
     storage of its own, whatever is given.
@@ -64,7 +64,8 @@ class Codec:
     def __post_init__(self) -> None:
         if self.encoding.is_packed:
             object.__setattr__(self, "storage", BITS_32)
-            object.__setattr__(self, "rounding", "nearest")
+            # An integer is as it is made; noise, which would make another one of it, does not fit.
+            object.__setattr__(self, "rounding", DITHERED if self.is_dithered else "nearest")
         if self.encoding.is_unit:
             object.__setattr__(self, "storage", of_unit(self.storage))
 
@@ -84,7 +85,7 @@ class Codec:
         levels = [encoding.levels_of(channel) for channel in range(encoding.components)]
         if len(levels) > storage.channels:
             return numbers_misfit(storage, levels)
-        if misfit := rounding_misfit(storage, self.rounding):
+        if misfit := rounding_misfit(storage, self.rounding) or self._not_with_noise:
             return misfit
         if storage.kind == "float" and encoding.is_precise:
             return f"{storage.title} is of floats, and precise rounding is for fixed point"
@@ -95,6 +96,20 @@ class Codec:
         if encoding.is_half and self._not_in_half:
             return f"{self._not_in_half} for half arithmetic"
         return numbers_misfit(storage, levels)
+
+    @property
+    def is_dithered(self) -> bool:
+        """Whether noise is added to its numbers before they are rounded to the nearest."""
+        return self.rounding == DITHERED
+
+    @property
+    def _not_with_noise(self) -> str:
+        """Why noise, where it is asked for, is not added by what measures it; empty where it is."""
+        if not self.is_dithered:
+            return ""
+        if self.encoding.is_half or self.encoding.before or self.encoding.patch:
+            return "noise is for one code in float32, of steps that are the same everywhere"
+        return self.undithered or ""
 
     @property
     def _not_in_half(self) -> str:
@@ -116,7 +131,7 @@ class Codec:
         encoding = self.encoding
         if encoding.is_packed or (encoding.levels and all(encoding.levels)):
             return "its code is chosen among whole numbers, as an index is, and noise would choose another one"
-        if encoding.is_precise or self.rounding != "nearest":
+        if encoding.is_precise or rounds_to(self.rounding) != "nearest":
             return "noise is for numbers that are rounded to the nearest"
         if self.storage.kind == "float":
             return f"{self.storage.title}: the steps of floats are not even"
@@ -173,7 +188,7 @@ class Codec:
 
     def rounding_of(self, component: int) -> str:
         """How a component rounds: one of few values to the nearest, whatever the others do."""
-        return "nearest" if self.encoding.levels_of(component) else self.rounding
+        return "nearest" if self.encoding.levels_of(component) else rounds_to(self.rounding)
 
     def store(self, code):
         """A code (Vec2 or Vec3) as it comes back from the storage. A sign bit comes back as it was."""
@@ -183,11 +198,17 @@ class Codec:
         )
         return type(code)(*stored)
 
-    def stored(self, n: Vec3, view: Vec3):
-        """The code of unit normals as it comes back from the storage."""
+    def stored(self, n: Vec3, view: Vec3, noise: Sequence | None = None):
+        """The code of unit normals as it comes back from the storage.
+
+        Args:
+            noise: what is added to three numbers before they are rounded, planes of the normals' shape.
+        """
         # A number chosen from constants has no width of its own; half arithmetic has another one.
         dtype = jnp.float16 if self.encoding.is_half else n.z.dtype
         code = type(code := self.encoding.encode(n, view))(*(jnp.asarray(c, dtype) for c in code))
+        if noise is not None:
+            code = type(code)(*(c + added for c, added in zip(code, noise, strict=False)))
         if self.encoding.patch:
             return self._stored_in_patches(code)
         return self.store(self._nearest_of(code, n, view) if self.encoding.is_precise else code)
@@ -212,9 +233,10 @@ class Codec:
         misses = [n - self.encoding.decode(candidate, view) for candidate in codes]
         return reduce(_nearer, zip((dot(miss, miss) for miss in misses), codes, strict=True))[1]
 
-    def round_trip(self, n: Vec3, view: Vec3) -> Vec3:
-        """Unit normals (any shape, as `from_array` makes them) encoded, stored and decoded; not renormalised."""
-        decoded = self.encoding.decode(self.stored(n, view), view)
+    def round_trip(self, n: Vec3, view: Vec3, noise: Sequence | None = None) -> Vec3:
+        """Unit normals (any shape, as `from_array` makes them) encoded, stored and decoded; not renormalised. See
+        `stored`."""
+        decoded = self.encoding.decode(self.stored(n, view, noise), view)
         # A component that is a number of Python, or of another type, becomes one for each normal.
         return Vec3(*(jnp.broadcast_to(jnp.asarray(c, n.z.dtype), jnp.shape(n.z)) for c in decoded))
 

@@ -10,10 +10,10 @@ import numpy as np
 from ...encodings import vec
 from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.encoding import AXES, Encoding
-from ...encodings.storages.storage import R32F, ROUNDINGS, STORAGES, Storage
+from ...encodings.storages.storage import R32F, ROUNDINGS, STORAGES, Storage, rounds_to
 from ..gl.device import Device
 from ..gl.shader import ShaderError
-from .harness import Passes, check_functions, exact, takes_view
+from .harness import Passes, check_functions, dithering, exact, takes_view
 
 # What a renderer of 32 bits does not draw.
 BY_JAX = "quality, mix and motion measure"
@@ -138,11 +138,12 @@ class CodecPasses(Passes):
         encoding, storage = codec.encoding, codec.storage
         self._before = CodecPasses(device, encoding.before) if encoding.before else None
         channels = [codec.rounding_of(channel) for channel in range(storage.channels)]
-        self.rounded_by, rounds = rounding_defines(device, storage, codec.rounding, channels)
-        defines = encoding_defines(replace(encoding, before=None)) | rounds
+        self.rounded_by, rounds = rounding_defines(device, storage, rounds_to(codec.rounding), channels)
+        added, noise = dithering(codec.dither(0).added if codec.is_dithered else None)
+        defines = encoding_defines(replace(encoding, before=None)) | rounds | added
         formats = {"texels": storage.target} | ({"signed_depths": R32F} if encoding.sign_bits else {})
         shaders, names = ("encode.frag", "decode.frag"), {"ENCODING": encoding.glsl}
-        super().__init__(device, shaders, defines, names, formats, encoding.tables)
+        super().__init__(device, shaders, defines, names, formats, lambda: {**encoding.tables(), **noise()})
 
     def __exit__(self, *error: object) -> None:
         if self._before:

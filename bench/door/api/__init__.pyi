@@ -136,7 +136,7 @@ def quality(
     Args:
         encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
         storage: Storages, comma-separated, or all; `normalbench list` shows them. Any bits are one too: unorm:9:7, snorm:12:12, unorm:4:4..16:16.
-        rounding: nearest, truncate, truncate_half; comma-separated, or all.
+        rounding: nearest, truncate, truncate_half, dithered; comma-separated, or all.
         arithmetic: What codes are computed in: float (32 bits), half (every step rounded to 16 bits), or declared: float, and half as well for a file that declares half, min16float, float16_t or mediump; comma-separated, or all.
         normals: Normal sets or files, comma-separated, or all; `normalbench list` shows them. `domain` is all that a code is made for: sphere and axes, or hemisphere.
         backend: jax, glsl, wgsl; comma-separated, or all.

@@ -39,8 +39,10 @@ def program(codec: Codec) -> Record:
     """A codec as the page's scripts read it; flat but for `channels` and `tables`.
 
     Raises:
-        NotLiveError: its GLSL cannot be translated, or its look-up tables are too large.
+        NotLiveError: its GLSL cannot be translated, its look-up tables are too large, or noise is added to its numbers.
     """
+    if codec.is_dithered:
+        raise NotLiveError(f"{codec.name}: a page adds no noise")
     if what := codec.storage.only_measured:
         raise NotLiveError(f"{codec.name}: a page does not read {what}")
     try:

@@ -13,6 +13,7 @@ from ....encodings.catalogue import ENCODINGS
 from ....encodings.codecs.codec import Codec
 from ....encodings.codecs.encoding import Encoding
 from ....encodings.codecs.variants import ARITHMETICS, DECLARED, FLOAT, HALF, in_half
+from ....encodings.storages.storage import ROUNDINGS
 from ....encodings.vec import Vec3
 from ...ground.choose import choose, names_a_file
 from ...ground.options.storage_names import roundings_named, storages_named
@@ -25,12 +26,18 @@ from .user_encodings import encodings_named
 
 
 def codecs_named(
-    encodings: str, storages: str, roundings: str, arithmetics: str = FLOAT, has_patches: bool = False
+    encodings: str,
+    storages: str,
+    roundings: str,
+    arithmetics: str = FLOAT,
+    has_patches: bool = False,
+    known_roundings: Sequence[str] = ROUNDINGS,
 ) -> list[Codec]:
     """Every combination of comma-separated names, users' encodings from files among them.
 
     Args:
         has_patches: whether what is measured has neighbours that may share a range.
+        known_roundings: what names of roundings may be.
 
     Raises:
         UsageError: an unknown name, or codes within ranges where none are.
@@ -42,7 +49,7 @@ def codecs_named(
     made = (
         Codec(encoding, storage, rounding)
         for storage in storages_named(storages)
-        for rounding in roundings_named(roundings)
+        for rounding in roundings_named(roundings, known_roundings)
         for encoding in chosen
     )
     # One with a storage of its own is one codec, however many storages are named.

@@ -17,8 +17,9 @@ import numpy as np
 
 from ....encodings.codecs.codec import Codec
 from ....encodings.codecs.encoding import Encoding
+from ....encodings.storages.dither import laid_out
 from ....encodings.storages.rounding import Scale, fixed, shared
-from ....encodings.storages.storage import Storage
+from ....encodings.storages.storage import DITHERED, Storage
 from ....encodings.vec import Vec3
 from ....gbuffer.codecs.codec_passes import CodecPasses
 from ....gbuffer.gl.device import device
@@ -100,11 +101,24 @@ class Case:
 @cache
 def meter_of(codec: Codec, is_compiled: bool) -> Measures:
     """What measures a codec; compiled by the C compiler if asked for, where there is one that can."""
-    like, scales = shared(codec.storage, codec.encoding.components)
-    if is_compiled:
+    # Noise is of pixels, and what the C compiler is given is of each normal by itself.
+    if is_compiled and not codec.is_dithered:
+        like, scales = shared(codec.storage, codec.encoding.components)
         with suppress(NoCompilerError, NotElementwiseError):
             return NativeMeter(_trip(codec.encoding, like, codec.rounding), scales)
-    return Meter(_program(codec.encoding, like, codec.rounding), scales)
+    return Meter(*_decoder(codec))
+
+
+def _decoder(codec: Codec) -> tuple[Callable[..., Vec3], tuple[Any, ...]]:
+    """The program that decodes chunks, and what it is given besides: the scales, after the noise where there is any."""
+    like, scales = shared(codec.storage, codec.encoding.components)
+    program = _program(codec.encoding, like, codec.rounding)
+    return program, (_noise_of(codec, CHUNK_WIDTH, CHUNK), *scales) if codec.is_dithered else scales
+
+
+def _noise_of(codec: Codec, width: int, count: int) -> tuple[np.ndarray, ...]:
+    """What is added to three numbers of the codes of so many pixels, as `laid_out` has it: float32 planes."""
+    return tuple(np.ascontiguousarray(laid_out(codec.dither(0).added, width, count).T[:3]))
 
 
 def _trip(encoding: Encoding, like: Storage, rounding: str) -> Callable[..., Vec3]:
@@ -118,8 +132,18 @@ def _trip(encoding: Encoding, like: Storage, rounding: str) -> Callable[..., Vec
 
 @cache
 def _program(encoding: Encoding, like: Storage, rounding: str) -> Callable[..., Vec3]:
+    if rounding == DITHERED:
+        return jax.jit(_noisy_trip(encoding, like))
     trip = _trip(encoding, like, rounding)
     return jax.jit(lambda chunk, *scales: trip(chunk.n, chunk.view, *scales))
+
+
+def _noisy_trip(encoding: Encoding, like: Storage) -> Callable[..., Vec3]:
+    def round_trip(chunk: Chunk, noise: Sequence[Any], *scales: Scale) -> Vec3:
+        planes = [plane.reshape(chunk.n.z.shape) for plane in noise]
+        return Codec(encoding, fixed(like, scales), DITHERED).round_trip(chunk.n, chunk.view, planes)
+
+    return round_trip
 
 
 def round_trip(codec: Codec, n: np.ndarray, view: np.ndarray) -> np.ndarray:
@@ -128,11 +152,10 @@ def round_trip(codec: Codec, n: np.ndarray, view: np.ndarray) -> np.ndarray:
     Args:
         n, view: unit normals and view positions, float32 of shape (count, 3).
     """
-    like, scales = shared(codec.storage, codec.encoding.components)
-    decode, found = _program(codec.encoding, like, codec.rounding), []
+    (decode, given), found = _decoder(codec), []
     with jax.enable_x64(True):
         for load in from_arrays("", "", n, view, np.ones(len(n), bool)).loads():
-            found.append(np.stack([np.asarray(plane).ravel() for plane in decode(load(), *scales)], axis=1))
+            found.append(np.stack([np.asarray(plane).ravel() for plane in decode(load(), *given)], axis=1))
     return np.concatenate(found)[: len(n)]
 
 
@@ -405,7 +428,8 @@ def image_round_trip(case: Case) -> RoundTrip:
         encoded = image([*code, *[np.zeros_like(code[0])] * (3 - len(code))])
     else:
         n, view = (Vec3(*map(jnp.asarray, planes)) for planes in (n, view))
-        code = case.codec.stored(n, view)
+        noise = _noise_of(case.codec, width, height * width) if case.codec.is_dithered else None
+        code = case.codec.stored(n, view, noise)
         decoded = image(case.codec.encoding.decode(code, view))
         encoded = image([*code, *[np.zeros_like(code.x)] * (3 - len(code))])
     encoded[..., case.codec.encoding.components + case.codec.encoding.sign_bits :] = UNUSED

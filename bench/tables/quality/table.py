@@ -16,7 +16,7 @@ from ...ground.options.option import (
     Names,
     Option,
     Reading,
-    Roundings,
+    RoundingsAndDithered,
     Seed,
     StorageNames,
 )
@@ -33,7 +33,7 @@ class QualityOptions(Reading, SourceOptions):
 
     encoding: Encodings = "all"
     storage: StorageNames = "rgba8"
-    rounding: Roundings = "nearest"
+    rounding: RoundingsAndDithered = "nearest"
     arithmetic: Arithmetics = "declared"
     normals: Annotated[
         str,
@@ -83,7 +83,7 @@ def _angle_column(name: str, says: str, drops: int = 0) -> Column:
 COLUMNS = (
     shared.ENCODING,
     shared.STORAGE,
-    shared.ROUNDING,
+    shared.ROUNDING_OR_DITHERED,
     Column("normals", "The set of normals that was measured on.", KEY),
     shared.BACKEND,
     shared.BITS,

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from ....encodings.codecs.codec import Codec
+from ....encodings.storages.storage import DITHERED, ROUNDINGS
 from ....reports.page.verdict import counted_set
 from ....reports.tables import text_of
 from ...ground.machine.devices import require_device, require_jax
@@ -42,6 +43,7 @@ MOST_NAMED = 4
 AGREED = "dB, the same by JAX and GLSL"
 # The word among normal sets that stands for those of a code's domain.
 DOMAIN = "domain"
+WAYS, EXACT = (*ROUNDINGS, DITHERED), ("--worst-case", "--codes")
 OF_SPHERE, OF_HALF = ("sphere", "axes"), ("hemisphere",)
 
 
@@ -54,9 +56,11 @@ def cases(options: QualityOptions) -> list[measure.Case]:
     """
     count = checked_count(options.count)
     check_seed(options.seed)
-    codecs = codecs_named(options.encoding, options.storage, options.rounding, options.arithmetic, has_patches=True)
+    codecs = codecs_named(options.encoding, options.storage, options.rounding, options.arithmetic, True, WAYS)
     backends = backends_named(options.backend, measure.BACKENDS)
     codecs, left_out = fitting(codecs)
+    if any(codec.is_dithered for codec in codecs):
+        _check_noise(options, backends)
     require_jax()
     if backends == ["glsl"]:
         require_device()
@@ -74,6 +78,15 @@ def cases(options: QualityOptions) -> list[measure.Case]:
     asked = [case for case in made if _is_asked(case, said)]
     lacking = lacking_rays((case.codec.encoding, case.normal_set) for case in asked)
     return what_is_left([case for case in asked if case.normal_set.serves(case.codec.encoding)], lacking)
+
+
+def _check_noise(options: QualityOptions, backends: Sequence[str]) -> None:
+    """Raises UsageError where something is asked for that noise has no part in."""
+    exact = [option for option, is_asked in zip(EXACT, (options.worst_case, options.codes), strict=True) if is_asked]
+    if exact:
+        raise UsageError(f"{exact[0]} is of codes without noise; leave it out, or --rounding {DITHERED}")
+    if "wgsl" in backends:
+        raise UsageError(f"--rounding {DITHERED} is measured by --backend jax,glsl; WGSL here adds no noise")
 
 
 def _set_names(said: Sequence[str], codec: Codec) -> Iterator[str]:

@@ -16,7 +16,7 @@ from ...gl.device import BY_ALPHA, Device, bind, read_pixels
 from ...gl.handles import VertexArray
 from ...gl.raw import blend_by
 from ..codec_passes import Decoded, encoding_defines, rounding_defines
-from ..harness import Textures, set_uniforms, uploaded
+from ..harness import Textures, dithering, set_uniforms, uploaded
 
 # Texels along a side of a patch: two levels of mips.
 SIDE = 4
@@ -92,7 +92,7 @@ class MixPasses:
         channels = [codec.rounding_of(channel) for channel in range(storage.channels)]
         _, rounds = rounding_defines(device, storage, codec.rounding, channels)
         self.samples = device.given_samples(samples)
-        self._defines = encoding_defines(encoding) | rounds
+        self._defines = encoding_defines(encoding) | rounds | dithering(None)[0]
         self._defines |= {"SAMPLES": self.samples, "FILTER_COSINE": CONSTANTS["FILTER_COSINE"]}
         self._names = {"ENCODING": encoding.glsl}
         self._device, self.meetings, self._size = device, meetings, meetings.size

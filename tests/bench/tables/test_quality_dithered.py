@@ -1,0 +1,112 @@
+"""`normalbench quality --rounding dithered`: what noise costs a normal, that both languages add the same, and what it
+refuses."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from normalbench.bench.subjects.normals.normal_sets import NORMAL_SETS
+from normalbench.bench.tables.quality import measure as quality
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.codecs.variants import in_half
+from normalbench.encodings.storages.storage import STORAGES
+
+COUNT = 2**16
+
+
+def case(encoding: str, storage: str, rounding: str, backend: str = "jax", normals: str = "sphere") -> quality.Case:
+    codec = Codec(ENCODINGS[encoding], STORAGES[storage], rounding)
+    assert codec.misfit is None
+    return quality.Case(codec, NORMAL_SETS[normals](COUNT, 0), backend)
+
+
+@pytest.mark.parametrize("encoding, storage", [("octahedral", "rg8"), ("cube", "rgba8"), ("octahedral", "rg16_snorm")])
+def test_noise_costs_a_bit(encoding, storage):
+    """A squared error is a sixth of a squared step in place of a twelfth. The RMS angle grows by the root of 2,
+    which half a bit more in each of two numbers makes up for."""
+    dithered, nearest = (quality.measure(case(encoding, storage, rounding)) for rounding in ("dithered", "nearest"))
+    assert dithered["angle_rms_deg"] / nearest["angle_rms_deg"] == pytest.approx(2**0.5, rel=0.01)
+    assert nearest["effective_bits"] - dithered["effective_bits"] == pytest.approx(1, abs=0.03)
+    assert dithered["angle_max_deg"] < 2.1 * nearest["angle_max_deg"]
+    assert (dithered["rounding"], dithered["compiled_by"], dithered["below_limit"]) == ("dithered", "XLA", "")
+
+
+def test_a_number_is_off_by_a_third_of_a_step_and_right_on_average():
+    """In place of a quarter. The third number of a cube's code, one of six faces, is as it was."""
+    dithered, nearest = (
+        quality.image_round_trip(case("cube", "rgba8", rounding, normals="playground"))
+        for rounding in ("dithered", "nearest")
+    )
+    exact = quality.image_round_trip(case("cube", "rgba32f", "nearest", normals="playground"))
+    step, seen = STORAGES["rgba8"].step(0), exact.covered
+    apart, usual = ((made.encoded - exact.encoded)[seen][:, :2] / step for made in (dithered, nearest))
+    moves = abs(usual).max(axis=1) > 1e-3
+    assert abs(usual[moves]).mean() == pytest.approx(1 / 4, rel=0.1)
+    assert abs(apart[moves]).mean() == pytest.approx(1 / 3, rel=0.1)
+    assert abs(apart.mean()) < 0.01
+    assert np.array_equal(dithered.encoded[seen][:, 2], nearest.encoded[seen][:, 2])
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize(
+    "encoding, storage", [("octahedral", "rg8"), ("xy_sign", "rg8_snorm"), ("cube", "rgb8_10_10_3")]
+)
+def test_both_languages_add_the_same_noise(encoding, storage):
+    rows = [quality.measure(case(encoding, storage, "dithered", backend)) for backend in ("jax", "glsl")]
+    for name in ("angle_mean_deg", "angle_rms_deg", "psnr_db"):
+        assert rows[0][name] == pytest.approx(rows[1][name], rel=1e-4), name
+    jax, glsl = (
+        quality.image_round_trip(case(encoding, storage, "dithered", backend, "playground"))
+        for backend in ("jax", "glsl")
+    )
+    apart = abs(jax.encoded - glsl.encoded)[jax.covered]
+    # A number on a tie goes either way.
+    assert (apart > 1e-6).mean() < 1e-3 and apart.max() < 1.01 * STORAGES[storage].step(0)
+
+
+def test_what_has_no_even_steps_of_its_own_is_not_dithered():
+    octahedral, rg8 = ENCODINGS["octahedral"], STORAGES["rg8"]
+    misfits = {
+        "an index": Codec(ENCODINGS["spherical_fibonacci"], rg8, "dithered"),
+        "steps of floats": Codec(octahedral, STORAGES["rg16f"], "dithered"),
+        "rounded to the nearest": Codec(ENCODINGS["octahedral_precise"], rg8, "dithered"),
+        "float32": Codec(in_half(octahedral), rg8, "dithered"),
+        "steps that are the same": Codec(replace(octahedral, patch=64), rg8, "dithered"),
+        "one code": Codec(replace(octahedral, before=Codec(octahedral, rg8)), rg8, "dithered"),
+    }
+    for said, codec in misfits.items():
+        assert said in str(codec.misfit) and "\n" not in str(codec.misfit), codec.misfit
+
+
+@pytest.mark.parametrize(
+    "asked, said",
+    [
+        (["--worst-case"], "--worst-case is of codes without noise"),
+        (["--codes"], "--codes is of codes without noise"),
+        (["--backend", "wgsl"], "--backend jax,glsl"),
+        (["--storage", "rg16f", "--backend", "jax"], "noise is for fixed point"),
+    ],
+)
+def test_what_noise_has_no_part_in_is_refused_in_a_line(run, asked, said):
+    status, out, err = run("quality", "--encoding", "octahedral", "--rounding", "dithered", *asked)
+    assert (status, out) == (2, "") and err.count("\n") == 1 and said in err, err
+
+
+@pytest.mark.usefixtures("rows_are_kept")
+def test_files_of_a_dithered_code_have_its_name(run, tmp_path):
+    """A page cannot run it, and its file there says so."""
+    folders = {name: tmp_path / name for name in ("images", "maps", "live")}
+    more = [word for name, folder in folders.items() for word in (f"--{name}", str(folder))]
+    status, out, err = run(
+        *["quality", "--encoding", "octahedral", "--storage", "rg8", "--rounding", "nearest,dithered"],
+        *["--backend", "jax", "--normals", "playground", "--format", "json", *more],
+    )
+    assert (status, err) == (0, "")
+    assert [row["rounding"] for row in json.loads(out)] == ["nearest", "dithered"]
+    for name in ("images", "maps"):
+        assert any("dithered" in path.name for path in folders[name].iterdir()), name
+    said = json.loads((folders["live"] / "octahedral-rg8-dithered.json").read_text())
+    assert "noise" in said["left_out"] and "checks" in json.loads((folders["live"] / "octahedral-rg8.json").read_text())
