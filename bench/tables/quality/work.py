@@ -14,7 +14,7 @@ from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_count
 from ...ground.options.targets import what_is_left
-from ...ground.output.errors import UsageError, lacks_twin, leave_out, names_by_reason
+from ...ground.output.errors import UsageError, by_reason, lacks_twin, leave_out, names_by_reason
 from ...ground.output.writing import check_folder, without
 from ...measures.metrics import published
 from ...subjects.codecs.names import check_twin, codecs_named, fitting
@@ -59,8 +59,8 @@ def cases(options: QualityOptions) -> list[measure.Case]:
     codecs = codecs_named(options.encoding, options.storage, options.rounding, options.arithmetic, True, WAYS)
     backends = backends_named(options.backend, measure.BACKENDS)
     codecs, left_out = fitting(codecs)
-    if any(codec.is_dithered for codec in codecs):
-        _check_noise(options, backends)
+    if reason := _not_of_noise(options, backends):
+        codecs = _without_noise(codecs, reason)
     require_jax()
     if backends == ["glsl"]:
         require_device()
@@ -80,13 +80,18 @@ def cases(options: QualityOptions) -> list[measure.Case]:
     return what_is_left([case for case in asked if case.normal_set.serves(case.codec.encoding)], lacking)
 
 
-def _check_noise(options: QualityOptions, backends: Sequence[str]) -> None:
-    """Raises UsageError where something is asked for that noise has no part in."""
+def _not_of_noise(options: QualityOptions, backends: Sequence[str]) -> str:
+    """Why codes with noise are not measured as it is asked; empty where they are."""
     exact = [option for option, is_asked in zip(EXACT, (options.worst_case, options.codes), strict=True) if is_asked]
     if exact:
-        raise UsageError(f"{exact[0]} is of codes without noise; leave it out, or --rounding {DITHERED}")
-    if "wgsl" in backends:
-        raise UsageError(f"--rounding {DITHERED} is measured by --backend jax,glsl; WGSL here adds no noise")
+        return f"{exact[0]} is of codes without noise; leave it out to measure --rounding {DITHERED}"
+    return f"--rounding {DITHERED} is measured by --backend jax,glsl; WGSL adds no noise" if "wgsl" in backends else ""
+
+
+def _without_noise(codecs: Sequence[Codec], reason: str) -> list[Codec]:
+    """The codecs without noise; others are named on standard error. Raises UsageError where none is left."""
+    noisy = {codec.name: reason for codec in codecs if codec.is_dithered}
+    return what_is_left([codec for codec in codecs if not codec.is_dithered], by_reason(noisy.items()))
 
 
 def _set_names(said: Sequence[str], codec: Codec) -> Iterator[str]:

@@ -75,6 +75,7 @@ def test_what_has_no_even_steps_of_its_own_is_not_dithered():
         "rounded to the nearest": Codec(ENCODINGS["octahedral_precise"], rg8, "dithered"),
         "float32": Codec(in_half(octahedral), rg8, "dithered"),
         "steps that are the same": Codec(replace(octahedral, patch=64), rg8, "dithered"),
+        "whole numbers": Codec(replace(octahedral, packed_bits=32), rg8, "dithered"),
         "one code": Codec(replace(octahedral, before=Codec(octahedral, rg8)), rg8, "dithered"),
     }
     for said, codec in misfits.items():
@@ -110,3 +111,11 @@ def test_files_of_a_dithered_code_have_its_name(run, tmp_path):
         assert any("dithered" in path.name for path in folders[name].iterdir()), name
     said = json.loads((folders["live"] / "octahedral-rg8-dithered.json").read_text())
     assert "noise" in said["left_out"] and "checks" in json.loads((folders["live"] / "octahedral-rg8.json").read_text())
+
+
+@pytest.mark.usefixtures("rows_are_kept")
+def test_of_all_ways_to_round_the_one_with_noise_is_left_out_of_an_exact_search(run):
+    more = ["--backend", "jax", "--normals", "sphere", "--count", "4096", "--format", "json", "--codes"]
+    status, out, err = run("quality", "--encoding", "octahedral", "--storage", "unorm:4:4", "--rounding", "all", *more)
+    assert status == 0 and err.count("\n") == 1 and "left out: octahedral/" in err and "--codes is of codes" in err, err
+    assert {row["rounding"] for row in json.loads(out)} == {"nearest", "truncate", "truncate_half"}
