@@ -173,7 +173,7 @@ def check(device: Device, pipeline: Pipeline, plan: Plan, is_metal_rough: bool =
     components = layout.metal_rough_components if is_metal_rough else layout.components
     if missing := sorted(pipeline.needs - components):
         without = [other.name for other in PIPELINES.values() if other.needs and other.needs <= components]
-        does = f"; {' and '.join(without)} can do without" if without else ""
+        does = f"; --pipeline {','.join(without)} does not need it" if without else ""
         raise LayoutError(f"{pipeline.name} needs {', '.join(missing)}, which layout {layout.name} does not keep{does}")
     if not pipeline.has_gbuffer:
         return

@@ -171,8 +171,10 @@ FAULTS = (
         "smallest-three-range",
         ENCODINGS,
         "wrong constant",
-        "RANGE = math.sqrt(0.5)\n",
-        "RANGE = math.sqrt(0.6)\n",
+        'RANGE = math.sqrt(0.5)\n\n\ndef encode(frame: Frame, least) -> Vec4:\n    """'
+        "Three components over their range, the",
+        'RANGE = math.sqrt(0.6)\n\n\ndef encode(frame: Frame, least) -> Vec4:\n    """'
+        "Three components over their range, the",
         "test_frame_encodings.py",
         "smallest_three",
         "test_frames_command.py",

@@ -13,11 +13,11 @@ from typing import Any
 
 from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.kind import CURVE, NORMAL
-from ...encodings.storages.storage import ROUNDINGS
 from ...gbuffer.gl.device import NoDeviceError
 from ...gbuffer.gl.shader import ShaderError
 from ..ground.choose import choose
 from ..ground.options.code import CodeOptions
+from ..ground.options.storage_names import roundings_named
 from ..ground.options.targets import that_fit, what_is_left
 from ..ground.output.errors import MissingError, UsageError, leave_out, tell
 from ..ground.output.progress import progress
@@ -81,7 +81,7 @@ def _check_prefix(prefix: str) -> None:
 def _codecs(options: CodeOptions) -> list[Any]:
     kind = kind_named(options.codec, options.of)
     if kind is not NORMAL:
-        rounded = choose("rounding", options.rounding, dict(zip(ROUNDINGS, ROUNDINGS, strict=True)))
+        rounded = roundings_named(options.rounding)
         if rounded != ["nearest"] and kind is not CURVE:
             raise UsageError(f"--rounding is for normals and curves; codes of {kind.name} are rounded to the nearest")
         return that_fit(codecs_of_kind(kind, options.codec, options.storage or "", rounded))

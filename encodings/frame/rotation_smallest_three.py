@@ -3,12 +3,14 @@
 As `smallest_three`, but all three components have the whole of their range, since none carries a hand.
 """
 
+import math
 from pathlib import Path
 
 from ..codecs.frame_encoding import FrameEncoding
 from ..rotation import Frame, frame_of_quaternion, quaternion_of
 from ..vec import Vec3, Vec4, dot, index_of, maximum, number_of, select, sign_not_zero, sqrt
-from .smallest_three import RANGE
+
+RANGE = math.sqrt(0.5)
 
 
 def encode(frame: Frame, least) -> Vec4:

@@ -243,8 +243,8 @@ class Layout:
     @property
     def reflects_by(self) -> str:
         """What says how much a surface reflects: the contract between materials and light. Layouts with different
-        ones cannot be compared byte by byte. Empty where nothing does, or a metal/rough material is not held whole."""
-        if not {"albedo.r", "roughness"} <= self.components:
+        ones cannot be compared byte by byte. Empty where the layout is not whole."""
+        if not self.is_whole:
             return ""
         if "metalness" in self.components:
             return METALNESS_REFLECTANCE if "reflectance" in self.components else METALNESS

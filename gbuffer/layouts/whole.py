@@ -1,8 +1,9 @@
 """What engines keep of an opaque metal/rough material, whole: every field, format and curve, from each one's source.
 
 `other` is what an engine keeps and this renderer does not use. `kind`, this renderer's Deferred ID, lies where the
-engine has a shading model or a material's ID. Emission is added to the light buffer where no target holds it. Words of
-one integer target are written as the channels of RGBA8 targets, which are the same bits.
+engine has a shading model, flags or opacity. Emission that a target holds otherwise than this renderer can is `other`,
+and is added to the light buffer here. Words of one integer target are written as the channels of RGBA8 targets, which
+are the same bits.
 """
 
 from __future__ import annotations
@@ -16,6 +17,10 @@ from .words import targets_of
 UNREAL_4 = "Unreal Engine 4.27.2, SceneRenderTargets.cpp, DeferredShadingCommon.ush"
 UNREAL_5 = "Unreal Engine 5.8, GBufferInfo.cpp, DeferredShadingCommon.ush"
 UNITY = "Unity 2022.3 as in Torgo13/CustomRenderPipeline (373861b)"
+KAJIYA = (
+    "rgba8: square_root(albedo) -; rgba8: normal.x:11 normal.y:10 normal.z:11; rg16f: roughness metalness; "
+    "rgba8: rgb9e5(emission); rgb10a2: other other other -; rgba16f: other other other -"
+)
 # Decals.
 BLENDED = "blended into the targets"
 BEFORE = "gathered in buffers of their own and applied when the targets are written"
@@ -45,24 +50,25 @@ WHOLE_ENGINES = (
         "Unreal Engine",
         2021,
         "unreal4",
-        "xyz in RGB10A2; metallic, specular, roughness, model; base colour in sRGB, AO. Motion and custom data on top",
+        "xyz in RGB10A2; metallic, specular, roughness, model; base colour in sRGB, AO; custom data",
         "xyz_renormalised",
         "rgb10a2: normal.x normal.y normal.z other; "
-        "rgba8: metalness linear:0.08(reflectance) roughness kind:4 other:4; srgb8_a8: albedo occlusion",
+        "rgba8: metalness linear:0.08(reflectance) roughness other:4 kind:4; srgb8_a8: albedo occlusion; "
+        "rgba8: other other other other",
         "rgba16f",
-        UNREAL_4,
+        UNREAL_4 + "; with static light AO is its irradiance, and motion has a target of its own",
         decals=BEFORE + ", or " + BLENDED,
     ),
     _whole(
         "Unreal Engine",
         2026,
         "unreal5_mobile",
-        "octahedral 10:10, model; metallic, specular, roughness, custom; base colour in sRGB, AO: 16 bytes with light",
+        "octahedral 10:10, model; metallic, specular, roughness, custom; base colour in sRGB, AO",
         "octahedral",
         "rgb10a2: normal.x normal.y kind other; rgba8: metalness linear:0.08(reflectance) roughness other; "
         "srgb8_a8: albedo occlusion",
         "r11g11b10f",
-        UNREAL_5 + ", the mobile path; roughness is at least 1/64",
+        UNREAL_5 + ", the mobile path; roughness is at least 1/64, the model has 4 bits",
         decals=BEFORE,
     ),
     _whole(
@@ -76,17 +82,17 @@ WHOLE_ENGINES = (
         "rgba8: square_root(albedo.b):6 square_root(specular.r):7 square_root(specular.g):7 square_root(specular.b):6 "
         "other:6",
         "rgba16f",
-        "Unreal Engine 5.8, SubstrateExport.ush; there with noise of half a step on both colours",
+        "Unreal Engine 5.8, SubstrateExport.ush; colours have noise there; the order of bits is inferred",
         decals=BEFORE,
     ),
     _whole(
         "Unity",
         2022,
         "unity_hdrp",
-        "diffuse in sRGB, occlusion; octahedral 12:12 cut off, roughness; F0 by a fast sRGB curve, class in 3 bits",
+        "diffuse in sRGB, specular occlusion; octahedral by floor(x 4095.5), roughness; F0 by a fast sRGB curve, class",
         "octahedral",
         "srgb8_a8: albedo occlusion; rgba8: normal.x:12 normal.y:12 roughness; "
-        "rgba8: fast_srgb(specular) other:5 kind:3",
+        "rgba8: fast_srgb(specular) kind:3 other:5",
         "r11g11b10f",
         f"Unity HDRP 14, Lit.hlsl, NormalBuffer.hlsl, less the step that keeps z off 0; {UNITY}",
         packing="truncate_half",
@@ -122,12 +128,12 @@ WHOLE_ENGINES = (
         2026,
         "bevy",
         "four words: base colour by 2.2, roughness; emission RGB9E5; reflectance, metallic, occlusion, coat; "
-        "octahedral 12:12, flags. A lighting pass's ID",
+        "octahedral 12:12, flags; the lighting pass",
         "octahedral",
         "rgba8: gamma_2_2(albedo) roughness; rgba8: rgb9e5(emission); "
         "rgba8: square_root:0.16(reflectance) metalness occlusion other; "
         "rgba8: normal.x:12 normal.y:12 other; r8: kind",
-        "rgba16f",
+        "",
         "bevyengine/bevy 0.20-dev (4805ca79), deferred/functions.wesl, deferred/types.wesl",
         decals=IN_SHADER,
     ),
@@ -140,7 +146,7 @@ WHOLE_ENGINES = (
         "rgba8: albedo occlusion; rgb10a2: normal.x normal.y normal.z kind; "
         "rgba8: roughness metalness square_root:0.16(reflectance) -",
         "r11g11b10f",
-        "FlaxEngine (1146620), GBuffer.hlsl, RenderBuffers.h",
+        "FlaxEngine (1146620), GBuffer.hlsl, RenderBuffers.h; light may be RGBA16F as well",
         decals=BLENDED + ", normals as colours; the alpha that is AO is masked",
     ),
     _whole(
@@ -151,14 +157,14 @@ WHOLE_ENGINES = (
         "xyz_renormalised",
         "srgb8_a8: albedo kind; srgb8_a8: specular occlusion; rgba16_snorm: normal.x normal.y normal.z roughness; "
         "rgba16f: emission other; rg16f: motion.x motion.y",
-        "rgba16f",
+        "",
         "NVIDIA-RTX/Donut, src/render/GBuffer.cpp:40, include/donut/shaders/gbuffer.hlsli (bfdebdd); opacity is `kind`",
     ),
     _whole(
         "Granite",
         2026,
         "granite",
-        "base colour in sRGB, ambient; xyz in RGB10A2; metallic, roughness: 14 bytes with light, read in tile memory",
+        "base colour in sRGB, ambient; xyz in RGB10A2; metallic, roughness; read in tile memory",
         "xyz_renormalised",
         "srgb8_a8: albedo occlusion; rgb10a2: normal.x normal.y normal.z -; rg8: metalness roughness",
         "r11g11b10f",
@@ -169,23 +175,21 @@ WHOLE_ENGINES = (
         "kajiya",
         2025,
         "kajiya",
-        "four words: root of colours 8:8:8; xyz 11:10:11; roughness, metalness in halves; emission RGB9E5. "
-        "Geometric normal, view-space motion",
+        "four words: root of colours 8:8:8; xyz 11:10:11; roughness, metalness in halves; emission RGB9E5; "
+        "geometric normal; motion in view space",
         "xyz_renormalised",
-        "rgba8: square_root(albedo) -; rgba8: normal.x:11 normal.y:10 normal.z:11; rg16f: roughness metalness; "
-        "rgba8: rgb9e5(emission); rgb10a2: other other other -; rgba16f: other other other -",
-        "rgba16f",
+        KAJIYA,
+        "",
         "EmbarkStudios/kajiya (9fdec0f), gbuffer.hlsl, pack_unpack.hlsl; to nearest since 2022-10 (591d966)",
     ),
     _whole(
         "kajiya",
         2021,
         "kajiya_truncated",
-        "as kajiya, with normals that are cut off",
+        "as kajiya before 2022-10: normals cut off, as colours were, which are rounded here",
         "xyz_renormalised",
-        "rgba8: square_root(albedo) -; rgba8: normal.x:11 normal.y:10 normal.z:11; rg16f: roughness metalness; "
-        "rgba8: rgb9e5(emission); rgb10a2: other other other -; rgba16f: other other other -",
-        "rgba16f",
+        KAJIYA,
+        "",
         "EmbarkStudios/kajiya before 591d966 (2022-10), pack_unpack.hlsl",
         packing="truncate",
     ),
@@ -193,7 +197,7 @@ WHOLE_ENGINES = (
         "Dagor",
         2026,
         "dagor",
-        "albedo in sRGB, AO; octahedral 10:10, flags, class; smoothness, reflectance, metalness, shadow; motion",
+        "albedo in sRGB, AO; octahedral 10:10, there in halves, class; smoothness, reflectance, metal; motion",
         "octahedral",
         "srgb8_a8: albedo occlusion; rgb10a2: normal.x normal.y other kind; "
         "rgba8: inverted(roughness) square_root:0.16(reflectance) metalness other; rgba16f: other other other other",
@@ -219,7 +223,7 @@ WHOLE_ENGINES = (
         "base colour linear in 8 bits; occlusion, roughness, metal; spheremap 16:16 in view space, class",
         "spheremap",
         "rgba8: albedo -; rgba8: occlusion roughness metalness -; rgba16: normal.x normal.y other kind",
-        "rgba16f",
+        "",
         "secondlife/viewer (d6d453b), pipeline.cpp, pbropaqueF.glsl; emission's own target is optional there",
         space="view",
     ),
@@ -230,7 +234,7 @@ WHOLE_ENGINES = (
         "base colour linear in RGB8; octahedral 16:16 twice; occlusion, roughness, metal, specular; depth; emission",
         "octahedral",
         "rgba8: albedo -; rg16: normal.x normal.y; rg16: other other; "
-        "rgba8: occlusion roughness metalness reflectance; r16f: depth; rgba16f: emission -",
+        "rgba8: occlusion roughness metalness square_root:0.16(reflectance); r16f: depth; rgba16f: emission -",
         "",
         "Bigfoot71/r3d (af17457), r3d_target.c, geometry.frag; three numbers take four channels, as GPUs pad them",
         decals=BLENDED + "; octahedral normals are replaced",
@@ -239,22 +243,22 @@ WHOLE_ENGINES = (
         "O3DE",
         2026,
         "o3de",
-        "the prototype: base colour in halves; roughness, metalness in halves; signed octahedron 10:10 in RGB10 A2",
+        "a prototype, not the main pipeline: base colour, roughness, metalness in halves; signed octahedron 10:10",
         "signed_octahedral",
         "rgba16f: albedo -; rgba16f: roughness metalness - -; rgb10a2: normal.x normal.y normal.z -",
-        "rgba16f",
+        "",
         "o3de/o3de-atom-sampleviewer, Materials/Pipelines/PrototypeDeferredPipeline/DeferredMaterialPass.azsli:79",
     ),
     _whole(
         "FidelityFX",
         2025,
         "fidelityfx",
-        "base colour, alpha; xyz in halves; AO, square of the roughness, metallic; motion",
+        "base colour, alpha; xyz in halves, signed here; AO, square of the roughness, metallic; motion",
         "xyz_renormalised",
         "rgba8: albedo other; rgba16f: normal.x normal.y normal.z -; rgba8: occlusion squared(roughness) metalness -; "
         "rg16f: motion.x motion.y",
         "",
-        "FidelityFX SDK, Cauldron 2 (f4c1da8), gbufferps.hlsl; the light buffer and emission were not found",
+        "FidelityFX SDK, Cauldron 2 (f4c1da8), gbufferps.hlsl: normals as x/2 + 1/2, coarser than here",
     ),
     _whole(
         "Cocos",
@@ -283,7 +287,7 @@ WHOLE_ENGINES = (
         "octahedral in two SNORM16; roughness; albedo and F0 linear in RGB10; anisotropy, opacity, flags and emission",
         "octahedral",
         "rg16_snorm: normal.x normal.y; r8: roughness; rgb10a2: albedo -; rgb10a2: specular -; "
-        "rgba8: other other kind other; rgba8: other other other other",
+        "rgba8: other other other:6 kind:2 other; rgba8: other other other other",
         "",
         "NVIDIAGameWorks/dxvk-remix (574be6b), rtx_resources.cpp:1043; emission as a colour and a half is `other` here",
     ),

@@ -147,7 +147,7 @@ def _layouts() -> list[Row]:
         _row("layout", layout.name, layout.title, bytes_per_pixel=layout.bytes_per_pixel)
         | {"engine": layout.engine or None, "year": layout.year or None, "from": layout.source}
         | {"bytes_with_light": layout.bytes_with_light, "decals": layout.decals or None}
-        | {"reflects_by": (layout.is_whole and layout.reflects_by) or None}
+        | {"reflects_by": layout.reflects_by or None}
         | {"holds": layout.summary}
         for layout in sorted(LAYOUTS.values(), key=lambda layout: (layout.engine.lower(), layout.year))
     ]

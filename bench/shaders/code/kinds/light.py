@@ -8,6 +8,7 @@ from typing import Any
 import jax.numpy as jnp
 import numpy as np
 
+from .....encodings.catalogue import LIGHT_ENCODINGS
 from .....encodings.codecs.kind import LIGHT
 from .....encodings.codecs.light_codec import LightCodec
 from .....encodings.vec import CONSTANTS, Vec4
@@ -82,7 +83,8 @@ KIND = CodeKind(
     decoded=_decoded,
     by_device=_by_device,
     has_twin=is_in(LIGHT),
-    is_ours=lambda codec: is_in(LIGHT)(codec) or ":" in codec.encoding.name,
+    # Over another range it has another name, and the same file.
+    is_ours=lambda codec: codec.encoding.glsl in {one.glsl for one in LIGHT_ENCODINGS.values()},
     errors=_errors,
     unit="of the brightest channel",
     held=lambda codec: f"linear, not negative, up to {codec.limit:g}",

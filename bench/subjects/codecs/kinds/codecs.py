@@ -19,8 +19,8 @@ from ....ground.choose import choose
 from ....ground.options.storage_names import storages_named, storages_said
 from ....ground.output.errors import UsageError
 from ....shaders.languages.words import file_of, names_an_encoder, split_names
+from .named import kind_by_names, own_codes_named
 from .named import kind_of as kind_of_file
-from .named import own_codes_named
 
 # Of a kind, the storages by their names, and codecs of an encoding in some of them.
 Made = Callable[[Any, str, str], Iterator[Any]]
@@ -69,9 +69,11 @@ def kind_named(names: str, of: str) -> Kind:
 
 
 def _kind_of_file(path: Path) -> Kind:
-    """What a user's file is of: of normals, unless its functions' names say otherwise."""
+    """What a user's file is of: what its functions' names say, or else of normals where it can be."""
     from ..user_encodings import encodings_named
 
+    if (spoken := kind_by_names(path)) and spoken in MADE:
+        return spoken
     try:
         encodings_named(str(path))
     except UsageError as error:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 from collections.abc import Mapping
 from pathlib import Path
@@ -20,13 +21,15 @@ from ....ground.machine.posix import forks
 from ....ground.options.light_names import light_buffers_named
 from ....ground.options.words import given_in
 from ....ground.output.errors import MissingError, UsageError, leave_out, tell
+from ....shaders.languages.pairs import NORMALS, role
 from ....shaders.languages.programs import has_halves
-from ....shaders.languages.shapes import WORDS
+from ....shaders.languages.shapes import WORDS, kind_spoken_of
 from ....shaders.languages.translated import SeveralEncodersError, translated
 from ....shaders.languages.words import check_word, names_an_encoder, split_names, with_pair, without_settings
 from .own import Own, OwnKind
 from .table import OWN
 
+CALLED = re.compile(r"\b([A-Za-z_]\w*)\s*\(")
 # As long as a first look at a file of normals.
 TIME_LIMIT = 60.0
 LOOK = "normalbench.bench.subjects.codecs.kinds.look"
@@ -153,6 +156,20 @@ def kind_of(path: Path, said: str) -> OwnKind | None:
     spoken = (name for name, words in WORDS.items() if f"is of {words.plural}, not of" in said)
     name = next(fitting, "") or next(spoken, "")
     return OWN[name] if name else None
+
+
+def kind_by_names(path: Path) -> Kind | None:
+    """The one kind that the names of a file's encoders and decoders speak of, if it has a pair of it; else None."""
+    try:
+        text = path.read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return None
+    names = [name for name in CALLED.findall(text) if role(name)]
+    spoken = {kind_spoken_of(name) for name in names}
+    if len(spoken) != 1 or any(word in name.lower() for name in names for word in NORMALS):
+        return None
+    (kind,) = spoken
+    return OWN[kind].kind if kind and _fits(path, kind) else None
 
 
 def _fits(path: Path, kind: str) -> bool:

@@ -138,6 +138,18 @@ def test_a_users_code_of_a_kind_is_written(kind, tmp_path):
         assert found.holds, f"{language}: {found.says}"
 
 
+@pytest.mark.usefixtures("gl")
+def test_a_users_light_is_of_light_and_stays_theirs(tmp_path, monkeypatch, run):
+    """One that gives unit vectors back is not of normals for that; with its functions named it is no code of ours."""
+    monkeypatch.chdir(tmp_path)
+    text = "float4 EncodeLight(float3 light) { return float4(light * 0.25, 1.0); }\n"
+    Path("mine.hlsl").write_text(text + "float3 DecodeLight(float4 code) { return code.rgb * 4.0; }\n")
+    for word in ("mine.hlsl", "mine.hlsl:EncodeLight:DecodeLight"):
+        assert kind_named(word, "").name == "light"
+        _, out, err = run("code", word, "--storage", "rgba8", "--to", "glsl")
+        assert "Encode and decode are yours." in out, err
+
+
 # The command.
 
 
