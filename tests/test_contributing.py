@@ -82,7 +82,7 @@ def test_a_language_is_a_writer_a_module_and_two_lines(copy):
     (path,) = (copy / "made").iterdir()
     text = path.read_text()
     assert path.name == "octahedral_rg8.signed.glsl" and "// Written by an example." in text
-    assert "all 65536 texels" in " ".join(text.replace("//", "").split())
+    assert "texels of 65536 normals" in " ".join(text.replace("//", "").split())
     arguments = ("--check", "octahedral", "--storage", "rg8", "--to", "signed", "--format", "json")
     done = normalbench_in(copy, "code", *arguments)
     assert "signed" in done.stdout and json.loads(done.stdout), done.stderr
