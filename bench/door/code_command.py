@@ -30,7 +30,7 @@ from ..shaders.code.verify import Agreement, agreement
 from ..shaders.languages.source_options import in_names
 from ..subjects.codecs.kinds.codecs import codecs_of_kind, kind_named
 from ..subjects.codecs.names import codecs_named, fitting
-from .code_figures import figures, head
+from .code_figures import figures, head, rounding_of
 
 Row = dict[str, Any]
 SHIPPED = "rgba8,rg8,rgb10a2,rgb8_12_12,rg16,rg16f"
@@ -160,12 +160,8 @@ def _command(codec: Any, language: str, prefix: str) -> str:
     name = codec.encoding.name if kind.is_ours(codec) else codec.encoding.citation
     words = ["normalbench", "code", name, *([] if kind.kind is NORMAL else ["--of", kind.kind.name])]
     words += ["--storage", codec.storage.name, "--to", language]
-    words += ["--rounding", _rounding(codec)] if _rounding(codec) != "nearest" else []
+    words += ["--rounding", rounding_of(codec)] if rounding_of(codec) != "nearest" else []
     return shlex.join([*words, *(["--prefix", prefix] if prefix else [])])
-
-
-def _rounding(codec: Any) -> str:
-    return getattr(codec, "rounding", "nearest")
 
 
 def _save(code: Code, said: Iterable[str], output: Path | None) -> None:
@@ -184,7 +180,7 @@ def verified(code: Code) -> Row:
     row: Row = {
         "encoding": codec.encoding.name,
         "storage": codec.storage.name,
-        "rounding": _rounding(codec),
+        "rounding": rounding_of(codec),
         "language": code.language,
     }
     try:

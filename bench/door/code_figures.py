@@ -43,7 +43,7 @@ def head(code: Code, codec: Any, command: str, verified: str, said: Sequence[str
         f"{code.prefix}_from_target. {LANGUAGES[code.language].advice}",
         "",
         f"Encoding: {encoding.title}. Source: {encoding.citation}.",
-        f"Storage: {codec.storage.title}, {codec.bits} bits, rounded to {getattr(codec, 'rounding', 'nearest')}. "
+        f"Storage: {codec.storage.title}, {codec.bits} bits, rounded to {rounding_of(codec)}. "
         f"{kind.plural.capitalize()}: {kind.held(codec)}.",
         *said,
         *tables,
@@ -51,6 +51,11 @@ def head(code: Code, codec: Any, command: str, verified: str, said: Sequence[str
         f"Made by normalbench {version('normalbench')}: {command}",
         _licence(codec),
     ]
+
+
+def rounding_of(codec: Any) -> str:
+    """How the storage of a codec of any kind rounds; codecs that do not say round to the nearest."""
+    return getattr(codec, "rounding", "nearest")
 
 
 def _licence(codec: Any) -> str:

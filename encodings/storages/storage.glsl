@@ -76,7 +76,8 @@ uint fixed_code(float c, float scale, bool is_signed) {
 }
 
 // integer / scale for a scale of 2^n - 1, rounded once: i / (2^n - 1) = i 2^-n + i 2^-2n + ... As a quotient a compiler may
-// multiply by the rounded reciprocal, which is a whole step off where n is 24; a compiler that makes one product of the sum is off as well, so it is precise.
+// multiply by the rounded reciprocal, which is a whole step off where n is 24. A compiler that makes one product of the
+// sum is off as well, so it is precise.
 float share_of(uint integer, float scale) {
     float high = float(integer) * (1.0 / (scale + 1.0));
     precise float share = high + high * (1.0 / (scale + 1.0));

@@ -20,6 +20,7 @@ import numpy as np
 ROUNDINGS = ("nearest", "truncate", "truncate_half")
 # Noise of a step, then to the nearest: of codecs whose measure gives the noise.
 DITHERED = "dithered"
+ROUNDINGS_AND_DITHERED = (*ROUNDINGS, DITHERED)
 
 
 def rounds_to(rounding: str) -> str:

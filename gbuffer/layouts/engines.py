@@ -11,8 +11,7 @@ from typing import Any
 from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.encoding import Encoding
 from ...encodings.codecs.variants import variant
-from .layout import Layout
-from .words import targets_of
+from .layout import Layout, engine_layout
 
 ALBEDO = "rgba8: albedo.r albedo.g albedo.b kind"
 SPECULAR = "rgba8: specular.r specular.g specular.b -"
@@ -25,10 +24,7 @@ NRD = "NVIDIA-RTX/NRD, Shaders/NRD.hlsli (a822d87)"
 def _layout(
     engine: str, year: int, name: str, title: str, encoding: str | Encoding, targets: str, source: str, **how: Any
 ) -> Layout:
-    found = ENCODINGS[encoding] if isinstance(encoding, str) else encoding
-    how = {"space": "world", **how}
-    title = f"the normal of {engine}: {title}"
-    return Layout(name, title, targets_of(targets), found, source, engine=engine, year=year, **how)
+    return engine_layout(engine, year, name, f"the normal of {engine}: {title}", encoding, targets, source, **how)
 
 
 def _about_y(name: str) -> Encoding:

@@ -20,7 +20,19 @@ from ...encodings.codecs.files import called, file_toml
 from ...encodings.codecs.variants import MARK, settings_in, variant
 from ...encodings.storages.storage import BITS_32, FORMATS, ROUNDINGS, Storage
 from .kept import COLOURS, LIGHT, Kept
-from .words import FREE, LEAST_BITS, PACKINGS, SIGNED, LayoutError, Target, Word, place_of, placed, without_normal
+from .words import (
+    FREE,
+    LEAST_BITS,
+    PACKINGS,
+    SIGNED,
+    LayoutError,
+    Target,
+    Word,
+    place_of,
+    placed,
+    targets_of,
+    without_normal,
+)
 
 SPACES = VIEW, WORLD = ("view", "world")
 # What layouts keep of a metal/rough surface's reflection.
@@ -287,6 +299,15 @@ class Layout:
         channel = {16: "r16f", 32: "r32f"}[codec.bits] if codec.storage.format.kind == "float" else ""
         home = Target(channel, "depth") if channel else Target("rgba8", f"depth:{codec.bits}")
         return replace(self, targets=(*kept, home), depth=codec.encoding)
+
+
+def engine_layout(
+    engine: str, year: int, name: str, title: str, encoding: str | Encoding, targets: str, source: str, **how: Any
+) -> Layout:
+    """A layout of an engine, in world space if not said otherwise; `targets` is as `targets_of` reads it."""
+    found = ENCODINGS[encoding] if isinstance(encoding, str) else encoding
+    how = {"space": WORLD, "engine": engine, "year": year, **how}
+    return Layout(name, title, targets_of(targets), found, source, **how)
 
 
 def _check_known(layout: str, field: str, name: str, known: Collection[str]) -> None:

@@ -10,13 +10,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from ...encodings.catalogue import ENCODINGS
-from .layout import Layout
-from .words import targets_of
+from .layout import Layout, engine_layout
 
 UNREAL_4 = "Unreal Engine 4.27.2, SceneRenderTargets.cpp, DeferredShadingCommon.ush"
 UNREAL_5 = "Unreal Engine 5.8, GBufferInfo.cpp, DeferredShadingCommon.ush"
 UNITY = "Unity 2022.3 as in Torgo13/CustomRenderPipeline (373861b)"
+URP = "srgb8_a8: albedo kind; rgba8: reflectivity(metalness) - - occlusion"
 KAJIYA = (
     "rgba8: square_root(albedo) -; rgba8: normal.x:11 normal.y:10 normal.z:11; rg16f: roughness metalness; "
     "rgba8: rgb9e5(emission); rgb10a2: other other other -; rgba16f: other other other -"
@@ -30,19 +29,7 @@ IN_SHADER = "evaluated in the material's shader"
 def _whole(
     engine: str, year: int, name: str, title: str, encoding: str, targets: str, light: str, source: str, **how: Any
 ) -> Layout:
-    how = {"space": "world", **how}
-    return Layout(
-        name,
-        title,
-        targets_of(targets),
-        ENCODINGS[encoding],
-        source,
-        engine=engine,
-        year=year,
-        is_whole=True,
-        light=light,
-        **how,
-    )
+    return engine_layout(engine, year, name, title, encoding, targets, source, is_whole=True, light=light, **how)
 
 
 WHOLE_ENGINES = (
@@ -104,8 +91,7 @@ WHOLE_ENGINES = (
         "unity_urp",
         "base colour in sRGB, flags; reflectivity for metalness, occlusion; xyz and smoothness in SNORM8",
         "xyz_renormalised",
-        "srgb8_a8: albedo kind; rgba8: reflectivity(metalness) - - occlusion; "
-        "rgba8_snorm: normal.x normal.y normal.z inverted(roughness)",
+        f"{URP}; rgba8_snorm: normal.x normal.y normal.z inverted(roughness)",
         "r11g11b10f",
         f"Unity URP 14, UnityGBuffer.hlsl; {UNITY}",
         decals=BEFORE + ", or " + BLENDED,
@@ -116,8 +102,7 @@ WHOLE_ENGINES = (
         "unity_urp_accurate",
         "as unity_urp, with octahedral 12:12 by floor(x 4095.5) and smoothness in RGBA8",
         "octahedral",
-        "srgb8_a8: albedo kind; rgba8: reflectivity(metalness) - - occlusion; "
-        "rgba8: normal.x:12 normal.y:12 inverted(roughness)",
+        f"{URP}; rgba8: normal.x:12 normal.y:12 inverted(roughness)",
         "r11g11b10f",
         f"Unity URP 14, UnityGBuffer.hlsl, accurate G-buffer normals; {UNITY}",
         packing="truncate_half",

@@ -133,7 +133,7 @@ def _with_number(node: Any, name: str, text: str) -> Any:
     for field in fields(node):
         setattr(node, field.name, _with_number(getattr(node, field.name), name, text))
     match node:
-        case Binary(_, "*" | "/", left, Literal(_, text)) if text == ONE:
+        case Binary(_, "*" | "/", left, Literal(_, factor)) if factor == ONE:
             return left
     return node
 

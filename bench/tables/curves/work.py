@@ -9,11 +9,10 @@ from ....encodings.catalogue import CURVE_ENCODINGS
 from ....encodings.codecs.curve_codec import CurveCodec
 from ....encodings.codecs.kind import CURVE
 from ....encodings.storages.storage import CURVE_STORAGES, DITHERED
-from ...ground.choose import choose
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_numbers, in_range
-from ...ground.options.storage_names import storages_named
+from ...ground.options.storage_names import roundings_named, storages_named
 from ...ground.options.targets import that_fit
 from ...subjects.codecs.kinds.named import own_codes_named
 from ..charts import one_backend
@@ -45,7 +44,7 @@ def cases(options: CurvesOptions) -> list[measure.Case]:
 
 def codecs(options: CurvesOptions) -> list[CurveCodec]:
     """The codecs asked for; those that do not fit are named on standard error."""
-    roundings = choose("rounding", options.rounding, dict(zip(ROUNDINGS, ROUNDINGS, strict=True)))
+    roundings = roundings_named(options.rounding, ROUNDINGS)
     said = options.range and checked_numbers("--range", options.range, float, *RANGES)
     # A user's file is looked at once, however many ways to round are named.
     encodings = own_codes_named(CURVE, options.encoding, CURVE_ENCODINGS)

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from ....encodings.codecs.codec import Codec
-from ....encodings.storages.storage import DITHERED, ROUNDINGS
+from ....encodings.storages.storage import DITHERED, ROUNDINGS_AND_DITHERED
 from ....reports.page.verdict import counted_set
 from ....reports.tables import text_of
 from ...ground.machine.devices import require_device, require_jax
@@ -43,7 +43,7 @@ MOST_NAMED = 4
 AGREED = "dB, the same by JAX and GLSL"
 # The word among normal sets that stands for those of a code's domain.
 DOMAIN = "domain"
-WAYS, EXACT = (*ROUNDINGS, DITHERED), ("--worst-case", "--codes")
+EXACT = ("--worst-case", "--codes")
 OF_SPHERE, OF_HALF = ("sphere", "axes"), ("hemisphere",)
 
 
@@ -56,7 +56,9 @@ def cases(options: QualityOptions) -> list[measure.Case]:
     """
     count = checked_count(options.count)
     check_seed(options.seed)
-    codecs = codecs_named(options.encoding, options.storage, options.rounding, options.arithmetic, True, WAYS)
+    codecs = codecs_named(
+        options.encoding, options.storage, options.rounding, options.arithmetic, True, ROUNDINGS_AND_DITHERED
+    )
     backends = backends_named(options.backend, measure.BACKENDS)
     codecs, left_out = fitting(codecs)
     if reason := _not_of_noise(options, backends):

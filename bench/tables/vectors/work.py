@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from ....encodings.catalogue import MOTION_ENCODINGS
 from ....encodings.codecs.kind import MOTION
 from ....encodings.codecs.motion_codec import MotionCodec
-from ....encodings.storages.storage import DITHERED, MOTION_STORAGES, ROUNDINGS
+from ....encodings.storages.storage import MOTION_STORAGES, ROUNDINGS_AND_DITHERED
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_numbers, checked_sides, in_range
@@ -55,7 +55,7 @@ def cases(options: VectorsOptions) -> list[measure.Case]:
 
 def codecs(options: VectorsOptions) -> list[MotionCodec]:
     """The codecs asked for; those that do not fit are named on standard error."""
-    roundings = roundings_named(options.rounding, (*ROUNDINGS, DITHERED))
+    roundings = roundings_named(options.rounding, ROUNDINGS_AND_DITHERED)
     return that_fit(
         MotionCodec(encoding, storage, rounding)
         for encoding in own_codes_named(MOTION, options.encoding, MOTION_ENCODINGS)

@@ -9,9 +9,8 @@ from .....encodings.codecs.curve_codec import CurveCodec
 from .....encodings.codecs.kind import CURVE
 from .....encodings.storages.rounding import store_texel
 from .....encodings.storages.storage import rounds_to
-from .....gbuffer.codecs.curve.curve_passes import curve_constants
 from .code_kind import COUNT, CodeKind, Numbers
-from .own import by_device, is_in
+from .own import by_device, defines, is_in
 
 
 def _values(codec: CurveCodec) -> tuple[np.ndarray, np.ndarray]:
@@ -25,19 +24,13 @@ def _store(codec: CurveCodec, codes: np.ndarray) -> np.ndarray:
     return np.asarray(store_texel(jnp.asarray(codes[:, 0]), codec.storage, 0, rounds_to(codec.rounding)))[:, None]
 
 
-def _defines(codec: CurveCodec) -> dict[str, object]:
-    prefix = codec.encoding.prefix
-    functions = {"ENCODE": f"{prefix}_encode_curve", "DECODE": f"{prefix}_decode_curve"}
-    return {"CODE": "float", **functions, **curve_constants(codec.encoding)}
-
-
 KIND = CodeKind(
     kind=CURVE,
     plural="quantities",
     given=lambda _: ("n.x",),
     settings={},
     result=lambda _: 1,
-    defines=_defines,
+    defines=lambda codec: defines(codec.encoding, "_curve", "float"),
     numbers=lambda codec: Numbers(codec.storage, (rounds_to(codec.rounding),), False, 1),
     values=_values,
     stored=lambda codec, n, _: codec.stored(n[:, 0]),

@@ -11,10 +11,8 @@ import numpy as np
 from .....encodings.codecs.depth_codec import DepthCodec
 from .....encodings.codecs.kind import DEPTH
 from .....encodings.storages.depth_storage import store_depth
-from .....encodings.vec import CONSTANTS
-from .....gbuffer.codecs.harness import check_functions
 from .code_kind import COUNT, CodeKind, Numbers
-from .own import by_device, is_in
+from .own import by_device, defines, is_in
 
 NEAR, FAR = 0.125, 1024.0
 
@@ -51,13 +49,6 @@ def _store(codec: DepthCodec, codes: np.ndarray) -> np.ndarray:
     return np.asarray(store_depth(jnp.asarray(codes[:, 0]), codec.storage, codec.encoding.signed))[:, None]
 
 
-def _defines(codec: DepthCodec) -> dict[str, object]:
-    encoding = codec.encoding
-    check_functions(encoding.glsl, encoding.signatures)
-    functions = {"ENCODE": f"{encoding.prefix}_encode_depth", "DECODE": f"{encoding.prefix}_decode_depth"}
-    return {"CODE": "float", **functions, **CONSTANTS, **encoding.constants}
-
-
 def _held(codec: DepthCodec) -> str:
     sign = "; its sign is that of the normal's z" if codec.encoding.signed else ""
     own = "in the scene's units" if _bound(codec) else "from `near` to `far`"
@@ -70,7 +61,7 @@ KIND = CodeKind(
     given=lambda _: ("n.x",),
     settings=MappingProxyType({"near": "view.x", "far": "view.y"}),
     result=lambda _: 1,
-    defines=_defines,
+    defines=lambda codec: defines(codec.encoding, "_depth", "float"),
     numbers=_numbers,
     values=_values,
     stored=lambda codec, n, view: codec.stored(n[:, 0], view[:, 0], jnp.float32(FAR)),

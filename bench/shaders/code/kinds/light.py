@@ -11,10 +11,9 @@ import numpy as np
 from .....encodings.catalogue import LIGHT_ENCODINGS
 from .....encodings.codecs.kind import LIGHT
 from .....encodings.codecs.light_codec import LightCodec
-from .....encodings.vec import CONSTANTS, Vec4
-from .....gbuffer.codecs.harness import check_functions
+from .....encodings.vec import Vec4
 from .code_kind import COUNT, CodeKind, Numbers
-from .own import by_device, is_in
+from .own import by_device, defines, is_in
 
 # The brightest light that codes without a limit of their own are tried with.
 BRIGHTEST = 1024.0
@@ -52,22 +51,25 @@ def _decoded(codec: LightCodec, code: Vec4, _: Any) -> tuple[Any, ...]:
 
 
 def _defines(codec: LightCodec) -> dict[str, object]:
-    encoding = codec.encoding
-    check_functions(encoding.glsl, encoding.signatures)
-    own = {"ENCODE": f"{encoding.prefix}_encode", "DECODE": f"{encoding.prefix}_decode"}
-    if not codec.has_alpha:
-        own = {f"COLOUR_{name}": function for name, function in own.items()}
-        own |= {"ENCODE": "colour_encode", "DECODE": "colour_decode"}
-    return {"CODE": "vec4", **own, **CONSTANTS, **encoding.constants}
+    found = defines(codec.encoding, "", "vec4")
+    if codec.has_alpha:
+        return found
+    colours = {f"COLOUR_{name}": found[name] for name in ("ENCODE", "DECODE")}
+    return found | colours | {"ENCODE": "colour_encode", "DECODE": "colour_decode"}
 
 
 def _limit(codec: LightCodec) -> float:
     return min(codec.limit, BRIGHTEST)
 
 
+def _brightest(given: np.ndarray) -> np.ndarray:
+    """The brightest channel of lights, (count, 1); at least what a dark one is compared with."""
+    return np.maximum(given.max(axis=1, keepdims=True), 2.0**-8)
+
+
 def _errors(given: np.ndarray, back: np.ndarray) -> np.ndarray:
-    brightest = np.maximum(given.astype(np.float64).max(axis=1), 2.0**-8)
-    return np.abs(back.astype(np.float64) - given[:, : back.shape[1]]).max(axis=1) / brightest
+    off = np.abs(back.astype(np.float64) - given[:, : back.shape[1]]) / _brightest(given)
+    return off.max(axis=1)
 
 
 KIND = CodeKind(
@@ -88,5 +90,5 @@ KIND = CodeKind(
     errors=_errors,
     unit="of the brightest channel",
     held=lambda codec: f"linear, not negative, up to {codec.limit:g}",
-    units=lambda given: np.maximum(given.max(axis=1, keepdims=True), 2.0**-8),
+    units=_brightest,
 )

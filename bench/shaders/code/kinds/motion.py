@@ -12,10 +12,9 @@ import numpy as np
 from .....encodings.codecs.kind import MOTION
 from .....encodings.codecs.motion_codec import NUMBERS, MotionCodec
 from .....encodings.storages.rounding import store_number
-from .....encodings.vec import CONSTANTS, Vec2
-from .....gbuffer.codecs.harness import check_functions
+from .....encodings.vec import Vec2
 from .code_kind import COUNT, CodeKind, Numbers
-from .own import by_device, is_in
+from .own import by_device, defines, is_in
 
 # Ranges that motions are kept by, in screens, and how far beyond a range they lead.
 RANGES, BEYOND = (0.125, 0.25, 1.0), 1.125
@@ -43,13 +42,6 @@ def _decoded(codec: MotionCodec, code: Vec2, view: Any) -> Vec2:
     return codec.encoding.decode(code, view[:, 0] if codec.needs_range else 1.0)
 
 
-def _defines(codec: MotionCodec) -> dict[str, object]:
-    encoding = codec.encoding
-    check_functions(encoding.glsl, encoding.signatures)
-    functions = {"ENCODE": f"{encoding.prefix}_encode_motion", "DECODE": f"{encoding.prefix}_decode_motion"}
-    return {"CODE": "vec2", **functions, **CONSTANTS, **encoding.constants}
-
-
 def _held(codec: MotionCodec) -> str:
     largest = "; `range` is the largest motion that is kept" if codec.needs_range else ""
     return f"in screens a frame, 1 the image's width along x and its height along y{largest}"
@@ -61,7 +53,7 @@ KIND = CodeKind(
     given=lambda _: ("n.xy",),
     settings=MappingProxyType({"range": "view.x"}),
     result=lambda _: NUMBERS,
-    defines=_defines,
+    defines=lambda codec: defines(codec.encoding, "_motion", "vec2"),
     numbers=lambda codec: Numbers(codec.storage, ("nearest",) * NUMBERS, codec.storage.is_biased, NUMBERS),
     values=lambda _: motions(),
     stored=lambda codec, n, view: codec.stored(Vec2(n[:, 0], n[:, 1]), view[:, 0]),

@@ -9,6 +9,8 @@ import numpy as np
 
 from .....encodings.catalogue import BY_KIND
 from .....encodings.codecs.kind import Kind
+from .....encodings.vec import CONSTANTS
+from .....gbuffer.codecs.harness import check_functions
 from .....gbuffer.codecs.own.own_passes import tried
 from .....gbuffer.gl.device import device
 
@@ -19,6 +21,20 @@ Store = Callable[[Any, Any], Any]
 def is_in(kind: Kind) -> Callable[[Any], bool]:
     """(codec) -> whether its encoding is the catalogue's."""
     return lambda codec: BY_KIND[kind].get(codec.encoding.name) is codec.encoding
+
+
+def defines(encoding: Any, word: str, code: str) -> dict[str, object]:
+    """The macros of an encoding: what its code is in GLSL, its two functions, and what its file needs.
+
+    Args:
+        word: what the functions' names end with: `_motion`.
+
+    Raises:
+        ShaderError: its GLSL file cannot be read or lacks one of its functions.
+    """
+    check_functions(encoding.glsl, encoding.signatures)
+    functions = {"ENCODE": f"{encoding.prefix}_encode{word}", "DECODE": f"{encoding.prefix}_decode{word}"}
+    return {"CODE": code, **functions, **CONSTANTS, **encoding.constants}
 
 
 def by_device(size: int, result: int, store: Callable[[Any, np.ndarray], np.ndarray]) -> Any:
