@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ...encodings.catalogue import CURVE_ENCODINGS
 from ...encodings.codecs.light_encoding import LightEncoding
 from ..codecs.codec_passes import levels_of, storage_kind
 from ..codecs.curve.curve_passes import curve_constants
 from ..gl.shader import glsl_value
 from ..layouts.layout import Layout
 from ..layouts.words import COMPONENTS, PACKINGS, SIGNED, least_carried
+
+SRGB = CURVE_ENCODINGS["srgb"]
+# What stands for 1 in a channel of 8 bits.
+SRGB_ONE = "255.0"
 
 
 def layout_defines(layout: Layout, rounds: tuple[int, ...], is_metal_rough: bool = False) -> dict[str, object]:
@@ -61,7 +66,14 @@ def layout_defines(layout: Layout, rounds: tuple[int, ...], is_metal_rough: bool
 
 def curve_files(layout: Layout) -> tuple[Path, ...]:
     """The GLSL files of a layout's curves and codes of light."""
-    return tuple(dict.fromkeys(kept.encoding.glsl for kept in layout.kept.values()))
+    files = [kept.encoding.glsl for kept in layout.kept.values()]
+    return tuple(dict.fromkeys((*files, *([SRGB.glsl] if _curved_components(layout) else []))))
+
+
+def _curved_components(layout: Layout) -> list[str]:
+    """What lies in channels that the format itself puts on the sRGB curve."""
+    targets = [target.storage.curved for target in layout.targets]
+    return [word.component for word in layout.words if word.first < targets[word.target]]
 
 
 def curve_defines(layout: Layout) -> dict[str, object]:
@@ -82,6 +94,14 @@ def curve_defines(layout: Layout) -> dict[str, object]:
         place = f"numbers[{COMPONENTS.index(component)}]"
         for way, made in lines.items():
             made.append(f"{place} = {kept.encoding.name}_{way}_curve({place}, {glsl_value(kept.range)});")
+    for component in _curved_components(layout):
+        found |= curve_constants(SRGB)
+        # Devices only come near the curve, Direct3D 11 within 0.6 of a step, on both ways. A colour that is a code
+        # already stays that code.
+        place = f"numbers[{COMPONENTS.index(component)}]"
+        code = f"floor(srgb_encode_curve(clamp({place}, 0.0, 1.0), 1.0) * {SRGB_ONE} + 0.5)"
+        for made in lines.values():
+            made.append(f"{place} = srgb_decode_curve({code} / {SRGB_ONE}, 1.0);")
     return found | {
         "TO_CURVES": " ".join(lines["encode"]),
         "FROM_CURVES": " ".join(lines["decode"]),

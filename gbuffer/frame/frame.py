@@ -241,6 +241,6 @@ def shader_roundings(device: Device, layout: Layout) -> tuple[int, ...]:
 
 
 def _shader_rounding(device: Device, storage: Storage, asked: str) -> int:
-    # What the sRGB curve makes of colours is the device's affair.
+    # Colours on the sRGB curve are codes of it before the device sees them (`curve_defines`).
     is_native = storage.curved > 0 or device.native_rounding(storage) == asked
     return 0 if is_native else ROUNDINGS.index(asked) + 1

@@ -202,8 +202,6 @@ def covered() -> np.ndarray:
 
 # The largest error of a number that is rounded to a word's bits, in steps.
 HALF = 0.5 + 1e-3
-# And by the sRGB curve, which devices approximate: Direct3D 11 allows 0.6 of a step, llvmpipe is up to 0.91 off.
-HALF_CURVED = 0.92
 
 
 def steps(name: str, component: str) -> float | None:
@@ -285,16 +283,15 @@ def check_kept(name: str, component: str, exact: np.ndarray, got: np.ndarray) ->
     step = steps(name, component)
     # A float's rounding is a share of the number; what cuts off is off by twice as much.
     cut = 1 if preset.rounding == "truncate" else 2
-    part = HALF_CURVED if storage.curved else HALF
     if word.kept:
         curve, limit = word.kept.encoding, word.kept.range
         number = curve.encode(exact, limit)
-        ends = [curve.decode(np.clip(number + side * part * whole * step, 0, 1), limit) for side in (-1, 1)]
+        ends = [curve.decode(np.clip(number + side * HALF * whole * step, 0, 1), limit) for side in (-1, 1)]
         slack = curve.inverse_error + 1e-6
         outside = np.max(np.maximum(np.minimum(*ends) - slack - got, got - np.maximum(*ends) - slack))
         assert outside <= 0, f"{component}: {outside:.3g} beyond half a code of {curve.name}"
         return
-    half = part * whole * step if step else exact * 2.0 ** -FORMS[storage.bits[word.first]].mantissa / cut + 2e-6
+    half = HALF * whole * step if step else exact * 2.0 ** -FORMS[storage.bits[word.first]].mantissa / cut + 2e-6
     worst = np.max(abs(got - exact) / half)
     assert worst <= 1, f"{component}: {worst:.3f} times half a code"
 
