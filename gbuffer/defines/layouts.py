@@ -6,6 +6,7 @@ from pathlib import Path
 
 from ...encodings.catalogue import CURVE_ENCODINGS
 from ...encodings.codecs.light_encoding import LightEncoding
+from ...encodings.codecs.motion_codec import MotionEncoding
 from ..codecs.codec_passes import levels_of, storage_kind
 from ..codecs.curve.curve_passes import curve_constants
 from ..gl.shader import glsl_value
@@ -90,6 +91,12 @@ def curve_defines(layout: Layout) -> dict[str, object]:
             prefix = kept.encoding.prefix
             found |= kept.encoding.constants
             continue
+        if isinstance(kept.encoding, MotionEncoding):
+            found |= kept.encoding.constants
+            if component == FIRST_OF_MOTION:
+                for way, made in lines.items():
+                    made.append(_motion_line(kept.encoding, way, kept.range))
+            continue
         found |= curve_constants(kept.encoding)
         place = f"numbers[{COMPONENTS.index(component)}]"
         for way, made in lines.items():
@@ -109,6 +116,16 @@ def curve_defines(layout: Layout) -> dict[str, object]:
         "EMISSION_ENCODE": f"{prefix}_encode",
         "EMISSION_DECODE": f"{prefix}_decode",
     }
+
+
+FIRST_OF_MOTION = "motion.x"
+
+
+def _motion_line(encoding: MotionEncoding, way: str, largest: float) -> str:
+    """What codes the two numbers of a motion in `numbers`, or takes them back."""
+    x, y = (f"numbers[{COMPONENTS.index(f'motion.{axis}')}]" for axis in "xy")
+    code = f"vec2 code_of_motion = {encoding.prefix}_{way}_motion(vec2({x}, {y}), {glsl_value(largest)});"
+    return f"{{ {code} {x} = code_of_motion.x; {y} = code_of_motion.y; }}"
 
 
 def _sign_defines(layout: Layout) -> dict[str, object]:

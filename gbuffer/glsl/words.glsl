@@ -69,13 +69,18 @@ float carrying(int component, float x, float sign_carried, int kind, float scale
 
 float carried(float x, int kind) { return kind == 0 || kind == 3 ? x * 2.0 - 1.0 : x; }
 
+// Whether a word holds the integer nearest x one, plus one, for x in [-1, 1]: then 0 is a code, as no motion must be.
+bool is_around_zero(int component) {
+    return component >= MOTION || (component < DEPTH && normal_levels[component] == 0 && PACK_SIGNED != 0);
+}
+
 // A number as an integer word, and back. Only the normal is packed as the layout says, all else is rounded; a depth may
 // have as many bits as a float32 has, and stays an integer.
 uint to_word(int component, float x, float scale) {
     if (component == DEPTH) return fixed_code(number_of_depth(x, DEPTH_RANGE, false), scale, DEPTH_SIGNED != 0);
     bool as_packed = component < DEPTH && normal_levels[component] == 0;
     float one = floor(scale * 0.5);
-    if (as_packed && PACK_SIGNED != 0) return uint(roundEven(clamp(x, -1.0, 1.0) * one) + one);
+    if (is_around_zero(component)) return uint(roundEven(clamp(x, -1.0, 1.0) * one) + one);
     vec2 rule = as_packed ? vec2(PACK_WIDEN, PACK_BIAS) : vec2(0.0, 0.5);
     float part = clamp(to_unit(component, x, scale), 0.0, 1.0);
     return uint(min(floor(part * (scale + rule.x) + rule.y), scale));
@@ -83,8 +88,7 @@ uint to_word(int component, float x, float scale) {
 
 float from_word(int component, uint integer, float scale) {
     float one = floor(scale * 0.5);
-    bool as_packed = component < DEPTH && normal_levels[component] == 0;
-    if (as_packed && PACK_SIGNED != 0) return (float(integer) - one) * (1.0 / one);
+    if (is_around_zero(component)) return (float(integer) - one) * (1.0 / one);
     if (component != DEPTH) return from_unit(component, float(integer) / scale, scale);
     return depth_of_number(from_fixed_code(integer, scale, DEPTH_SIGNED != 0), DEPTH_RANGE, false);
 }

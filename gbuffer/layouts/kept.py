@@ -5,15 +5,17 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ...encodings.catalogue import CURVE_ENCODINGS, LIGHT_ENCODINGS
+from ...encodings.catalogue import CURVE_ENCODINGS, LIGHT_ENCODINGS, MOTION_ENCODINGS
 from ...encodings.codecs.curve_codec import CurveEncoding
 from ...encodings.codecs.light_encoding import LightEncoding
+from ...encodings.codecs.motion_codec import MotionEncoding
 
 COLOURS = ("albedo", "specular", "emission")
 SINGLE = ("roughness", "metalness", "reflectance", "occlusion")
 # What light is kept by in four numbers that mean nothing one by one.
 WHOLE = {name: encoding for name, encoding in LIGHT_ENCODINGS.items() if encoding.blend == "read"}
 LIGHT = "emission"
+MOTION = "motion"
 
 
 @dataclass(frozen=True)
@@ -22,10 +24,10 @@ class Kept:
 
     Attributes:
         encoding: of each of its numbers, or of all of them.
-        range: the largest that a curve keeps; 1 for a code of light, which has its own.
+        range: the largest that a curve keeps, of motion in screens a frame; 1 for a code of light, which has its own.
     """
 
-    encoding: CurveEncoding | LightEncoding
+    encoding: CurveEncoding | LightEncoding | MotionEncoding
     range: float = 1.0
 
     @property
@@ -40,8 +42,10 @@ def kept_as(name: str, limit: str | None, quantity: str) -> Kept:
     Raises:
         ValueError: there is none of that name, it is not for that quantity, or the range is none; a line.
     """
+    if quantity == MOTION:
+        return _kept_motion(name, limit)
     if quantity not in (*COLOURS, *SINGLE):
-        raise ValueError(f"only {', '.join((*COLOURS, *SINGLE))} lie on a curve")
+        raise ValueError(f"only {', '.join((*COLOURS, *SINGLE, MOTION))} lie on a curve")
     if name in WHOLE:
         if quantity != LIGHT or limit is not None:
             raise ValueError(f"{name} keeps a light in a whole texel, as in {name}({LIGHT})")
@@ -50,6 +54,13 @@ def kept_as(name: str, limit: str | None, quantity: str) -> Kept:
         raise ValueError(f"unknown curve {name!r}; known: {', '.join((*CURVE_ENCODINGS, *WHOLE))}")
     encoding = CURVE_ENCODINGS[name]
     return Kept(encoding, encoding.usual_range if limit is None else _range_of(limit))
+
+
+def _kept_motion(name: str, limit: str | None) -> Kept:
+    """Raises ValueError."""
+    if name not in MOTION_ENCODINGS:
+        raise ValueError(f"unknown code of motion {name!r}; known: {', '.join(MOTION_ENCODINGS)}")
+    return Kept(MOTION_ENCODINGS[name], 1.0 if limit is None else _range_of(limit))
 
 
 def _range_of(text: str) -> float:

@@ -19,7 +19,7 @@ from ...encodings.codecs.encoding import Encoding
 from ...encodings.codecs.files import called, file_toml
 from ...encodings.codecs.variants import MARK, settings_in, variant
 from ...encodings.storages.storage import BITS_32, FORMATS, ROUNDINGS, Storage
-from .kept import COLOURS, LIGHT, Kept
+from .kept import COLOURS, LIGHT, MOTION, Kept
 from .words import (
     FREE,
     LEAST_BITS,
@@ -113,10 +113,14 @@ class Layout:
 
     def _check_colours(self) -> None:
         """Raises LayoutError where the channels of a colour are not kept alike."""
-        for colour in COLOURS:
+        for colour in (*COLOURS, MOTION):
             found = [word for word in self.words if word.component.startswith(f"{colour}.")]
             if len({word.kept for word in found}) > 1:
                 raise LayoutError(f"layout {self.name}: all channels of {colour} lie on one curve")
+            if colour == MOTION:
+                if len(found) == 1 and found[0].kept:
+                    raise LayoutError(f"layout {self.name}: a code of motion has two numbers")
+                continue
             is_whole = bool(found and found[0].kept and found[0].kept.is_whole)
             if is_whole != any(word.component == f"{colour}.a" for word in found) or (is_whole and len(found) < 4):
                 raise LayoutError(f"layout {self.name}: a code of light has four numbers, as in rgb9e5({LIGHT})")

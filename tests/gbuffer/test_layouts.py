@@ -8,13 +8,15 @@ import numpy as np
 import pytest
 from slowly import all_but
 
-from normalbench.encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS, LIGHT_BUFFERS
+from normalbench.encodings.catalogue import DEPTH_ENCODINGS, ENCODINGS, LIGHT_BUFFERS, MOTION_ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.codecs.depth_codec import DepthCodec
+from normalbench.encodings.codecs.motion_codec import MotionCodec
 from normalbench.encodings.shared.position import Camera
 from normalbench.encodings.storages.depth_storage import DEPTH_STORAGES
+from normalbench.encodings.storages.rules import by_rule
 from normalbench.encodings.storages.storage import FORMS, STORAGES
-from normalbench.encodings.vec import Vec3, from_array, to_array
+from normalbench.encodings.vec import Vec2, Vec3, from_array, to_array
 from normalbench.gbuffer.display import displayed
 from normalbench.gbuffer.frame.plan import Plan
 from normalbench.gbuffer.frame.resources import GBUFFER
@@ -366,6 +368,40 @@ def test_motion_is_from_where_the_camera_stood(gl):
     expected = (now[:, :2] / now[:, 3:] - then[:, :2] / then[:, 3:]) / 2
     worst = abs(got - expected).max()
     assert abs(expected).max() > 0.02 and worst < 1e-4, f"{worst} of a screen off"
+
+
+@pytest.mark.parametrize("name", ["sqrt", "cube_root"])
+def test_packed_motion_is_the_codecs(gl, name):
+    """A code of motion in words of 14 bits is the one that `vectors` measures in SNORM 14:14; and a camera at rest moves
+    nothing by a thousandth of a pixel of 1920."""
+    x, y, z = ROOM.view.eye
+    moved = replace(ROOM, previous=replace(ROOM.view, eye=(x + 0.3, y - 0.1, z + 0.2)))
+    mine = layout(
+        Target("rgba32f", "normal.x normal.y motion.x motion.y"),
+    )
+    packed = layout(Target("rgba32f", "normal.x normal.y"), Target("rgba8", f"{name}(motion.x):14 {name}(motion.y):14"))
+    kept_motions = {}
+    for scene in (moved, replace(ROOM, previous=ROOM.view)):
+        for one in (mine, packed):
+            with rendering(gl, PIPELINES["prepass"], scene, plan(one)) as made:
+                made.draw()
+                number = len(one.targets) - 1 if one is packed else 0
+                texture = made.frame.textures(GBUFFER)[number]
+                kept_motions[scene is moved, one is packed] = texture.read()
+    exact = np.frombuffer(kept_motions[True, False], np.float32).reshape(-1, 4)[:, 2:]
+    words = np.frombuffer(kept_motions[True, True], ">u4")
+    here = np.abs(exact).max(axis=1) > 0
+    codec = MotionCodec(MOTION_ENCODINGS[name], by_rule("snorm", (14, 14)))
+    one = 2**13 - 1
+    code = np.stack(codec.stored(Vec2(*exact[here].T), 1.0), axis=-1) * one + one
+    got = np.stack([words[here] >> 18, words[here] >> 4 & (2**14 - 1)], axis=-1)
+    # A unit in the last place decides where a number lies on a tie.
+    apart = np.abs(got - np.rint(code))
+    assert here.sum() > 1500 and apart.max() <= 1 and np.mean(apart > 0) < 0.002, f"{np.mean(apart > 0):.4%} differ"
+    rest = np.frombuffer(kept_motions[False, True], ">u4")[here]
+    codes = (np.stack([rest >> 18, rest >> 4 & (2**14 - 1)]).astype(np.float64) - one) / one
+    still = np.stack(MOTION_ENCODINGS[name].decode(Vec2(*codes), 1.0))
+    assert abs(still).max() < 0.001 / 1920, f"{abs(still).max():.3g} of a screen at rest"
 
 
 @pytest.mark.usefixtures("gl")
