@@ -98,13 +98,13 @@ float from_fixed_code(uint integer, float scale, bool is_signed) {
 uint part_in(uint integer, int first, int bits, int channel, int size) {
     int shift = size * (channel + 1) - first - bits;
     if (size * (channel + 1) <= first || shift >= size) return 0u;
-    return (shift >= 0 ? integer << shift : integer >> -shift) & ((1u << size) - 1u);
+    return (shift >= 0 ? integer << shift : integer >> -shift) & (~0u >> (32 - size));
 }
 
 uint part_from(uint held, int first, int bits, int channel, int size) {
     int shift = size * (channel + 1) - first - bits;
     if (size * (channel + 1) <= first || shift >= size) return 0u;
-    return (shift >= 0 ? held >> shift : held << -shift) & ((1u << bits) - 1u);
+    return (shift >= 0 ? held >> shift : held << -shift) & (~0u >> (32 - bits));
 }
 
 #ifdef STORAGE_KIND

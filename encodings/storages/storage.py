@@ -82,6 +82,7 @@ class Storage:
         is_said: somebody said its bits, however few they are.
         is_full: its signed integers are -2^(n-1) to 2^(n-1) - 1, and 2^(n-1) would stand for 1.
         form: of its floats, where they are none of a GPU's.
+        is_integer: whether its channels are whole numbers, which hold bits and are not blended.
     """
 
     name: str
@@ -96,6 +97,7 @@ class Storage:
     is_said: bool = field(default=False, compare=False)
     is_full: bool = False
     form: FloatForm | None = None
+    is_integer: bool = False
 
     @property
     def is_packed(self) -> bool:
@@ -284,6 +286,21 @@ FORMATS: Mapping[str, Storage] = MappingProxyType(
         "r32f": R32F,
         "srgb8_a8": SRGB8_A8,
     }
+)
+
+# Whole numbers, which a layout lays bits into. They are not blended, filtered or resolved.
+_INTEGERS = {"r8": 0x8232, "r16": 0x8234, "r32": 0x8236, "rg16": 0x823A, "rg32": 0x823C}
+_INTEGERS |= {"rgba8": 0x8D7C, "rgba16": 0x8D76, "rgba32": 0x8D70}
+
+
+def _integer_format(name: str, internal_format: int) -> Storage:
+    channels, size = name.rstrip("0123456789"), int(name.lstrip("rgba"))
+    title = f"{channels.upper()}{size} UINT"
+    return Storage(f"{name}_uint", title, "unorm", (size,) * len(channels), internal_format, is_integer=True)
+
+
+TARGET_FORMATS: Mapping[str, Storage] = MappingProxyType(
+    {**FORMATS, **{f"{name}_uint": _integer_format(name, value) for name, value in _INTEGERS.items()}}
 )
 
 # What holds a number of a material, such as a roughness: one channel.

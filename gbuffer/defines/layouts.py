@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from ...encodings.catalogue import CURVE_ENCODINGS
 from ...encodings.codecs.light_encoding import LightEncoding
 from ...encodings.codecs.motion_codec import MotionEncoding
+from ...encodings.storages.storage import Storage
 from ..codecs.codec_passes import levels_of, storage_kind
 from ..codecs.curve.curve_passes import curve_constants
 from ..gl.shader import glsl_value
 from ..layouts.layout import Layout
 from ..layouts.words import COMPONENTS, PACKINGS, SIGNED, least_carried
 
+# The samplers of the G-buffer's targets, and of those that are of whole numbers.
+SAMPLERS, WORD_SAMPLERS = "gbuffer", "gbuffer_words"
 SRGB = CURVE_ENCODINGS["srgb"]
 # What stands for 1 in a channel of 8 bits.
 SRGB_ONE = "255.0"
@@ -45,6 +49,7 @@ def layout_defines(layout: Layout, rounds: tuple[int, ...], is_metal_rough: bool
         "TARGET_SCALE": tuple(float(s.scale(i % s.channels)) for s in storages for i in range(4)),
         "TARGET_BITS": tuple(s.bits[i % s.channels] for s in storages for i in range(4)),
         "TARGET_ROUNDS": rounds,
+        **_integer_defines(storages),
         "NORMAL_LEVELS": levels_of(layout.encoding),
         "NORMAL_SCALE": layout.normal_scales,
         "NORMAL_BIASED": int(layout.codec.storage.is_biased),
@@ -116,6 +121,26 @@ def curve_defines(layout: Layout) -> dict[str, object]:
         "EMISSION_ENCODE": f"{prefix}_encode",
         "EMISSION_DECODE": f"{prefix}_decode",
     }
+
+
+def _integer_defines(storages: Sequence[Storage]) -> dict[str, object]:
+    """The macros of targets of whole numbers: what a fragment writes, and how a pixel is read."""
+    found: dict[str, object] = {"HAS_WORDS": int(any(storage.is_integer for storage in storages))}
+    if not found["HAS_WORDS"]:
+        return found
+    outputs, writes, reads = [], [], []
+    counts = {False: 0, True: 0}
+    for at, storage in enumerate(storages):
+        kind, held = ("uvec4", "target_words") if storage.is_integer else ("vec4", "texels")
+        sampler = WORD_SAMPLERS if storage.is_integer else SAMPLERS
+        outputs.append(f"layout(location = {at}) out {kind} made_{at};")
+        writes.append(f"made_{at} = {held}[{at}];")
+        reads.append(f"{held}[{at}] = texelFetch({sampler}[{counts[storage.is_integer]}], pixel, SAMPLE);")
+        counts[storage.is_integer] += 1
+    found |= {"TEXEL_OUTPUTS": " ".join(outputs), "TEXEL_WRITES": " ".join(writes), "TEXEL_READS": " ".join(reads)}
+    found |= {"PLAIN_TARGETS": counts[False], "WORD_TARGETS": counts[True]}
+    found["TARGET_INTEGER"] = tuple(int(storage.is_integer) for storage in storages)
+    return found | {"TARGET_PART": tuple(storage.bits[0] if storage.is_integer else 8 for storage in storages)}
 
 
 FIRST_OF_MOTION = "motion.x"

@@ -22,6 +22,10 @@ NEAREST, AGAIN = "<", "<="
 COVERED = ">"
 
 
+# What the sampler of targets of whole numbers ends in.
+WORDS = "_words"
+
+
 class Canvas:
     """A frame as one pass sees it.
 
@@ -76,7 +80,10 @@ class Canvas:
         """A compiled pair of shaders that knows the frame's layout and what was told. Raises ShaderError."""
         made = self.frame.program(vertex, fragment, **{**self.told, **defines})
         for name in made:
-            if name.removesuffix("_before") in self.frame.pipeline.resources and name not in self._samplers:
+            if (
+                name.removesuffix("_before").removesuffix(WORDS) in self.frame.pipeline.resources
+                and name.removesuffix(WORDS) not in self._samplers
+            ):
                 raise PipelineError(f"pass {self._pass.name} samples {name}, which it does not read")
         return made
 
@@ -109,7 +116,7 @@ class Canvas:
 
     def prepare(self, program: Program, **textures: Any) -> None:
         """Bind what shaders read before a draw: the frame, the scene, tables, and what the pass reads by its name."""
-        read = {name: self.frame.textures(*at) for name, at in self._samplers.items() if name in program}
+        read = {name: self.frame.textures(*at) for name, at in self._samplers.items() if _is_read(name, program)}
         there = {name: several for name, several in read.items() if several}
         self.frame.bind(program, self._size, self._view, {**there, **textures})
 
@@ -117,6 +124,11 @@ class Canvas:
         if resource not in known:
             raise PipelineError(f"pass {self._pass.name} uses {resource.name}, which it does not declare")
         return resource
+
+
+def _is_read(name: str, program: Program) -> bool:
+    """Whether a program samples a resource; targets of whole numbers have a sampler of their own."""
+    return name in program or f"{name}{WORDS}" in program
 
 
 def _samplers(reads: tuple[Resource, ...], writes: tuple[Resource, ...]) -> dict[str, tuple[Resource, int]]:

@@ -16,7 +16,7 @@ from ..codecs.codec_passes import encoding_defines
 from ..codecs.depth.depth_passes import depth_defines
 from ..codecs.light.light_passes import light_defines
 from ..defines import materials
-from ..defines.layouts import curve_defines, curve_files, layout_defines
+from ..defines.layouts import SAMPLERS, WORD_SAMPLERS, curve_defines, curve_files, layout_defines
 from ..environment.dfg import dfg_table
 from ..environment.prefilter import COARSE, FINE, Prefiltered, kept_prefiltered
 from ..gl import raw
@@ -29,11 +29,12 @@ from ..scenes.scene import Scene
 from .contract import Pipeline
 from .held import Held
 from .plan import Plan
-from .resource import DEPTH_MAP, DEPTH_STENCIL, Resource
+from .resource import DEPTH_MAP, DEPTH_STENCIL, Resource, Texel
 from .resources import LIGHT, LIGHT_HOLDS, SHADOW_SIZE
 from .scene_buffers import SceneBuffers, Sight, sun_matrix
 
 FRAME_BINDING = 0
+KINDS = ((SAMPLERS, False), (WORD_SAMPLERS, True))
 
 
 class Frame:
@@ -119,6 +120,7 @@ class Frame:
             raw.clear_depth_stencil()
         else:
             made.clear(none, none, none, none, depth=1.0)
+            raw.clear_words(at for at, storage in enumerate(resource.texels(self.plan)) if _is_integer(storage))
 
     def framebuffer(
         self, colours: Sequence[Any], depth: Resource | None = None, writes_depth: bool = False, at: int | None = None
@@ -211,7 +213,16 @@ class Frame:
             self._blocks[size, view] = self._frame_buffer(size, view)
         self._blocks[size, view].bind_to_uniform_block(FRAME_BINDING)
         self.scene_buffers.bind(view)
-        bind(program, {"bumps": self.scene_buffers.bumps, **self.tables, **textures})
+        bind(program, {"bumps": self.scene_buffers.bumps, **self.tables, **self._by_kind(textures)})
+
+    def _by_kind(self, textures: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Textures by sampler, those of the G-buffer that hold whole numbers under a sampler of their own."""
+        storages = [target.storage for target in self.plan.layout.targets]
+        if SAMPLERS not in textures or not any(storage.is_integer for storage in storages):
+            return textures
+        pairs = list(zip(textures[SAMPLERS], storages, strict=True))
+        parts = {name: [one for one, storage in pairs if storage.is_integer is is_words] for name, is_words in KINDS}
+        return {**textures, **{name: several for name, several in parts.items() if several}}
 
     def _frame_buffer(self, size: tuple[int, int], view: Sight | None) -> Buffer:
         """What `frame.glsl` declares."""
@@ -225,6 +236,10 @@ class Frame:
         matrices = [projection, np.linalg.inv(projection), to_world, to_sun, previous_clip]
         data = np.concatenate([*(m.T.ravel() for m in matrices), *map(np.array, vectors)])
         return self.device.owned(self.stack, self.context.buffer(data.astype(np.float32).tobytes()))
+
+
+def _is_integer(texel: Texel) -> bool:
+    return isinstance(texel, Storage) and texel.is_integer
 
 
 def _levels_uploaded(device: Device, levels: Prefiltered) -> list[Any]:
@@ -242,5 +257,5 @@ def shader_roundings(device: Device, layout: Layout) -> tuple[int, ...]:
 
 def _shader_rounding(device: Device, storage: Storage, asked: str) -> int:
     # Colours on the sRGB curve are codes of it before the device sees them (`curve_defines`).
-    is_native = storage.curved > 0 or device.native_rounding(storage) == asked
+    is_native = storage.curved > 0 or storage.is_integer or device.native_rounding(storage) == asked
     return 0 if is_native else ROUNDINGS.index(asked) + 1

@@ -64,6 +64,8 @@ class FormatError(Exception):
 
 
 def _dtype(storage: Storage) -> str:
+    if storage.is_integer:
+        return f"u{storage.bits[0] // 8}"
     by_bits = {"float": {11: "f2", 16: "f2", 32: "f4"}, "unorm": {16: "f2"}, "snorm": {16: "f2"}}[storage.kind]
     return by_bits.get(storage.bits[0], "f1")
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cache
 from typing import Any
 
@@ -14,7 +14,7 @@ DEPTH32F_STENCIL8 = 0x8CAD
 DEPTH_ATTACHMENT, DEPTH_STENCIL_ATTACHMENT, FRAMEBUFFER, COMPLETE = 0x8D00, 0x821A, 0x8D40, 0x8CD5
 FRAMEBUFFER_DEPTH_STENCIL, STENCIL = 0x84F9, 0x1802
 STENCIL_TEST, DEPTH_CLAMP = 0x0B90, 0x864F
-COLOR_ATTACHMENT = 0x8CE0
+COLOR, COLOR_ATTACHMENT = 0x1800, 0x8CE0
 FRONT, BACK, FRONT_AND_BACK = 0x0404, 0x0405, 0x0408
 ALWAYS, NOTEQUAL = 0x0207, 0x0205
 KEEP, ZERO, REPLACE, INCR_WRAP, DECR_WRAP = 0x1E00, 0, 0x1E01, 0x8507, 0x8508
@@ -34,6 +34,7 @@ _SIGNATURES = {
     "glBlendColor": "ffff",
     "glClearBufferfi": "uifi",
     "glClearBufferiv": "uip",
+    "glClearBufferuiv": "uip",
     "glColorMask": "bbbb",
     "glStencilFunc": "uiu",
     "glStencilOpSeparate": "uuuu",
@@ -149,6 +150,12 @@ def depth_stencil(context: moderngl.Context, size: tuple[int, int], samples: int
 def clear_depth_stencil() -> None:
     """Depth to 1 and stencil to 0 in the framebuffer in use."""
     function("glClearBufferfi")(FRAMEBUFFER_DEPTH_STENCIL, 0, 1.0, 0)
+
+
+def clear_words(attachments: Iterable[int]) -> None:
+    """Whole numbers to 0 in attachments of the framebuffer in use."""
+    for at in attachments:
+        function("glClearBufferuiv")(COLOR, at, (ctypes.c_uint * 4)())
 
 
 def mark_volume() -> None:

@@ -12,7 +12,11 @@
 
 #ifdef WRITES_GBUFFER
 #include "dither.glsl"
+#if HAS_WORDS
+TEXEL_OUTPUTS
+#else
 layout(location = 0) out vec4 texels[TARGETS];
+#endif
 
 void write_gbuffer(Surface s) {
     float numbers[NUMBERS];
@@ -42,16 +46,33 @@ void write_gbuffer(Surface s) {
     vec4 light = EMISSION_ENCODE(light_or_none(vec4(s.emissive, 0.0)));
     for (int i = 0; i < 4; ++i) numbers[EMISSION + i] = light[i];
 #endif
+#if HAS_WORDS
+    vec4 texels[TARGETS] = to_texels(numbers);
+    TEXEL_WRITES
+#else
     texels = to_texels(numbers);
+#endif
 }
 #else
+#if HAS_WORDS
+#if PLAIN_TARGETS
+uniform SAMPLER gbuffer[PLAIN_TARGETS];
+#endif
+uniform WORD_SAMPLER gbuffer_words[WORD_TARGETS];
+#else
 uniform SAMPLER gbuffer[TARGETS];
+#endif
 uniform SAMPLER linear_depth;
 
 // The surface in a pixel's sample. What the layout does not keep is left at a general material's default.
 Surface read_gbuffer(ivec2 pixel) {
     vec4 texels[TARGETS];
+#if HAS_WORDS
+    for (int i = 0; i < TARGETS; ++i) texels[i] = vec4(0.0);
+    TEXEL_READS
+#else
     for (int i = 0; i < TARGETS; ++i) texels[i] = texelFetch(gbuffer[i], pixel, SAMPLE);
+#endif
     float numbers[NUMBERS];
     for (int i = 0; i < NUMBERS; ++i) numbers[i] = 0.0;
     numbers[POWER] = LIGHT_PASS_POWER;

@@ -4,10 +4,12 @@
 
 #if SAMPLES > 1
 #define SAMPLER sampler2DMS
+#define WORD_SAMPLER usampler2DMS
 #define SAMPLE gl_SampleID
 #define SAMPLE_PLACE gl_SamplePosition
 #else
 #define SAMPLER sampler2D
+#define WORD_SAMPLER usampler2D
 #define SAMPLE 0
 #define SAMPLE_PLACE vec2(0.5)
 #endif

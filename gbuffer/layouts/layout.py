@@ -18,7 +18,7 @@ from ...encodings.codecs.depth_codec import DepthCodec, DepthEncoding
 from ...encodings.codecs.encoding import Encoding
 from ...encodings.codecs.files import called, file_toml
 from ...encodings.codecs.variants import MARK, settings_in, variant
-from ...encodings.storages.storage import BITS_32, FORMATS, ROUNDINGS, Storage
+from ...encodings.storages.storage import BITS_32, ROUNDINGS, TARGET_FORMATS, Storage
 from .kept import COLOURS, LIGHT, MOTION, Kept
 from .words import (
     FREE,
@@ -161,7 +161,7 @@ class Layout:
         if self.light:
             _check_known(self.name, "light", self.light, LIGHT_BUFFERS)
         for target in self.targets:
-            _check_known(self.name, "format", target.format, FORMATS)
+            _check_known(self.name, "format", target.format, TARGET_FORMATS)
 
     @cached_property
     def words(self) -> tuple[Word, ...]:

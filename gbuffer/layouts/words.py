@@ -2,7 +2,7 @@
 
 A target is a format and a line of words that fill its bits in order, the most significant first. A word alone
 (`albedo.r`) takes one whole channel and is converted as the format converts. A word with a number of bits (`depth:16`)
-is an unsigned integer laid across channels of 8 bits. `-` leaves a channel free.
+is an unsigned integer laid across channels of 8 bits, or of integers. `-` leaves a channel free.
 
 A quantity may carry a number of the normal's code that is 1 or -1 as its own sign: `roughness*normal.z`. It may lie on
 a curve of the catalogue, over a range of its own: `squared(roughness)`, `linear:0.08(reflectance)`. A colour without a
@@ -16,7 +16,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from ...encodings.storages.storage import FORMATS, FORMS, Storage
+from ...encodings.storages.storage import FORMS, TARGET_FORMATS, Storage
 from .kept import COLOURS, LIGHT, WHOLE, Kept, kept_as
 
 # The order is the G-buffer shaders' (gbuffer.glsl).
@@ -71,7 +71,7 @@ class Target:
 
     @property
     def storage(self) -> Storage:
-        return FORMATS[self.format]
+        return TARGET_FORMATS[self.format]
 
 
 def targets_of(text: str) -> tuple[Target, ...]:
@@ -98,6 +98,9 @@ def placed(layout: str, index: int, target: Target) -> Iterator[Word]:
         if not bits and bit not in (0, *_ends(storage)):
             raise LayoutError(f"{place}: {text} starts within a channel; give it a number of bits")
         taken = bits or (storage.bits[channel] if channel < storage.channels else 1)
+        if storage.is_integer and name not in (FREE, OTHER):
+            bits = taken
+            _check_packed(place, text, storage, bits)
         if bit + taken > sum(storage.bits):
             raise LayoutError(f"{place}: {target.holds!r} takes more than its {sum(storage.bits)} bits")
         if channel < storage.curved and name.partition(".")[0] not in (*COLOURS, OTHER, FREE):
@@ -157,8 +160,9 @@ def _word_parts(place: str, text: str) -> tuple[str, str, int, Kept | None]:
 
 def _check_packed(place: str, text: str, storage: Storage, bits: int) -> None:
     is_bytes = storage.kind == "unorm" and set(storage.bits) == {8} and not storage.curved
-    if not is_bytes or bits > MAX_PACKED_BITS:
-        raise LayoutError(f"{place}: {text}: up to {MAX_PACKED_BITS} bits may be packed, into channels of 8-bit UNORM")
+    if not (is_bytes or storage.is_integer) or bits > MAX_PACKED_BITS:
+        into = "channels of 8-bit UNORM or of integers"
+        raise LayoutError(f"{place}: {text}: up to {MAX_PACKED_BITS} bits may be packed, into {into}")
 
 
 def _ends(storage: Storage) -> list[int]:

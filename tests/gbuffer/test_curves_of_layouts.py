@@ -97,7 +97,7 @@ def test_two_ranges_of_one_code_are_told_apart(gl):
         ("rgba8: gamma(roughness)", "unknown curve 'gamma'; known: linear, squared, square_root"),
         (
             "rgba8: squared(kind)",
-            "only albedo, specular, emission, roughness, metalness, reflectance, occlusion lie on",
+            "only albedo, specular, emission, roughness, metalness, reflectance, occlusion, motion lie on",
         ),
         ("rgba8: squared:0(roughness)", "a range is 0.001 to 65504, not 0"),
         ("rgba8: squared:e(roughness)", "a range is 0.001 to 65504, not e"),

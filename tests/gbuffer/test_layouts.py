@@ -372,7 +372,7 @@ def test_motion_is_from_where_the_camera_stood(gl):
 
 @pytest.mark.parametrize("name", ["sqrt", "cube_root"])
 def test_packed_motion_is_the_codecs(gl, name):
-    """A code of motion in words of 14 bits is the one that `vectors` measures in SNORM 14:14; and a camera at rest moves
+    """A code of motion in words of 14 bits is what `vectors` measures in SNORM 14:14; and a camera at rest moves
     nothing by a thousandth of a pixel of 1920."""
     x, y, z = ROOM.view.eye
     moved = replace(ROOM, previous=replace(ROOM.view, eye=(x + 0.3, y - 0.1, z + 0.2)))
@@ -402,6 +402,49 @@ def test_packed_motion_is_the_codecs(gl, name):
     codes = (np.stack([rest >> 18, rest >> 4 & (2**14 - 1)]).astype(np.float64) - one) / one
     still = np.stack(MOTION_ENCODINGS[name].decode(Vec2(*codes), 1.0))
     assert abs(still).max() < 0.001 / 1920, f"{abs(still).max():.3g} of a screen at rest"
+
+
+FIELDS = (
+    "normal.x:11 normal.y:11 roughness:10",
+    "metalness:4 occlusion:5 reflectance:7 albedo.r:5 albedo.g:6 albedo.b:5",
+)
+
+
+@pytest.mark.parametrize(
+    ("targets", "samples"),
+    [
+        (("r32_uint", "r32_uint"), 4),
+        (("rg32_uint",), 1),
+        (("rgba16_uint",), 1),
+        (("rgba8_uint", "rg16_uint"), 1),
+        (("rgba8", "r32_uint"), 1),
+        (("rgba32_uint",), 1),
+    ],
+)
+def test_integer_targets_hold_the_bits_that_bytes_hold(gl, targets, samples):
+    """The same fields in whole numbers of any size, across their channels, give the same image to the bit."""
+    images = []
+    for formats in (("rgba8", "rgba8"), targets):
+        held = FIELDS if len(formats) == 2 else (" ".join(FIELDS),)
+        asked = plan(layout(*map(Target, formats, held)), samples=samples, size=(64, 48))
+        with rendering(gl, PIPELINES["prepass"], ROOM, asked) as made:
+            made.draw()
+            images.append(made.image())
+    assert images[0].max() > 0.1 and np.array_equal(*images), f"{np.abs(images[0] - images[1]).max():.3g} apart"
+
+
+@pytest.mark.parametrize(
+    ("target", "what"),
+    [
+        (("r32_uint", "normal.x:16 normal.y:17"), "takes more than its 32 bits"),
+        (("r32_uint", "normal.x"), "up to 24 bits"),
+        (("rg32_uint", "normal.x:25 normal.y:25"), "up to 24 bits"),
+        (("r64_uint", "normal.x:16 normal.y:16"), "unknown format 'r64_uint'"),
+    ],
+)
+def test_what_whole_numbers_cannot_hold_is_said(target, what):
+    with pytest.raises(LayoutError, match=what):
+        layout(Target(*target)).words  # noqa: B018 # asked for, not used
 
 
 @pytest.mark.usefixtures("gl")
