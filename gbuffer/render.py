@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from .frame.contract import Pass, Pipeline, Run
 from .frame.frame import Frame
 from .frame.plan import Plan
 from .frame.resource import Resource
-from .frame.resources import FINAL, GBUFFER, TERMS
+from .frame.resources import FINAL, GBUFFER, LIGHT, TERMS
 from .gl.device import Device, read_pixels
 from .layouts.words import LayoutError
 from .pipelines import PIPELINES
@@ -105,6 +106,31 @@ class Rendering:
         covered = depth > 0
         texels[covered, :3] = keeps(position[covered], texels[covered, :3])
         texture.write(texels.tobytes())
+
+    def surfaces(self) -> list[np.ndarray]:
+        """What the passes up to the geometry's leave, those passes run: the textures of the G-buffer, then those of the
+        light that surfaces give off themselves; float32, (height, width, channels) each, row 0 on top.
+
+        At one sample a pixel, of a layout and a light buffer in 32-bit floats.
+        """
+        self.frame.advance()
+        for name, run in self.passes.items():
+            run()
+            if name == GEOMETRY:
+                break
+        return [read_pixels(texture)[::-1].copy() for texture in self._textures_of_surfaces()]
+
+    def lit(self, surfaces: Sequence[np.ndarray]) -> np.ndarray:
+        """The image that the passes after the geometry's make of other surfaces, as `surfaces` gives them."""
+        for texture, texels in zip(self._textures_of_surfaces(), surfaces, strict=True):
+            texture.write(np.ascontiguousarray(texels[::-1], np.float32).tobytes())
+        names = list(self.passes)
+        for name in names[names.index(GEOMETRY) + 1 :]:
+            self.passes[name]()
+        return self.image()
+
+    def _textures_of_surfaces(self) -> list[Any]:
+        return [*self.frame.textures(GBUFFER), *self.frame.textures(LIGHT)]
 
     def image(self) -> np.ndarray:
         """The final image of the frame last drawn: linear light, float32 of shape (height, width, 3), row 0 on top."""

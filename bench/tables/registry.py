@@ -10,6 +10,7 @@ from .table import Table
 
 FOLDERS = (
     "pick",
+    "budget",
     "quality",
     "render",
     "mix",

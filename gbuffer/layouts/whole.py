@@ -18,7 +18,7 @@ UNITY = "Unity 2022.3 as in Torgo13/CustomRenderPipeline (373861b)"
 URP = "srgb8_a8: albedo kind; rgba8: reflectivity(metalness) - - occlusion"
 KAJIYA = (
     "rgba8: square_root(albedo) -; rgba8: normal.x:11 normal.y:10 normal.z:11; rg16f: roughness metalness; "
-    "rgba8: rgb9e5(emission); rgb10a2: other other other -; rgba16f: other other other -"
+    "rgba8: rgb9e5(emission); rgb10a2: other other other -; rgba16f: motion.x motion.y other -"
 )
 # Decals.
 BLENDED = "blended into the targets"
@@ -185,7 +185,8 @@ WHOLE_ENGINES = (
         "albedo in sRGB, AO; octahedral 10:10, there in halves, class; smoothness, reflectance, metal; motion",
         "octahedral",
         "srgb8_a8: albedo occlusion; rgb10a2: normal.x normal.y other kind; "
-        "rgba8: inverted(roughness) square_root:0.16(reflectance) metalness other; rgba16f: other other other other",
+        "rgba8: inverted(roughness) square_root:0.16(reflectance) metalness other; "
+        "rgba16f: motion.x motion.y other other",
         "",
         "GaijinEntertainment/DagorEngine (7572366), gbuffer_pack_unpack_DNG.hlsl; its light buffer was not read",
         decals=BLENDED,

@@ -93,14 +93,14 @@ def placed(layout: str, index: int, target: Target) -> Iterator[Word]:
     for text in spelt_out(place, target):
         name, sign, bits, kept = _word_parts(place, text)
         if bits and name != OTHER:
-            _check_packed(place, text, storage, bits)
+            _check_packed(place, text, storage, bits, bit)
         channel = len([end for end in _ends(storage) if end <= bit])
         if not bits and bit not in (0, *_ends(storage)):
             raise LayoutError(f"{place}: {text} starts within a channel; give it a number of bits")
         taken = bits or (storage.bits[channel] if channel < storage.channels else 1)
         if storage.is_integer and name not in (FREE, OTHER):
             bits = taken
-            _check_packed(place, text, storage, bits)
+            _check_packed(place, text, storage, bits, bit)
         if bit + taken > sum(storage.bits):
             raise LayoutError(f"{place}: {target.holds!r} takes more than its {sum(storage.bits)} bits")
         if channel < storage.curved and name.partition(".")[0] not in (*COLOURS, OTHER, FREE):
@@ -158,8 +158,9 @@ def _word_parts(place: str, text: str) -> tuple[str, str, int, Kept | None]:
     return name, sign, bits, kept
 
 
-def _check_packed(place: str, text: str, storage: Storage, bits: int) -> None:
-    is_bytes = storage.kind == "unorm" and set(storage.bits) == {8} and not storage.curved
+def _check_packed(place: str, text: str, storage: Storage, bits: int, first: int) -> None:
+    is_curved = first < sum(storage.bits[: storage.curved])
+    is_bytes = storage.kind == "unorm" and set(storage.bits) == {8} and not is_curved
     if not (is_bytes or storage.is_integer) or bits > MAX_PACKED_BITS:
         into = "channels of 8-bit UNORM or of integers"
         raise LayoutError(f"{place}: {text}: up to {MAX_PACKED_BITS} bits may be packed, into {into}")

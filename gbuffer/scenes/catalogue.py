@@ -9,7 +9,7 @@ from types import MappingProxyType
 import numpy as np
 
 from ..display import Display, measured_exposure
-from .built_in import gloss, head, lake, objects, playground, room, studio
+from .built_in import gloss, head, lake, objects, playground, ramps, room, studio
 from .scene import Scene
 from .setting import Setting
 
@@ -55,6 +55,7 @@ SCENES: Mapping[str, SceneMaker] = MappingProxyType(
         "studio": SceneMaker(
             "studio", studio.TITLE, studio.studio, studio.FRAMES, studio.EXPOSURE, is_metal_rough=True
         ),
+        "ramps": SceneMaker("ramps", ramps.TITLE, ramps.ramps, ramps.FRAMES, ramps.EXPOSURE, is_metal_rough=True),
         "room": SceneMaker("room", room.TITLE, room.room, room.FRAMES),
         "head": SceneMaker("head", head.TITLE, head.head, head.FRAMES),
         "lake": SceneMaker("lake", lake.TITLE, lake.lake, lake.FRAMES),

@@ -21,7 +21,7 @@ from normalbench.gbuffer.scenes.setting import Setting
 SIZE = (160, 120)
 FP32 = LAYOUTS["fp32"]
 # Those that every pipeline draws.
-BLINN_PHONG = [name for name in SCENES if name != "studio"]
+BLINN_PHONG = [name for name, maker in SCENES.items() if not maker.is_metal_rough]
 EXACT = ("forward", "forward_multipass", "deferred", "prepass", "hybrid", "inferred")
 
 

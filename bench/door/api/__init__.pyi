@@ -99,6 +99,56 @@ def pick(
         on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
     """
 
+def budget(
+    *,
+    bytes: Names = ...,
+    scene: Names = ...,
+    environment: Names | None = ...,
+    hold: Names = ...,
+    targets: int = ...,
+    formats: Names = ...,
+    fields: bool = ...,
+    integers: bool = ...,
+    limit: Names | None = ...,
+    light: Names = ...,
+    threshold: float | None = ...,
+    blend: Names | None = ...,
+    read_alone: Names = ...,
+    classes: Names = ...,
+    overdraw: float = ...,
+    readers: float = ...,
+    size: Names = ...,
+    against: Names | None = ...,
+    engines: bool = ...,
+    on: str | None = ...,
+) -> Rows:
+    """How few bytes a pixel does the whole G-buffer need, and which layout does it?
+
+    Each code of each attribute is measured by itself, by what it does to the displayed image of mirrors, glossy and rough surfaces. An integer program then finds the codes and targets whose worst class is best, and the layout is drawn whole.
+
+    Args:
+        bytes: Bytes a pixel without native depth, comma-separated.
+        scene: Metal/rough scenes that judge: ramps, studio, and glTF files; comma-separated.
+        environment: What they reflect: studio, sky, strips, lamp, or an .hdr or .exr file.
+        hold: What is stored: normal, basecolor, roughness, metalness, specular, occlusion, tangent; motion in a target of its own, or motion:packed; id:BITS, flags:BITS, shadow:BITS, custom:BITS, other:BITS; emission, or emission:light where the light buffer has it.
+        targets: The most render targets that there may be.
+        formats: Formats that targets may have, comma-separated, or all.
+        fields: Whether numbers may share a channel, as bits.
+        integers: Whether they may do so in integer targets.
+        limit: webgpu: its 32 bytes a sample and its formats; tile:BYTES: a GPU's bytes a pixel in tiles.
+        light: Format of the light buffer, which is drawn with the G-buffer: it counts for --limit.
+        threshold: The fewest bytes whose FLIP (99th percentile) is at most this, in place of --bytes.
+        blend: What decals blend into, such as basecolor,roughness,normal.
+        read_alone: What a pass reads from one target, as reflections and denoisers do; or none.
+        classes: Classes of surfaces that judge: mirror, glossy, rough, emissive; or all.
+        overdraw: How often a pixel is written.
+        readers: How many passes read all of the G-buffer.
+        size: WIDTHxHEIGHT of the image.
+        against: Layouts to compare with: presets, or TOML files of yours; comma-separated.
+        engines: Whether engines' layouts are measured as well.
+        on: Measure in other processes: local:4 for four on this machine, or a dask scheduler, tcp://HOST:PORT.
+    """
+
 def quality(
     *,
     encoding: Names = ...,

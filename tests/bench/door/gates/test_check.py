@@ -228,9 +228,9 @@ def test_limits_hold_at_their_very_value_and_not_for_what_is_no_number():
         ('[[gate]]\npsnr = "at least 1"\nencoding = "xy"\ncount = 10', "quality: no column 'psnr'; figures are bits"),
         (
             '[[gate]]\ntable = "depths"\nerror_max = "at most 1"',
-            "unknown table 'depths'; did you mean depth? known: pick, quality, render",
+            "unknown table 'depths'; did you mean depth? known: pick, budget, quality, render",
         ),
-        ('[[gate]]\ntable = 3\nerror_max = "at most 1"', "unknown table 3; known: pick, quality, render"),
+        ('[[gate]]\ntable = 3\nerror_max = "at most 1"', "unknown table 3; known: pick, budget, quality, render"),
         ('[[gate]]\ntable = ["depth"]\nerror_max = "at most 1"', "table is ['depth']; it must be a text or a number"),
         ('[[gate]]\ndevice = "at least 3"', "quality: device is not a figure"),
     ],

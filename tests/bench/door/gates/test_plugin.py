@@ -110,9 +110,9 @@ def test_a_marker_holds_before_the_test(inside):
             "unknown option 'encodin'; known: encoding, storage, rounding, arithmetic, normals, *",
             "the marker normalbench takes options and limits by name, not 'xy'",
             'no limit given; add for example psnr_db = "at least 47.5"',
-            "unknown table 'costs'; did you mean cost? known: pick, quality, render, *",
+            "unknown table 'costs'; did you mean cost? known: pick, budget, quality, render, *",
             "quality: no column 'psnr'; figures are bits, *",
-            "unknown table *quality*; known: pick, quality, render, *",
+            "unknown table *quality*; known: pick, budget, quality, render, *",
             "encoding is *xy*; it must be a text",
         ]
     )

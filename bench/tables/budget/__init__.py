@@ -1,0 +1,1 @@
+"""How few bytes a pixel an image bears."""

@@ -1,0 +1,252 @@
+"""What a G-buffer stores of a surface, and the codes that each attribute may have, with the words that say them in a
+layout."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cache, partial
+from types import MappingProxyType
+
+import jax
+import numpy as np
+
+from ....encodings.catalogue import CURVE_ENCODINGS, ENCODINGS
+from ....encodings.codecs.codec import Codec
+from ....encodings.codecs.curve_codec import CurveCodec
+from ....encodings.storages.rules import by_rule
+from ....encodings.storages.storage import STORAGES
+from ....encodings.vec import Vec3
+
+# What a channel holds.
+UNORM, SRGB, FLOAT, RGB9E5 = "unorm", "srgb", "float", "rgb9e5"
+# The curve that leaves numbers as they are.
+ITSELF = "linear"
+# The reflectance of what is no metal, where nothing else is said: of an index of refraction of 1.5.
+DIELECTRIC = 0.04
+
+
+@dataclass(frozen=True)
+class Surfaces:
+    """What pixels see, float32: normals in the world's axes and base colours (height, width, 3), the others (height,
+    width)."""
+
+    normal: np.ndarray
+    basecolor: np.ndarray
+    roughness: np.ndarray
+    metalness: np.ndarray
+    specular: np.ndarray
+    occlusion: np.ndarray
+
+
+@dataclass(frozen=True)
+class Code:
+    """How an attribute may lie in a G-buffer.
+
+    Attributes:
+        attribute: its name.
+        name: what the code is called, such as `octahedral 11:11`.
+        words: a layout's words, without bits, in the order of their numbers.
+        bits: of each number.
+        kind: what a channel of its own must hold: UNORM, SRGB or FLOAT.
+        blends: whether the mean of two texels is the texel of the mean, so that decals may blend into it.
+        in_fields: whether it may share a channel with others, as bits.
+        is_exact: whether it is bits that must come back as they are.
+        trip: what surfaces come back as; None where the image does not read it.
+    """
+
+    attribute: str
+    name: str
+    words: tuple[str, ...]
+    bits: tuple[int, ...]
+    kind: str = UNORM
+    blends: bool = False
+    in_fields: bool = True
+    is_exact: bool = False
+    trip: Callable[[Surfaces], Surfaces] | None = None
+
+    @property
+    def total_bits(self) -> int:
+        return sum(self.bits)
+
+
+def _sized(bits: tuple[int, ...]) -> str:
+    return ":".join(map(str, bits))
+
+
+@cache
+def _compiled(codec: Codec) -> Callable[[Vec3], Vec3]:
+    def trip(n: Vec3) -> Vec3:
+        return codec.round_trip(n, n)
+
+    return jax.jit(trip)
+
+
+def _normal_trip(codec: Codec, surfaces: Surfaces) -> Surfaces:
+    planes = _compiled(codec)(Vec3(*np.moveaxis(surfaces.normal, -1, 0)))
+    return replace(surfaces, normal=np.stack([np.asarray(plane) for plane in planes], axis=-1))
+
+
+def _curve_trip(attribute: str, codecs: tuple[CurveCodec, ...], surfaces: Surfaces) -> Surfaces:
+    given = getattr(surfaces, attribute)
+    channels = [given] if given.ndim == 2 else list(np.moveaxis(given, -1, 0))
+    back = [np.asarray(codec.round_trip(x)) for x, codec in zip(channels, codecs, strict=True)]
+    return replace(surfaces, **{attribute: back[0] if given.ndim == 2 else np.stack(back, axis=-1)})
+
+
+def _normals() -> Iterator[Code]:
+    def code(encoding: str, bits: tuple[int, ...], storage: str = "", kind: str = UNORM, blends: bool = False) -> Code:
+        found = STORAGES[storage] if storage else by_rule("unorm", bits)
+        codec = Codec(ENCODINGS[encoding], found)
+        words = tuple(f"normal.{axis}" for axis in "xyz"[: len(bits)])
+        name = f"{encoding} {_sized(bits)}" + (" in halves" if kind == FLOAT else "")
+        return Code(
+            "normal", name, words, bits, kind, blends, kind == UNORM and not blends, trip=partial(_normal_trip, codec)
+        )
+
+    for bits in range(10, 17):
+        yield code("octahedral", (bits, bits))
+    yield code("xyz_renormalised", (10,) * 3, blends=True)
+    yield code("xyz_renormalised", (16,) * 3, blends=True)
+    yield code("xyz_renormalised", (16,) * 3, "rgba16f", FLOAT, blends=True)
+
+
+def _on_curve(
+    attribute: str, component: str, curve: str, bits: tuple[int, ...], kind: str = UNORM, limit: float | None = None
+) -> Code:
+    encoding = CURVE_ENCODINGS[curve]
+    codecs = tuple(CurveCodec(encoding, by_rule("unorm", (b,)), limit or encoding.usual_range) for b in bits)
+    over = "" if limit is None else f" to {limit:g}"
+    name = f"{curve if kind != SRGB else 'sRGB'} {_sized(bits)}{over}"
+    is_itself = curve == ITSELF
+    shown = component if kind == SRGB or (is_itself and limit is None) else _curved(curve, limit, component)
+    words = tuple(f"{shown}".replace(component, f"{component}.{c}") for c in "rgb") if len(bits) == 3 else (shown,)
+    blends = kind == SRGB or is_itself
+    return Code(attribute, name, words, bits, kind, blends, kind == UNORM, trip=partial(_curve_trip, attribute, codecs))
+
+
+def _curved(curve: str, limit: float | None, component: str) -> str:
+    return f"{curve}({component})" if limit is None else f"{curve}:{limit:g}({component})"
+
+
+def _basecolors() -> Iterator[Code]:
+    yield _on_curve("basecolor", "albedo", "srgb", (8, 8, 8), SRGB)
+    # Textures have 8 bits: more would keep nothing that they have.
+    for bits in ((7, 7, 6), (7, 7, 7), (8, 8, 8)):
+        yield _on_curve("basecolor", "albedo", "square_root", bits)
+    yield _on_curve("basecolor", "albedo", ITSELF, (10, 10, 10))
+
+
+def _singles(attribute: str, component: str, sizes: Iterable[int]) -> Iterator[Code]:
+    for bits in sizes:
+        yield _on_curve(attribute, component, ITSELF, (bits,))
+
+
+def _roots(attribute: str, component: str, sizes: range) -> Iterator[Code]:
+    for bits in sizes:
+        yield _on_curve(attribute, component, "square_root", (bits,))
+
+
+@dataclass(frozen=True)
+class Attribute:
+    """What is stored of a surface.
+
+    Attributes:
+        name, title: what it is called, and what it is.
+        codes: the ones that it may have, the floor's and all above it.
+        usual_bits: what it has at least where no scene shows what its code loses.
+        is_seen: whether an image reads it; where not, its bits are by contract.
+        floor: why it has no fewer bits; a clause.
+    """
+
+    name: str
+    title: str
+    codes: tuple[Code, ...]
+    usual_bits: int = 0
+    is_seen: bool = True
+    floor: str = ""
+
+
+def exact_bits(name: str, title: str, word: str, bits: int) -> Attribute:
+    """So many bits that come back as they are, as ids do."""
+    parts = tuple(min(bits - start, MOST_PART) for start in range(0, bits, MOST_PART))
+    code = Code(name, f"{bits} bits", (word,) * len(parts), parts, is_exact=True)
+    return Attribute(name, title, (code,), bits, False, "comes back as it is")
+
+
+# The bits of one word of a layout that holds a whole number.
+MOST_PART = 16
+MOTION = Attribute(
+    "motion",
+    "motion vectors",
+    (Code("motion", "linear in halves", ("motion.x", "motion.y"), (16, 16), FLOAT, in_fields=False),),
+    32,
+    False,
+    "no motion is exact, and up to 64 pixels a frame it is off by less than 1/16 pixel of 1920 x 1080",
+)
+# In a word with others, which saves bits and is no upscaler's input.
+PACKED_MOTION = Attribute(
+    "motion",
+    "motion vectors",
+    (*MOTION.codes, Code("motion", "sqrt 14:14", ("sqrt(motion.x)", "sqrt(motion.y)"), (14, 14))),
+    28,
+    False,
+    MOTION.floor,
+)
+EMISSION = Attribute(
+    "emission",
+    "emitted light",
+    (
+        Code("emission", "RGB9E5", ("rgb9e5(emission)",), (32,), RGB9E5, in_fields=False),
+        Code("emission", "R11G11B10F", ("emission",), (11, 11, 10), FLOAT, in_fields=False),
+    ),
+    32,
+    False,
+    "is light, of any brightness",
+)
+
+
+def _reflectances() -> Iterator[Code]:
+    for bits in range(3, 9):
+        # The usual 0.04 lies on a code: one that it lies between is off everywhere, by half a step.
+        share = 2 ** (bits - 1) / (2**bits - 1)
+        yield _on_curve("specular", "reflectance", ITSELF, (bits,), limit=_short(DIELECTRIC / share))
+
+
+def _short(limit: float) -> float:
+    """A range in the digits that a layout says it with."""
+    return float(f"{limit:.6g}")
+
+
+SEEN: Mapping[str, Attribute] = MappingProxyType(
+    {
+        one.name: one
+        for one in (
+            Attribute("normal", "shading normal", tuple(_normals()), 20),
+            Attribute("basecolor", "base colour", tuple(_basecolors()), 18),
+            Attribute(
+                "roughness",
+                "perceptual roughness",
+                (
+                    *_singles("roughness", "roughness", (*range(6, 11), 16)),
+                    *_roots("roughness", "roughness", range(6, 11)),
+                ),
+                8,
+            ),
+            Attribute(
+                "metalness",
+                "metalness",
+                tuple(_singles("metalness", "metalness", range(3, 9))),
+                4,
+                floor="filtered maps have values between 0 and 1",
+            ),
+            Attribute("specular", "reflectance of what is no metal", tuple(_reflectances()), 5),
+            Attribute("occlusion", "occlusion", tuple(_singles("occlusion", "occlusion", range(4, 9))), 6),
+        )
+    }
+)
+
+
+def usual(attribute: Attribute) -> Attribute:
+    """An attribute that no scene shows: of its codes those of the usual bits and more."""
+    return replace(attribute, codes=tuple(c for c in attribute.codes if c.total_bits >= attribute.usual_bits))

@@ -1,0 +1,169 @@
+"""The render targets that a G-buffer may have, as bins that fields are packed into."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+
+from ....encodings.storages.storage import TARGET_FORMATS
+from .attributes import FLOAT, RGB9E5, SRGB, UNORM, Code
+
+Channel = tuple[str, int]
+
+
+@dataclass(frozen=True, eq=False)
+class Bin:
+    """A render target.
+
+    Attributes:
+        name: what it is called here; a format, and how it is used.
+        format: of the layout.
+        bytes: a pixel.
+        channels: how many it has, by what they hold and in how many bits; none where all of its bits are shared.
+        fields: bits that codes share in any sizes; 0 where each number has a channel.
+        copies: how many there may be.
+        blends: whether decals blend into it; its last channel is then their factor and holds nothing.
+        fuss: what an engineer would rather do without: 0 for plain channels.
+    """
+
+    name: str
+    format: str
+    bytes: int
+    channels: Mapping[Channel, int]
+    fields: int = 0
+    copies: int = 2
+    blends: bool = False
+    fuss: float = 0.0
+
+    def need(self, code: Code) -> Mapping[Channel, float] | None:
+        """What a code takes of its channels, or of its bits; None where it cannot lie here."""
+        if self.blends and not code.blends:
+            return None
+        if self.fields:
+            fits = code.in_fields and code.kind == UNORM and code.total_bits <= self.fields
+            return {BITS: code.total_bits} if fits else None
+        taken = {(code.kind, bits): float(code.bits.count(bits)) for bits in code.bits}
+        if not code.is_exact and all(self.channels.get(channel, 0) >= count for channel, count in taken.items()):
+            return taken
+        # Bytes are shared bit by bit, also the one beside a colour on the sRGB curve.
+        if self.shares and code.in_fields and code.kind == UNORM:
+            fits = code.total_bits <= 8 * self.channels.get((UNORM, 8), 0)
+            return {SHARED: code.total_bits / 8} if fits else None
+        return self._need_of_exact(code) if code.is_exact else None
+
+    @property
+    def shares(self) -> bool:
+        """Whether it has bytes that codes share bit by bit."""
+        return not self.blends and {bits for _, bits in self.channels} == {8}
+
+    def channels_of(self, code: Code) -> list[Channel]:
+        """The kind of channel that each number of a code lies in, in a target of channels."""
+        if not code.is_exact:
+            return [(code.kind, bits) for bits in code.bits]
+        sizes = sorted(bits for kind, bits in self.channels if kind == UNORM)
+        return [(UNORM, next(size for size in sizes if size >= bits)) for bits in code.bits]
+
+    def _need_of_exact(self, code: Code) -> Mapping[Channel, float] | None:
+        """Whole channels, the narrowest that each of its parts fits into; of bytes only as many bits as it has."""
+        sizes = sorted(bits for kind, bits in self.channels if kind == UNORM)
+        taken: dict[Channel, float] = {}
+        for bits in code.bits:
+            size = next((size for size in sizes if size >= bits), None)
+            if size is None:
+                return None
+            taken[UNORM, size] = taken.get((UNORM, size), 0) + 1
+        return taken if all(self.channels[channel] >= count for channel, count in taken.items()) else None
+
+
+# What is shared bit by bit, and bytes whose bits whole numbers share.
+BITS, SHARED = ("bits", 0), ("shared", 8)
+
+
+# What an engineer would rather do without: targets of fewer than 32 bits, which many GPUs round up in tiles, and those
+# of whole numbers, which nothing blends, filters or converts.
+SMALL, INTEGER = 2.0, 1.5
+
+
+def _plain(name: str, size: int, copies: int = 2, **channels: int) -> Bin:
+    kinds = {"u": UNORM, "s": SRGB, "f": FLOAT}
+    held = {(kinds[key[0]], int(key[1:])): count for key, count in channels.items()}
+    return Bin(name, name, size, held, 0, copies, fuss=SMALL * (size < 4))
+
+
+_PLAIN = (
+    _plain("rgba8", 4, 3, u8=4),
+    _plain("srgb8_a8", 4, 1, s8=3, u8=1),
+    _plain("rgb10a2", 4, 2, u10=3, u2=1),
+    _plain("r8", 1, 1, u8=1),
+    _plain("rg8", 2, 1, u8=2),
+    _plain("r16", 2, 1, u16=1),
+    _plain("rg16", 4, 2, u16=2),
+    _plain("rg16f", 4, 1, f16=2),
+    _plain("rgba16", 8, 1, u16=4),
+    _plain("rgba16f", 8, 1, f16=4),
+)
+_WHOLE = (
+    Bin("rgb9e5", "rgba8", 4, {(RGB9E5, 32): 1}, copies=1),
+    Bin("r11g11b10f", "r11g11b10f", 4, {(FLOAT, 11): 2, (FLOAT, 10): 1}, copies=1),
+)
+# Whole numbers, whose bits codes share in any sizes.
+_FIELDS = tuple(
+    Bin(f"{name}_fields", name, size, {}, 8 * size, copies, fuss=fuss)
+    for name, size, copies, fuss in (
+        ("r8_uint", 1, 1, SMALL + INTEGER),
+        ("r16_uint", 2, 1, SMALL + INTEGER),
+        ("r32_uint", 4, 4, INTEGER),
+    )
+)
+LAST = {
+    "rgba8": (UNORM, 8),
+    "srgb8_a8": (UNORM, 8),
+    "rgb10a2": (UNORM, 2),
+    "rgba16": (UNORM, 16),
+    "rgba16f": (FLOAT, 16),
+}
+
+
+def _blended(one: Bin) -> Bin:
+    channels = {channel: count - (channel == LAST[one.format]) for channel, count in one.channels.items()}
+    kept = {channel: count for channel, count in channels.items() if count}
+    return replace(one, name=f"{one.name}_blended", channels=kept, blends=True)
+
+
+# What a render target of each format costs of WebGPU's 32 bytes a sample, and to how many bytes it is aligned (WebGPU,
+# "Plain color formats": render target pixel byte cost, render target component alignment); formats that it does not
+# render to have none.
+WEBGPU: Mapping[str, tuple[int, int]] = MappingProxyType(
+    {
+        name: (cost, alignment)
+        for alignment, costs in (
+            (1, {"r8": 1, "rg8": 2, "rgba8": 8, "srgb8_a8": 8, "r8_uint": 1}),
+            (2, {"rg16f": 4, "rgba16f": 8, "r16_uint": 2}),
+            (4, {"rgb10a2": 8, "r11g11b10f": 8, "r32_uint": 4}),
+        )
+        for name, cost in costs.items()
+    }
+)
+WEBGPU_BYTES = 32
+
+
+def is_integer(one: Bin) -> bool:
+    """Whether a target is of whole numbers."""
+    return TARGET_FORMATS[one.format].is_integer
+
+
+def webgpu_cost(formats: Sequence[str]) -> int | None:
+    """What targets, in their order, cost of WebGPU's bytes a sample; None where it does not render to one of them."""
+    total = 0
+    for name in formats:
+        if name not in WEBGPU:
+            return None
+        cost, alignment = WEBGPU[name]
+        total = -(-total // alignment) * alignment + cost
+    return total
+
+
+BINS: Mapping[str, Bin] = MappingProxyType(
+    {one.name: one for one in (*_PLAIN, *_WHOLE, *_FIELDS, *(_blended(one) for one in _PLAIN if one.format in LAST))}
+)

@@ -1,0 +1,101 @@
+"""What a layout of somebody's loses by each of its attributes, and which of a proposal's codes would bring most."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+
+from ....encodings.catalogue import ENCODINGS
+from ....gbuffer.layouts.layout import Layout
+from ....gbuffer.layouts.words import FREE, OTHER, Target, place_of, spelt_out
+from ...measures.metrics.totals import psnr_db
+from .solve import Solution
+
+# How many changes are named.
+MOST = 3
+# What an attribute lies in, and the layout's words of all the others in floats.
+COMPONENTS: Mapping[str, tuple[str, ...]] = {
+    "normal": ("normal.x", "normal.y", "normal.z"),
+    "basecolor": ("albedo.r", "albedo.g", "albedo.b"),
+    "roughness": ("roughness",),
+    "metalness": ("metalness",),
+    "specular": ("reflectance",),
+    "occlusion": ("occlusion",),
+}
+NUMBERS = ("metalness", "specular", "roughness", "occlusion")
+
+
+def completed(layout: Layout) -> Layout:
+    """A layout with what it lacks of a metal/rough surface in floats beside it."""
+    if "metalness" not in layout.components:
+        return layout
+    lacks = [COMPONENTS[name][0] for name in NUMBERS if COMPONENTS[name][0] not in layout.components]
+    if not lacks:
+        return layout
+    return replace(layout, targets=(*layout.targets, Target("rgba32f", " ".join(lacks))))
+
+
+def alone(layout: Layout, attribute: str) -> Layout:
+    """A layout's own words of one attribute, and all else in 32-bit floats; without the attribute where it has none.
+
+    Raises:
+        LayoutError: the words cannot stand alone, as a roughness that carries a sign of the normal.
+    """
+    kept = [_only(layout, at, target, COMPONENTS[attribute]) for at, target in enumerate(layout.targets)]
+    held = [target for target in kept if any(not word.startswith(FREE) for word in target.holds.split())]
+    is_normal = attribute == "normal"
+    if not is_normal:
+        held.append(Target("rgba32f", "normal.x normal.y normal.z -"))
+    if attribute != "basecolor":
+        held.append(Target("rgba32f", "albedo -"))
+    others = [FREE if name == attribute else COMPONENTS[name][0] for name in NUMBERS]
+    held.append(Target("rgba32f", " ".join(others)))
+    changes = {} if is_normal else {"encoding": ENCODINGS["xyz"], "space": "world", "depth": None}
+    return replace(layout, name=f"{layout.name}_{attribute}", targets=tuple(held), light="", **changes)
+
+
+def _only(layout: Layout, at: int, target: Target, components: Sequence[str]) -> Target:
+    """A target with some of its words, and bits or channels free where the others lie."""
+    words = []
+    for text in spelt_out(place_of(layout.name, at, target), target):
+        bits = text.partition(":")[2] if "(" not in text else text.rpartition(")")[2].partition(":")[2]
+        is_kept = any(component in text for component in components) and not text.startswith(OTHER)
+        words.append(text if is_kept else FREE + (f":{bits}" if bits else ""))
+    return Target(target.format, " ".join(words))
+
+
+Errors = Mapping[str, Mapping[str, float]]
+
+
+def said(
+    mine: Errors, found: Solution, errors_of: Callable[[str, str], Mapping[str, float]], classes: Sequence[str]
+) -> str:
+    """The changes that bring the worst class most, one after the other, each with what that class has then.
+
+    Args:
+        mine: by attribute, the error of each class.
+        found: a proposal of as many bytes.
+        errors_of: the errors of an attribute's code, by both names.
+        classes: those whose worst counts.
+    """
+    theirs = {one.code.attribute: (one.code.name, errors_of(one.code.attribute, one.code.name)) for one in found.placed}
+    now = dict(mine)
+    start = _worst(now, classes)
+    parts: list[str] = []
+    for _ in range(MOST):
+        best = min(
+            (name for name in now if name in theirs and now[name] is not theirs[name][1]),
+            key=lambda name: _worst({**now, name: theirs[name][1]}, classes),
+            default=None,
+        )
+        if best is None or _worst({**now, best: theirs[best][1]}, classes) >= _worst(now, classes):
+            break
+        now[best] = theirs[best][1]
+        parts.append(f"{best} as {theirs[best][0]}, {psnr_db(_worst(now, classes)):.1f} dB")
+    if not parts:
+        return "no code of a proposal of as many bytes is better in the worst class"
+    return f"from {psnr_db(start):.1f} dB: {'; then '.join(parts)}"
+
+
+def _worst(errors: Errors, classes: Sequence[str]) -> float:
+    return max(sum(found.get(name, 0.0) for found in errors.values()) for name in classes)

@@ -1,0 +1,87 @@
+"""The chart of budgets: the error of the worst class over bytes, with engines as points."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+from ....reports.charts.chart import MUTED, Axis, Chart, Kind, Mark
+from ..charts import having
+from ..table import Row
+from .measure import PROPOSAL
+
+# Layouts that are farther below the proposals are not drawn: they would press the others together.
+NEAR_DB = 30.0
+
+
+def charts(rows: Sequence[Row]) -> Iterator[Chart]:
+    """One chart, where there are two proposals, or one and something to compare it with."""
+    usable = having(rows, "worst_db", "contract_bytes")
+    if len(usable) > 1 and any(row["kind"] == PROPOSAL for row in usable):
+        yield budget_chart(usable)
+
+
+def budget_chart(rows: Sequence[Row]) -> Chart:
+    """The worst class's dB over bytes: a line of proposals, a point for each other layout.
+
+    Args:
+        rows: with figures.
+    """
+    best = max(row["worst_db"] for row in rows)
+    points = tuple(
+        {
+            "layout": row["layout"].replace("budget_", "") if row["kind"] == PROPOSAL else row["layout"],
+            "x": row["contract_bytes"],
+            "y": row["worst_db"],
+            "class": row["worst_class"],
+            "frame": row["psnr_db"],
+        }
+        | {"kind": row["kind"]}
+        for row in sorted(rows, key=lambda row: row["contract_bytes"])
+        if row["worst_db"] > best - NEAR_DB or row["kind"] == PROPOSAL
+    )
+    ours = tuple(point for point in points if point["kind"] == PROPOSAL)
+    others = tuple(point for point in points if point["kind"] != PROPOSAL)
+    tips = (
+        ("layout", "layout"),
+        ("x", "bytes a pixel"),
+        ("y", "worst class, dB"),
+        ("class", "class"),
+        ("frame", "frame"),
+    )
+    first = rows[0]
+    return Chart(
+        name="budget",
+        title=_finding(ours, others),
+        subtitle=f"dB of the worst class of surfaces over bytes a pixel; {first['scene']} at {first['size']}",
+        description="The displayed image's PSNR over the class of surfaces that it is worst for, over the bytes a "
+        "pixel of the G-buffer: a line for the proposed layouts, a point for each other one. The figures are in the "
+        "table.",
+        x=Axis(title="bytes a pixel, without depth; with what a layout lacks of the others", ticks=_ticks(points)),
+        y=Axis(title="worst class, dB"),
+        rows=points,
+        marks=(
+            Mark(kind=Kind.LINES, rows=ours, tips=tips),
+            Mark(kind=Kind.POINTS, rows=ours, tips=tips),
+            Mark(kind=Kind.POINTS, rows=others, colour=MUTED, tips=tips),
+            Mark(kind=Kind.LABELS, rows=others, colour=MUTED, text="layout"),
+        ),
+    )
+
+
+def _ticks(points: Sequence[Row]) -> tuple[tuple[float, str], ...]:
+    """Every second whole number."""
+    low, high = (bound(point["x"] for point in points) for bound in (min, max))
+    return tuple((float(at), str(at)) for at in range(2 * math.ceil(low / 2), math.floor(high) + 1, 2))
+
+
+def _finding(ours: Sequence[Row], others: Sequence[Row]) -> str:
+    """What the proposals gain on others of as many bytes or fewer."""
+    gains = [
+        max(one["y"] for one in ours if one["x"] <= other["x"]) - other["y"]
+        for other in others
+        if any(one["x"] <= other["x"] for one in ours)
+    ]
+    if gains:
+        return f"For the same bytes, {min(gains):.0f} to {max(gains):.0f} dB better"
+    return f"{ours[0]['x']} bytes have {ours[0]['y']:.0f} dB, {ours[-1]['x']} have {ours[-1]['y']:.0f}"

@@ -1,0 +1,68 @@
+"""What `--hold` names: the attributes that a G-buffer stores."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from types import MappingProxyType
+
+from ...ground.output.errors import UsageError
+from .attributes import EMISSION, MOTION, PACKED_MOTION, SEEN, Attribute, exact_bits
+
+# Attributes that are so many bits, which come back as they are; with the word that a layout has for them.
+EXACT: Mapping[str, tuple[str, str]] = MappingProxyType(
+    {
+        "id": ("model of shading", "kind"),
+        "flags": ("flags", "other"),
+        "shadow": ("shadow factor", "other"),
+        "custom": ("custom data", "other"),
+        "other": ("other data", "other"),
+    }
+)
+# A frame of a tangent: an angle around the normal and a hand.
+TANGENT = exact_bits("tangent", "an angle around the normal and a hand", "other", 8)
+IN_LIGHT, PACKED = "emission:light", "motion:packed"
+MOST_BITS = 64
+KNOWN = (*SEEN, MOTION.name, PACKED, EMISSION.name, IN_LIGHT, TANGENT.name, *(f"{name}:BITS" for name in EXACT))
+
+
+def attributes_held(words: str) -> list[Attribute]:
+    """The attributes that comma-separated words stand for. Raises UsageError for an unknown one, two of one name, and
+    where there is no normal."""
+    found = [_attribute(word) for word in filter(None, map(str.strip, words.split(",")))]
+    held = [one for one in found if one]
+    names = [one.name for one in held]
+    if twice := next((name for name in names if names.count(name) > 1), None):
+        raise UsageError(f"--hold: {twice} is named twice")
+    for needed in SEEN:
+        if needed not in names:
+            raise UsageError(f"--hold: {needed} is missing; the images that judge need {', '.join(SEEN)}")
+    return held
+
+
+def _attribute(word: str) -> Attribute | None:
+    """Raises UsageError."""
+    name, _, size = word.partition(":")
+    if word == IN_LIGHT:
+        return None
+    if word == PACKED:
+        return PACKED_MOTION
+    if not size and name in (*SEEN, MOTION.name, EMISSION.name, TANGENT.name):
+        return {**SEEN, MOTION.name: MOTION, EMISSION.name: EMISSION, TANGENT.name: TANGENT}[name]
+    if name not in EXACT:
+        raise UsageError(f"--hold {word}: unknown; known: {', '.join(KNOWN)}")
+    if not size.isdigit() or not 1 <= int(size) <= MOST_BITS:
+        raise UsageError(f"--hold {word}: {name} takes 1 to {MOST_BITS} bits, such as {name}:4")
+    title, layout_word = EXACT[name]
+    if layout_word == "kind" and int(size) < 2:
+        raise UsageError(f"--hold {word}: a model of shading takes 2 bits or more")
+    return replace(exact_bits(name, title, layout_word, int(size)))
+
+
+def names_held(option: str, words: str | None, held: Sequence[str]) -> list[str]:
+    """The attributes that an option names, each of which is held. Raises UsageError."""
+    found = [word.strip() for word in (words or "").split(",") if word.strip() and word.strip() != "depth"]
+    for word in found:
+        if word not in held:
+            raise UsageError(f"{option} {word}: not held; held: {', '.join(held)}")
+    return found

@@ -1,0 +1,288 @@
+"""The budget table: for each number of bytes a layout, what an image makes of it, and where its error comes from."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+from typing import Any
+
+from ....gbuffer.gl.device import Device, FormatError
+from ....gbuffer.gl.shader import ShaderError
+from ....gbuffer.layouts.layout import DIFFUSE_F0, Layout
+from ....gbuffer.layouts.presets import LAYOUTS
+from ....gbuffer.layouts.words import LayoutError
+from ....gbuffer.pipelines import PIPELINES
+from ....gbuffer.render import check
+from ...measures.metrics.totals import psnr_db
+from . import changes
+from .attributes import Attribute, usual
+from .bins import SHARED, Bin, webgpu_cost
+from .rates import FRAME, PIPELINE, Exact, Stage, rates
+from .solve import Placed, Problem, Rules, Solution, solved
+from .table import TABLE
+from .written import layout_of
+
+PROPOSAL, ENGINE, MINE = "proposal", "engine", "mine"
+# By how many bytes more a limit is tried, to say what they would buy, and from how many decibels on that is said.
+MORE, WORTH_DB = (1, 2, 4), 0.5
+# Above it no size is worth more: half of a step of 8 bits.
+SEEN_DB = 60.0
+UNMEASURABLE = (ShaderError, FormatError, LayoutError)
+# What engines may lack, with a word of a layout that has it.
+LACKS = {"motion": "motion.x", "id": "kind", "specular": "reflectance", "occlusion": "occlusion"}
+# Pixels of the two pictures that traffic is said for.
+HD, UHD = 1920 * 1080, 3840 * 2160
+Row = dict[str, Any]
+Tick = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Question:
+    """What is asked for.
+
+    Attributes:
+        stages: the scenes that judge.
+        attributes: what is stored.
+        bins: targets that there may be.
+        rules: for each limit.
+        overdraw, readers: how often a pixel is written, and how many passes fetch all of it.
+        against: layouts to compare with.
+        engines: whether engines' layouts of the same kind are measured as well.
+        tile: the bytes a pixel that a tile of a GPU has at full rate; None where nobody asks.
+        light_bytes: of the light buffer that is drawn with the G-buffer; 0 where the G-buffer holds emission.
+        threshold: of FLIP's 99th percentile, for which the fewest bytes are looked for; None to take the rules.
+        search: between which numbers of bytes.
+        judging: classes of surfaces of which the worst counts.
+    """
+
+    stages: Sequence[Stage]
+    attributes: Sequence[Attribute]
+    bins: Sequence[Bin]
+    rules: Sequence[Rules]
+    overdraw: float
+    readers: float
+    against: Sequence[Layout]
+    engines: bool
+    tile: int | None
+    light_bytes: int
+    threshold: float | None
+    search: tuple[int, int]
+    judging: Sequence[str]
+
+    @property
+    def scenes(self) -> str:
+        return ",".join(stage.maker.name for stage in self.stages)
+
+
+def measure(device: Device, question: Question, tick: Tick) -> list[Row]:
+    """A row for each limit, then one for each layout that is compared."""
+    with ExitStack() as stack:
+        judges = [Exact(device, stack, stage) for stage in question.stages]
+        judged = Judged(question, judges, tick)
+        asked = question.rules if question.threshold is None else [judged.fewest()]
+        rows = [row for rules in asked for row in judged.proposals(rules)]
+        for layout in judged.others(device):
+            is_mine = layout in question.against
+            row = judged.row_of(MINE if is_mine else ENGINE, layout)
+            rows.append(row | ({"changes": judged.changes(layout)} if is_mine else {}))
+            tick(layout.name)
+    return [row | {"device": device.renderer} for row in rows]
+
+
+class Judged:
+    """The scenes of a question, and what codes do to them."""
+
+    def __init__(self, question: Question, judges: Sequence[Exact], tick: Tick):
+        self._question, self._judges, self._tick = question, judges, tick
+        self._errors: dict[tuple[str, str], dict[str, float]] = {}
+        for attribute in question.attributes:
+            for judge in judges:
+                for code, found in rates(judge, attribute.codes, tick).items():
+                    key = (attribute.name, code)
+                    self._errors.setdefault(key, {}).update({_class_of(judge, n): e for n, e in found.items()})
+        self.attributes = [usual(one) if one.is_seen and not self._shows(one) else one for one in question.attributes]
+        self.unseen = [one.name for one in question.attributes if not (one.is_seen and self._shows(one))]
+
+    def _shows(self, attribute: Attribute) -> bool:
+        """Whether a scene shows what the codes of an attribute lose."""
+        return any(e for (name, _), found in self._errors.items() if name == attribute.name for e in found.values())
+
+    @property
+    def classes(self) -> list[str]:
+        """Those whose worst counts: of each scene its classes of surfaces, not its frame."""
+        names = dict.fromkeys(name for found in self._errors.values() for name in found)
+        return [name for name in names if name.rpartition(" ")[2] in self._question.judging]
+
+    def _solved(self, rules: Rules) -> Solution | None:
+        q = self._question
+        return solved(Problem(self.attributes, self._errors, self.classes, q.bins, rules))
+
+    def fewest(self) -> Rules:
+        """The rules with the fewest bytes whose layout keeps the threshold; with the most where none does."""
+        q, (low, high) = self._question, self._question.search
+        assert q.threshold is not None
+        while low < high:
+            middle = (low + high) // 2
+            found = self._solved(replace(q.rules[0], bytes=middle))
+            seen = found and [judge.of_layout(layout_of(f"budget_{middle}", found)).flip for judge in self._judges]
+            keeps = bool(seen) and all(one is not None and one <= q.threshold for one in seen or ())
+            low, high = (low, middle) if keeps else (middle + 1, high)
+        return replace(q.rules[0], bytes=low)
+
+    def proposals(self, rules: Rules) -> Iterator[Row]:
+        """The row of a limit; one without figures where nothing keeps to the rules."""
+        found = self._solved(rules)
+        if found is None:
+            yield self._empty(PROPOSAL, f"{rules.bytes} bytes") | {"limit": rules.bytes, "skipped": self._why(rules)}
+            return
+        layout = layout_of(f"budget_{rules.bytes}", found)
+        yield self.row_of(PROPOSAL, layout) | self._predicted(found) | self._next(rules, found) | {"limit": rules.bytes}
+        self._tick(layout.name)
+
+    def _next(self, rules: Rules, found: Solution) -> Row:
+        """How many bytes more bring something, and what; empty where a few bring nothing."""
+        now = psnr_db(found.worst_of(self.classes))
+        for size in MORE:
+            more = self._solved(replace(rules, bytes=rules.bytes + size))
+            gain = psnr_db(more.worst_of(self.classes)) - now if more else 0.0
+            if gain >= WORTH_DB and now < SEEN_DB:
+                return {"next_bytes": size, "next_db": gain}
+        return {}
+
+    def _why(self, rules: Rules) -> str:
+        """What the least is that can be, for a limit that cannot."""
+        for size in range(rules.bytes + 1, 129):
+            if self._solved(replace(rules, bytes=size)):
+                bits = sum(min(code.total_bits for code in one.codes) for one in self.attributes)
+                return f"{rules.bytes} bytes cannot hold this: its least bits are {bits}, and {size} bytes is the least"
+        return "no targets hold this by these rules, whatever their bytes"
+
+    def _predicted(self, found: Solution) -> Row:
+        worst = max(self.classes, key=lambda name: found.errors.get(name, 0.0))
+        total = found.errors[worst]
+        shares = {one.code.attribute: self._errors.get(_key(one), {}).get(worst, 0.0) for one in found.placed}
+        largest = sorted(shares.items(), key=lambda pair: -pair[1])
+        said = [f"{name} {100 * e / total:.0f} %" for name, e in largest if total and e / total >= 0.01]
+        frames = [e for name, e in found.errors.items() if name.endswith(f" {FRAME}")]
+        return {
+            "predicted_db": psnr_db(max(frames, default=0.0)),
+            "predicted_worst_db": psnr_db(total),
+            "error_from": ", ".join(said) or None,
+            "blends": ", ".join(one.code.attribute for one in found.placed if _mixes(one)) or None,
+            "codes": "; ".join(f"{one.code.attribute} {one.code.name}" for one in found.placed),
+            "by_contract": ", ".join(self.unseen) or None,
+        }
+
+    def row_of(self, kind: str, layout: Layout) -> Row:
+        """What the scenes show of a layout."""
+        row = self._empty(kind, layout.name) | {
+            "targets": "; ".join(f"{target.format}: {target.holds}" for target in layout.targets),
+            "bytes_per_pixel": layout.bytes_per_pixel,
+            "contract_bytes": math.ceil(layout.bytes_per_pixel + self._beside(layout)),
+            "webgpu_bytes": webgpu_cost([target.format for target in layout.targets]),
+            "in_tile": self._in_tile(layout),
+            "holds": layout.reflects_by or None,
+            **self._traffic(layout),
+        }
+        try:
+            # What a layout lacks is no rounding: it is drawn exact, and its bytes are added.
+            whole = changes.completed(layout)
+            found = [(judge, judge.of_layout(whole)) for judge in self._judges]
+        except UNMEASURABLE as error:
+            return row | {"skipped": str(error)}
+        errors = {_class_of(judge, n): e for judge, one in found for n, e in one.errors.items()}
+        worst = max((n for n in errors if n.rpartition(" ")[2] in self._question.judging), key=lambda n: errors[n])
+        frame = max(e for n, e in errors.items() if n.endswith(f" {FRAME}"))
+        flips = [one.flip for _, one in found if one.flip is not None]
+        return row | {
+            "psnr_db": psnr_db(frame),
+            "worst_db": psnr_db(errors[worst]),
+            "worst_class": worst,
+            "flip_p99": max(flips, default=None),
+        }
+
+    def _beside(self, layout: Layout) -> float:
+        """Bytes that a layout lacks of what is held, less those of emission that is not."""
+        kept = {word.component for word in layout.words}
+        held = {one.name: min(code.total_bits for code in one.codes) for one in self._question.attributes}
+        lacks = [held[name] for name, word in LACKS.items() if name in held and word not in kept]
+        storages = [(word, layout.targets[word.target].storage) for word in layout.words]
+        more = [word.bits or storage.bits[word.first] for word, storage in storages if "emission" in word.component]
+        return sum(lacks) / 8 - (0 if "emission" in held else sum(more) / 8)
+
+    def changes(self, layout: Layout) -> str | None:
+        """What would bring a layout most, in as many bytes; None where it keeps materials by other attributes."""
+        found = self._solved(replace(self._question.rules[0], bytes=layout.bytes_per_pixel))
+        if found is None or layout.reflects_by == DIFFUSE_F0 or "metalness" not in layout.components:
+            return None
+        try:
+            mine = {name: self._errors_alone(layout, name) for name in changes.COMPONENTS}
+        except UNMEASURABLE:
+            return None
+        return changes.said(mine, found, lambda name, code: self._errors.get((name, code), {}), self.classes)
+
+    def _errors_alone(self, layout: Layout, attribute: str) -> dict[str, float]:
+        only = changes.alone(layout, attribute)
+        found = [(judge, judge.of_layout(only).errors) for judge in self._judges]
+        return {_class_of(judge, n): e for judge, errors in found for n, e in errors.items()}
+
+    def _in_tile(self, layout: Layout) -> bool | None:
+        q = self._question
+        return None if q.tile is None else layout.bytes_per_pixel + q.light_bytes <= q.tile
+
+    def _traffic(self, layout: Layout) -> Row:
+        q, size = self._question, layout.bytes_per_pixel
+        moved = size * (q.overdraw + q.readers) / 1e6
+        return {"mb_1080p": HD * moved, "mb_4k": UHD * moved}
+
+    def _empty(self, kind: str, name: str) -> Row:
+        q, one = self._question, self._judges[0]
+        return TABLE.empty() | {
+            "kind": kind,
+            "layout": name,
+            "scene": q.scenes,
+            "size": "x".join(map(str, one.stage.size)),
+            "overdraw": q.overdraw,
+            "readers": q.readers,
+        }
+
+    def others(self, device: Device) -> Iterator[Layout]:
+        """The layouts that are compared: a user's, and engines' that the pipeline draws."""
+        yield from self._question.against
+        plan = self._judges[0].stage.plan
+        for layout in LAYOUTS.values() if self._question.engines else ():
+            # Diffuse colour and F0 are other quantities than these codes are for.
+            if layout.is_whole and layout.reflects_by not in ("", DIFFUSE_F0):
+                try:
+                    check(device, PIPELINES[PIPELINE], plan(layout), True)
+                except LayoutError:
+                    continue
+                yield layout
+
+
+def _mixes(one: Placed) -> bool:
+    """Whether decals can blend into a code where it lies."""
+    return one.code.blends and not one.bin.fields and SHARED not in (one.bin.need(one.code) or {})
+
+
+def _key(one: Any) -> tuple[str, str]:
+    return one.code.attribute, one.code.name
+
+
+def _class_of(judge: Exact, name: str) -> str:
+    return f"{judge.stage.maker.name} {name}"
+
+
+def in_order(rows: Sequence[Row]) -> list[Row]:
+    """Proposals by their limit, then a user's layouts, then engines' by bytes and the worst class."""
+    kinds = (PROPOSAL, MINE, ENGINE)
+    return sorted(
+        rows,
+        key=lambda row: (
+            kinds.index(row["kind"]),
+            row["limit"] or row["bytes_per_pixel"] or 0,
+            -(row["worst_db"] or 0),
+        ),
+    )

@@ -1,0 +1,165 @@
+"""What each code of an attribute does to the displayed image, when all else is exact: mean squared errors, by class of
+surfaces."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ....encodings.catalogue import ENCODINGS, LIGHT_BUFFERS
+from ....gbuffer.display import Display, measured_exposure
+from ....gbuffer.frame.plan import Plan
+from ....gbuffer.gl.device import Device
+from ....gbuffer.layouts.layout import Layout
+from ....gbuffer.layouts.words import targets_of
+from ....gbuffer.pipelines import PIPELINES
+from ....gbuffer.render import Rendering, rendering
+from ....gbuffer.scenes.catalogue import SceneMaker
+from ....gbuffer.scenes.setting import Setting
+from ...ground.output import cache
+from ...measures.metrics.images import flip
+from .attributes import Code, Surfaces
+
+PIPELINE = "deferred"
+# All of a metal/rough surface in floats.
+EXACT = Layout(
+    "exact",
+    "a metal/rough surface in 32-bit floats",
+    targets_of(
+        "rgba32f: normal.x normal.y normal.z -; rgba32f: albedo kind; "
+        "rgba32f: metalness reflectance roughness occlusion"
+    ),
+    ENCODINGS["xyz"],
+    "this project",
+    space="world",
+)
+# Classes of surfaces by perceptual roughness, each up to its own; and those that give off light.
+MIRROR, GLOSSY, ROUGH, EMISSIVE = CLASSES = ("mirror", "glossy", "rough", "emissive")
+UP_TO = {MIRROR: 0.2, GLOSSY: 0.5, ROUGH: np.inf}
+# A class of fewer pixels is not judged: a few edges would decide.
+LEAST_PIXELS = 100
+# Of FLIP over the pixels.
+PERCENTILE = 99.0
+FRAME = "frame"
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A scene, at a size, as figures are taken of it."""
+
+    maker: SceneMaker
+    setting: Setting
+    size: tuple[int, int]
+
+    @cached_property
+    def scene(self):
+        return self.maker.make(self.setting)
+
+    def plan(self, layout: Layout) -> Plan:
+        """A frame of it by a layout, with exact light."""
+        return Plan(self.size, 1, layout, LIGHT_BUFFERS["rgba32f"], 1, True, 1.0)
+
+
+class Exact:
+    """The exact image of a stage, and what others are compared with. Open while codes are measured."""
+
+    def __init__(self, device: Device, stack: ExitStack, stage: Stage):
+        self.stage, self._device = stage, device
+        self._made: Rendering = stack.enter_context(
+            rendering(device, PIPELINES[PIPELINE], stage.scene, stage.plan(EXACT))
+        )
+        self._textures = self._made.surfaces()
+        linear = self._made.lit(self._textures)
+        normal, colour, material, light = self._textures
+        self.covered = np.linalg.norm(normal[..., :3], axis=-1) > 0.5
+        exposure = stage.maker.exposure
+        self.display = Display(
+            measured_exposure(linear[self.covered]) if exposure is None else exposure, stage.maker.tone_mapping
+        )
+        self.shown = self.display.image(linear)
+        self.surfaces = Surfaces(normal[..., :3], colour[..., :3], *(material[..., i] for i in (2, 0, 1, 3)))
+        self.classes = self._masks(light[..., :3].max(axis=-1) > 0)
+
+    def _masks(self, gives_light: np.ndarray) -> dict[str, np.ndarray]:
+        """Where each class is, those of too few pixels left out; and the frame, which is all that is covered."""
+        roughness, found, low = self.surfaces.roughness, {FRAME: self.covered}, -np.inf
+        for name, high in UP_TO.items():
+            found[name] = self.covered & ~gives_light & (roughness > low) & (roughness <= high)
+            low = high
+        found[EMISSIVE] = self.covered & gives_light
+        return {name: mask for name, mask in found.items() if mask.sum() >= LEAST_PIXELS}
+
+    @cached_property
+    def key(self) -> str:
+        """What tells it from every other exact image: what it is computed from, and what it shows."""
+        made = hashlib.sha256()
+        for one in (*self._textures, self.shown):
+            made.update(np.ascontiguousarray(one).tobytes())
+        return made.hexdigest()
+
+    def errors(self, shown: np.ndarray) -> dict[str, float]:
+        """The mean squared error of each class of a displayed image, (height, width, 3) in [0, 1]; what is no number
+        counts as 1."""
+        apart = np.where(np.isfinite(shown), shown - self.shown, 1.0) ** 2
+        return {name: float(apart[mask].mean()) for name, mask in self.classes.items()}
+
+    def of(self, trip: Callable[[Surfaces], Surfaces]) -> dict[str, float]:
+        """The errors that a code makes by itself."""
+        return self.errors(self.display.image(self._made.lit(self._texels(trip(self.surfaces)))))
+
+    def of_layout(self, layout: Layout) -> Seen:
+        """What a layout makes of the image, drawn by it. Raises ShaderError, FormatError and LayoutError."""
+        key = cache.key_of("budget layout", self.key, layout.summary)
+        found = cache.kept(key, lambda: self._drawn(layout))
+        return Seen(found["errors"], found["flip"])
+
+    def _drawn(self, layout: Layout) -> dict[str, object]:
+        stage = self.stage
+        with rendering(self._device, PIPELINES[PIPELINE], stage.scene, stage.plan(layout)) as made:
+            made.draw()
+            shown = self.display.image(made.image())
+        return {"errors": self.errors(shown), "flip": self._flip(shown)}
+
+    def _flip(self, shown: np.ndarray) -> float | None:
+        try:
+            apart = flip(shown, self.shown)
+        except ImportError:
+            return None
+        return float(np.percentile(apart[self.covered], PERCENTILE))
+
+    def _texels(self, given: Surfaces) -> Sequence[np.ndarray]:
+        normal, colour, material, light = (one.copy() for one in self._textures)
+        where = self.covered
+        normal[where, :3], colour[where, :3] = given.normal[where], given.basecolor[where]
+        numbers = (given.metalness, given.specular, given.roughness, given.occlusion)
+        material[where] = np.stack([one[where] for one in numbers], axis=-1)
+        return normal, colour, material, light
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What an image of a layout is off by: the mean squared error of each class, and FLIP's 99th percentile over what
+    is covered; None where FLIP is not installed."""
+
+    errors: Mapping[str, float]
+    flip: float | None
+
+
+Rates = Mapping[str, Mapping[str, float]]
+
+
+def rates(exact: Exact, codes: Sequence[Code], tick: Callable[[str], None]) -> Rates:
+    """By the name of each code of an attribute that an image shows, the error of each class. Kept in the cache
+    by what the image is made of."""
+    key, found = exact.key, {}
+    for code in codes:
+        if code.trip is not None:
+            name, trip = f"{code.attribute} {code.name}", code.trip
+            found[code.name] = cache.kept(cache.key_of("budget", key, name), lambda trip=trip: exact.of(trip))
+            tick(name)
+    return found

@@ -1,0 +1,72 @@
+"""What a budget says, in sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ..table import Row
+
+# FLIP's 99th percentile that we call invisible, and acceptable: both are conventions (see `roughness`).
+INVISIBLE, ACCEPTABLE = 0.05, 0.1
+# Codes as a sentence says them.
+WORDS = {"basecolor": "base colour", "square_root": "by its root", "linear": "", "id": "model"}
+# Shares of an error that a sentence names.
+NAMED = 3
+# What a lead may expect decals to blend into.
+DECALS = ("normal", "basecolor", "roughness", "metalness")
+
+
+def told(row: Row) -> Iterator[str]:
+    """What to take for a limit, what is seen of it, where its error comes from, and what the next bytes bring."""
+    if row["skipped"]:
+        yield f"{row['skipped'].rstrip('.')}."
+        return
+    yield f"{row['limit']} bytes a pixel: {_answer(row)}"
+    yield _errors(row)
+    yield _rules(row)
+
+
+def _answer(row: Row) -> str:
+    codes = ", ".join(_code(one) for one in row["codes"].split("; "))
+    fewer = f" It takes {row['bytes_per_pixel']} bytes." if row["bytes_per_pixel"] != row["limit"] else ""
+    return f"take {codes}.{fewer}"
+
+
+def _code(text: str) -> str:
+    """A code in words: base colour by its root 7:7:6."""
+    return " ".join(filter(None, (WORDS.get(word, word) for word in text.split())))
+
+
+def _errors(row: Row) -> str:
+    scene, _, name = row["worst_class"].rpartition(" ")
+    said = [f"Worst are {name} surfaces of {scene}, {row['worst_db']:.1f} dB; the frame has {row['psnr_db']:.1f} dB."]
+    if row["flip_p99"] is not None:
+        said.append(f"FLIP's 99th percentile is {row['flip_p99']:.3f}, {_verdict(row['flip_p99'])}.")
+    if row["error_from"]:
+        parts = [_code(one) for one in row["error_from"].split(", ")[:NAMED]]
+        said.append(f"The error of the worst is of {', '.join(parts)}.")
+    if row["next_bytes"]:
+        more = "One byte more brings" if row["next_bytes"] == 1 else f"{row['next_bytes']} bytes more bring"
+        said.append(f"{more} {row['next_db']:.1f} dB there.")
+    return " ".join(said)
+
+
+def _verdict(flip: float) -> str:
+    if flip <= INVISIBLE:
+        return f"within {INVISIBLE:g}, which we call invisible in a still picture"
+    return f"within {ACCEPTABLE:g}, which is seen side by side" if flip <= ACCEPTABLE else "which is seen"
+
+
+def _rules(row: Row) -> str:
+    blended = (row["blends"] or "").split(", ")
+    not_blended = [_code(name) for name in DECALS if name not in blended]
+    said = [f"Decals cannot blend into {', '.join(not_blended)}: apply them before packing."] if not_blended else []
+    said.append(
+        f"A frame moves {row['mb_1080p']:.0f} MB at 1080p and {row['mb_4k']:.0f} MB at 4K, without compression, "
+        f"written {row['overdraw']:g} times and read {row['readers']:g} times."
+    )
+    if row["in_tile"] is not None:
+        said.append("With the light buffer it fits the tile." if row["in_tile"] else "It takes tiles of half the size.")
+    if row["by_contract"]:
+        said.append(f"By contract, not measured: {', '.join(_code(name) for name in row['by_contract'].split(', '))}.")
+    return " ".join(said)

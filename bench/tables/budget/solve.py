@@ -1,0 +1,277 @@
+"""Which code each attribute has and in which target it lies: the least error of the worst class, by an integer program.
+
+With y = 1 where a code lies in a target, z = 1 where a target is used, and d the error that a code makes in a class:
+
+    minimise t   where for each class   sum of d y <= t
+    each attribute has one code in one target; what lies in a target fits it; the targets' bytes fit the limit
+
+solved by HiGHS. Errors of many orders of magnitude meet, so it is solved again with errors in units of the last t.
+Then, of all layouts within a fifth of a decibel of it, the plainest one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.optimize import Bounds, LinearConstraint, milp
+from scipy.sparse import csr_array
+
+from ...ground.output.quiet import without_their_output
+from .attributes import UNORM, Attribute, Code
+from .bins import SHARED, WEBGPU, Bin
+
+# Decibels within which layouts are equal, and how long HiGHS may look, in seconds.
+EQUAL_DB, MOST_SECONDS = 0.2, 20.0
+# Errors that are not seen in any class: 60 dB, half of a step of 8 bits.
+UNSEEN = 1e-6
+# Codes that are off by so little are exact: below what 8 bits of a display can show in any pixel, 120 dB.
+EXACT = 1e-12
+SMALL = 1e-6
+
+
+@dataclass(frozen=True)
+class Rules:
+    """What a layout must keep to.
+
+    Attributes:
+        bytes: a pixel, of all targets.
+        targets: at most so many.
+        blended: attributes that decals blend into.
+        together: sets of attributes that lie in one target each, so that a pass reads one.
+        apart: attributes whose target holds nothing else.
+        webgpu: what is left to the targets of WebGPU's bytes a sample; None where these do not count.
+    """
+
+    bytes: int
+    targets: int
+    blended: frozenset[str] = frozenset()
+    together: tuple[frozenset[str], ...] = ()
+    webgpu: int | None = None
+    apart: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True)
+class Placed:
+    """A code in a target: the bin, and which copy of it."""
+
+    code: Code
+    bin: Bin
+    copy: int
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A layout by its codes, and the error that is predicted of each class."""
+
+    placed: tuple[Placed, ...]
+    errors: Mapping[str, float]
+
+    def worst_of(self, names: Sequence[str]) -> float:
+        """The largest error of some classes."""
+        return max((self.errors.get(name, 0.0) for name in names), default=0.0)
+
+    @property
+    def key(self) -> frozenset[tuple[str, str]]:
+        """What tells it from another one: the codes."""
+        return frozenset((one.code.attribute, one.code.name) for one in self.placed)
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What is asked for.
+
+    Attributes:
+        attributes: what is stored.
+        errors: by attribute and name of a code, the error of each class; nothing of a code that no image shows.
+        classes: those whose worst is to be least.
+        bins: targets that there may be.
+        rules: what the layout must keep to.
+    """
+
+    attributes: Sequence[Attribute]
+    errors: Mapping[tuple[str, str], Mapping[str, float]]
+    classes: Sequence[str]
+    bins: Sequence[Bin]
+    rules: Rules
+
+    def error(self, code: Code, name: str) -> float:
+        found = self.errors.get((code.attribute, code.name), {}).get(name, 0.0)
+        return 0.0 if found < EXACT else found
+
+
+class _Program:
+    """The integer program of a problem: variables are placements, then targets, then shared bytes, then t."""
+
+    def __init__(self, problem: Problem):
+        self.problem = problem
+        self.slots = [(one, copy) for one in problem.bins for copy in range(one.copies)]
+        self.choices = [
+            (code, at, need)
+            for attribute in problem.attributes
+            for code in attribute.codes
+            for at, (one, _) in enumerate(self.slots)
+            if one.blends == (attribute.name in problem.rules.blended) and (need := one.need(code)) is not None
+        ]
+        self.count = len(self.choices) + 2 * len(self.slots) + 1
+        self._rows: list[tuple[dict[int, float], float, float]] = []
+        self._hold()
+        self._fit()
+
+    def used(self, slot: int) -> int:
+        return len(self.choices) + slot
+
+    def shared(self, slot: int) -> int:
+        return len(self.choices) + len(self.slots) + slot
+
+    def row(self, terms: Mapping[int, float], low: float, high: float) -> None:
+        self._rows.append((dict(terms), low, high))
+
+    def _hold(self) -> None:
+        """Each attribute has one code in one target; those that are read together lie in one."""
+        for attribute in self.problem.attributes:
+            self.row({i: 1 for i, (code, *_) in enumerate(self.choices) if code.attribute == attribute.name}, 1, 1)
+        for slot in range(len(self.slots)):
+            here = {code.attribute: [] for code, at, _ in self.choices if at == slot}
+            for i, (code, at, _) in enumerate(self.choices):
+                if at == slot:
+                    here[code.attribute].append(i)
+            for name in self.problem.rules.apart & here.keys():
+                # y of what lies by itself, and of each other one: at most one of the two.
+                for other in here.keys() - {name}:
+                    self.row(dict.fromkeys((*here[name], *here[other]), 1.0), 0, 1)
+        for names in self.problem.rules.together:
+            first, *others = sorted(names)
+            for other in others:
+                for slot in range(len(self.slots)):
+                    signs = {first: 1.0, other: -1.0}
+                    terms = {
+                        i: signs[code.attribute]
+                        for i, (code, at, _) in enumerate(self.choices)
+                        if at == slot and code.attribute in signs
+                    }
+                    self.row(terms, 0, 0)
+
+    def _fit(self) -> None:
+        rules = self.problem.rules
+        for slot, (one, copy) in enumerate(self.slots):
+            here = [(i, need) for i, (_, at, need) in enumerate(self.choices) if at == slot]
+            for channel, room in one.channels.items():
+                terms = {i: float(need[channel]) for i, need in here if channel in need}
+                if channel == (UNORM, 8):
+                    terms[self.shared(slot)] = 1.0
+                self.row({**terms, self.used(slot): -float(room)}, -np.inf, 0)
+            self.row({**{i: need[SHARED] for i, need in here if SHARED in need}, self.shared(slot): -1.0}, -np.inf, 0)
+            if one.fields:
+                terms = {i: float(sum(need.values())) for i, need in here}
+                self.row({**terms, self.used(slot): -float(one.fields)}, -np.inf, 0)
+            if copy:
+                # Of equal targets the first ones are used.
+                self.row({self.used(slot): 1.0, self.used(slot - 1): -1.0}, -np.inf, 0)
+        every = range(len(self.slots))
+        self.row({self.used(slot): float(self.slots[slot][0].bytes) for slot in every}, 0, rules.bytes)
+        self.row({self.used(slot): 1.0 for slot in every}, 0, rules.targets)
+        if rules.webgpu is not None:
+            # Targets are written with the widest alignment first, so that none is lost to it.
+            costs = {self.used(slot): float(WEBGPU[self.slots[slot][0].format][0]) for slot in every}
+            self.row(costs, 0, rules.webgpu)
+
+    def solved(self, unit: float, most: float | None = None, without: Sequence[frozenset] = ()) -> np.ndarray | None:
+        """The variables of the least t in units, or where `most` is given of the plainest layout up to that t.
+
+        Args:
+            unit: the error that is 1.
+            without: solutions that are not to be found again.
+        """
+        rows, last = list(self._rows), self.count - 1
+        for name in self.problem.classes:
+            terms = {i: self.problem.error(code, name) / unit for i, (code, *_) in enumerate(self.choices)}
+            rows.append(({**{i: d for i, d in terms.items() if d}, last: -1.0}, -np.inf, 0.0))
+        for key in without:
+            same = {i: 1.0 for i, (code, *_) in enumerate(self.choices) if (code.attribute, code.name) in key}
+            rows.append((same, -np.inf, len(key) - 1))
+        cost = np.zeros(self.count)
+        if most is None:
+            cost[last] = 1.0
+        else:
+            cost[: len(self.choices)] = [fuss(code, self.slots[at][0]) for code, at, _ in self.choices]
+            for slot, (one, _) in enumerate(self.slots):
+                cost[self.used(slot)] = one.fuss + TARGET_FUSS
+        upper = np.ones(self.count)
+        upper[len(self.choices) + len(self.slots) : last] = 4
+        upper[last] = np.inf if most is None else most
+        # What alone is worse than what is known to be possible is not looked at.
+        limit = np.inf if most is None else most
+        for i, (code, *_) in enumerate(self.choices):
+            worst = max((self.problem.error(code, name) for name in self.problem.classes), default=0.0) / unit
+            upper[i] = 0 if worst > min(limit, WORST) * (1 + SMALL) else 1
+        integral = np.ones(self.count)
+        integral[last] = 0
+        at = [(r, i, v) for r, (terms, *_) in enumerate(rows) for i, v in terms.items()]
+        matrix = csr_array(
+            ([v for *_, v in at], ([r for r, *_ in at], [i for _, i, _ in at])), shape=(len(rows), self.count)
+        )
+        # SciPy takes arrays for bounds; its types name numbers alone.
+        lows: Any = np.array([low for _, low, _ in rows])
+        highs: Any = np.array([high for *_, high in rows])
+        least: Any = np.zeros(self.count)
+        most_of_each: Any = upper
+        # HiGHS prints lines that are for its authors.
+        with without_their_output():
+            found = milp(
+                cost,
+                integrality=integral,
+                bounds=Bounds(least, most_of_each),
+                constraints=LinearConstraint(matrix, lows, highs),
+                options={"time_limit": MOST_SECONDS, "mip_rel_gap": 1e-3},
+            )
+        return found.x if found.x is not None else None
+
+    def solution(self, values: np.ndarray) -> Solution:
+        chosen = [self.choices[i] for i in range(len(self.choices)) if values[i] > 0.5]
+        placed = tuple(Placed(code, *self.slots[at]) for code, at, _ in chosen)
+        names = {name for found in self.problem.errors.values() for name in found}
+        errors = {name: sum(self.problem.error(one.code, name) for one in placed) for name in sorted(names)}
+        return Solution(placed, errors)
+
+
+# One target more is worth half a target of shared bits; a number of bits that is no byte's a tenth.
+TARGET_FUSS, ODD_FUSS = 0.5, 0.1
+# In units of the last t: what is far above it in one code is left out of the program, whose numbers stay of one size.
+WORST = 1e3
+
+
+def fuss(code: Code, one: Bin) -> float:
+    """What an engineer would rather do without about a code in a target."""
+    is_shared = one.fields or SHARED in (one.need(code) or {})
+    return ODD_FUSS * sum(bits % 8 != 0 for bits in code.bits) if is_shared else 0.0
+
+
+def solved(problem: Problem) -> Solution | None:
+    """The best layout; None where none keeps to the rules."""
+    program = _Program(problem)
+    unit = 1.0
+    values = program.solved(unit)
+    if values is None:
+        return None
+    best = program.solution(values)
+    # Solved anew in units of what was found, until that no longer changes.
+    for _ in range(6):
+        worst = best.worst_of(problem.classes)
+        if worst <= EXACT:
+            break
+        values = program.solved(worst)
+        if values is None:
+            break
+        found = program.solution(values)
+        better = found.worst_of(problem.classes)
+        if better < worst:
+            best = found
+        if better > worst * (1 - 1e-3):
+            break
+    # What nobody sees is no reason for another layout.
+    allowed = max(best.worst_of(problem.classes) * 10 ** (EQUAL_DB / 10), UNSEEN)
+    plain = program.solved(allowed, most=1.0)
+    return program.solution(plain) if plain is not None else best

@@ -1,0 +1,163 @@
+"""The table of budgets: how few bytes a pixel an image bears, and the layout that does it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+from ...ground.options.option import Option, Plot, Size
+from .. import shared_columns as shared
+from ..table import Column, Group, Role, Section, Table
+
+KEY, HOW = Role.KEY, Role.HOW
+
+
+@dataclass(frozen=True, kw_only=True)
+class BudgetOptions:
+    """What `budget` measures. Names and numbers are comma-separated."""
+
+    bytes: Annotated[str, Option("--bytes", "Bytes a pixel without native depth, comma-separated.")] = "12,16,20"
+    scene: Annotated[
+        str,
+        Option("--scene", "Metal/rough scenes that judge: ramps, studio, and glTF files; comma-separated.", files=True),
+    ] = "ramps,studio"
+    environment: Annotated[
+        str | None,
+        Option("--environment", "What they reflect: studio, sky, strips, lamp, or an .hdr or .exr file.", files=True),
+    ] = None
+    hold: Annotated[
+        str,
+        Option(
+            "--hold",
+            "What is stored: normal, basecolor, roughness, metalness, specular, occlusion, tangent; motion in a target "
+            "of its own, or motion:packed; id:BITS, flags:BITS, shadow:BITS, custom:BITS, other:BITS; emission, or "
+            "emission:light where the light buffer has it.",
+        ),
+    ] = "normal,basecolor,roughness,metalness,specular,occlusion,id:4,flags:4,motion,emission:light"
+    targets: Annotated[int, Option("--targets", "The most render targets that there may be.")] = 6
+    formats: Annotated[str, Option("--formats", "Formats that targets may have, comma-separated, or all.")] = "all"
+    fields: Annotated[bool, Option("--fields/--no-fields", "Whether numbers may share a channel, as bits.")] = True
+    integers: Annotated[bool, Option("--integers/--no-integers", "Whether they may do so in integer targets.")] = True
+    limit: Annotated[
+        str | None,
+        Option("--limit", "webgpu: its 32 bytes a sample and its formats; tile:BYTES: a GPU's bytes a pixel in tiles."),
+    ] = None
+    light: Annotated[
+        str, Option("--light", "Format of the light buffer, which is drawn with the G-buffer: it counts for --limit.")
+    ] = "r11g11b10f"
+    threshold: Annotated[
+        float | None,
+        Option("--threshold", "The fewest bytes whose FLIP (99th percentile) is at most this, in place of --bytes."),
+    ] = None
+    blend: Annotated[str | None, Option("--blend", "What decals blend into, such as basecolor,roughness,normal.")] = (
+        None
+    )
+    read_alone: Annotated[
+        str, Option("--read-alone", "What a pass reads from one target, as reflections and denoisers do; or none.")
+    ] = "normal,roughness"
+    classes: Annotated[
+        str, Option("--classes", "Classes of surfaces that judge: mirror, glossy, rough, emissive; or all.")
+    ] = "all"
+    overdraw: Annotated[float, Option("--overdraw", "How often a pixel is written.")] = 1.5
+    readers: Annotated[float, Option("--readers", "How many passes read all of the G-buffer.")] = 1.0
+    size: Size = "320x240"
+    against: Annotated[
+        str | None,
+        Option("--against", "Layouts to compare with: presets, or TOML files of yours; comma-separated.", files=True),
+    ] = None
+    engines: Annotated[bool, Option("--engines/--no-engines", "Whether engines' layouts are measured as well.")] = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class BudgetOutputs:
+    """What `budget` writes beside its rows."""
+
+    layouts: Annotated[Path | None, Option("--layouts", "Folder for the layouts, as TOML files.")] = None
+    plot: Plot = None
+
+
+COLUMNS = (
+    Column("kind", "What a row is of: a proposal, a layout of yours (mine), or one of an engine.", KEY),
+    Column("layout", "The layout's name.", KEY),
+    Column("limit", "The bytes a pixel that were asked for.", KEY, "bytes"),
+    Column("scene", "The scenes that judged; each figure is of the worst of them.", KEY, drops=3),
+    Column("bytes_per_pixel", "Of the targets, without native depth.", unit="bytes", better="less"),
+    Column(
+        "contract_bytes",
+        "The same with what it lacks of --hold added, and emission that nobody asked for left out: what layouts are "
+        "compared by.",
+        unit="bytes",
+        better="less",
+    ),
+    Column(
+        "worst_db",
+        "The displayed image over the pixels of the class of surfaces that it is worst for: mirror (roughness up to "
+        "0.2), glossy (up to 0.5), rough, emissive.",
+        unit="dB",
+        better="more",
+    ),
+    Column("worst_class", "That class, and its scene."),
+    Column("psnr_db", "The displayed image over all covered pixels.", unit="dB", better="more"),
+    Column("flip_p99", "FLIP's 99th percentile over the covered pixels.", better="less", drops=6),
+    Column("predicted_worst_db", "`worst_db` as the sum of the codes' own errors.", unit="dB", drops=7),
+    Column("predicted_db", "`psnr_db` likewise.", unit="dB", drops=8),
+    Column("error_from", "Where the error of the worst class comes from.", drops=5),
+    Column("next_bytes", "The fewest bytes more, up to 4, that bring the worst class half a decibel.", unit="bytes"),
+    Column("next_db", "What they bring it.", unit="dB", better="less"),
+    Column("blends", "What decals can blend into by hardware: it has channels of its own, by a code that mixes."),
+    Column("codes", "The code of each attribute.", drops=9),
+    Column("by_contract", "What no scene showed: its bits are by contract, not measured.", drops=9),
+    Column(
+        "changes",
+        "Of a layout of yours: the changes to a proposal's codes that bring most, and the worst class after each.",
+        drops=9,
+    ),
+    Column("targets", "The render targets, as a layout file says them.", drops=10),
+    Column("holds", "What says how much a surface reflects, of an engine's layout.", drops=10),
+    Column(
+        "mb_1080p",
+        "Bytes written and read a frame at 1920 x 1080: pixels x bytes x (overdraw + readers). Compression is not "
+        "modelled.",
+        unit="MB",
+        better="less",
+        drops=4,
+    ),
+    Column("mb_4k", "The same at 3840 x 2160.", unit="MB", better="less", drops=4),
+    Column(
+        "webgpu_bytes",
+        "What the targets cost of WebGPU's 32 bytes a sample; empty where it does not render to one of them.",
+        unit="bytes",
+        better="less",
+        drops=10,
+    ),
+    Column("in_tile", "Whether targets and light buffer fit the tile of --limit tile:BYTES.", drops=2),
+    Column("overdraw", "How often a pixel is written.", HOW, drops=11),
+    Column("readers", "How many passes read all of it.", HOW, drops=11),
+    Column("size", "Width and height of the image in pixels.", HOW, drops=11),
+    shared.DEVICE,
+    shared.SKIPPED,
+)
+
+TABLE = Table(
+    name="budget",
+    package=__package__ or "",
+    help="How few bytes a pixel does the whole G-buffer need, and which layout does it?\n\nEach code of each attribute "
+    "is measured by itself, by what it does to the displayed image of mirrors, glossy and rough surfaces. An integer "
+    "program then finds the codes and targets whose worst class is best, and the layout is drawn whole.",
+    example="normalbench budget --bytes 12,16 --read-alone normal,roughness",
+    options=BudgetOptions,
+    outputs=BudgetOutputs,
+    columns=COLUMNS,
+    in_all=False,
+    single={"bytes": "12"},
+    group=Group.ANSWER,
+    section=Section(
+        title="The whole G-buffer",
+        short="Budget",
+        intro="How few bytes a pixel does an image bear, and what lies in them?",
+        method="Each code of each attribute is measured by itself: the error of the displayed image, by class of "
+        "surfaces. An integer program finds the layout whose worst class is best in a number of bytes, and the "
+        "plainest one within 0.2 dB. That is drawn whole.",
+    ),
+)

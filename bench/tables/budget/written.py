@@ -1,0 +1,88 @@
+"""A solution as a layout that the renderer draws by, and as a file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from ....encodings.catalogue import ENCODINGS
+from ....gbuffer.layouts.layout import Layout
+from ....gbuffer.layouts.words import FREE, Target
+from .attributes import SRGB
+from .bins import SHARED, Bin
+from .solve import Placed, Solution
+
+NORMAL = "normal"
+
+
+def layout_of(name: str, solution: Solution) -> Layout:
+    """The layout of a solution."""
+    normal = next((one.code for one in solution.placed if one.code.attribute == NORMAL), None)
+    if normal is None:
+        raise ValueError("a layout holds a normal")
+    targets = tuple(_target(one, placed) for one, placed in _by_target(solution))
+    encoding = ENCODINGS[normal.name.partition(" ")[0]]
+    return Layout(name, "proposed by budget", targets, encoding, "this project", space="world")
+
+
+def _by_target(solution: Solution) -> Iterator[tuple[Bin, list[Placed]]]:
+    """The targets, wide ones first, so that WebGPU loses no bytes to their alignment; of equals the normal's."""
+    found: dict[tuple[str, int], list[Placed]] = {}
+    for one in solution.placed:
+        found.setdefault((one.bin.name, one.copy), []).append(one)
+
+    def place(placed: list[Placed]) -> tuple[int, bool]:
+        return -placed[0].bin.bytes, all(p.code.attribute != NORMAL for p in placed)
+
+    order = sorted(found.values(), key=place)
+    for placed in order:
+        yield placed[0].bin, placed
+
+
+def _target(one: Bin, placed: Sequence[Placed]) -> Target:
+    if one.fields:
+        # The widest first, so that the numbers of a code begin at the top.
+        order = sorted(placed, key=lambda p: (p.code.is_exact, -p.code.total_bits))
+        said = [f"{word}:{bits}" for p in order for word, bits in zip(p.code.words, p.code.bits, strict=True)]
+        return Target(one.format, " ".join(said))
+    return Target(one.format, " ".join(_in_channels(one, placed)))
+
+
+def _in_channels(one: Bin, placed: Sequence[Placed]) -> Iterator[str]:
+    """The words of a target whose numbers have channels, in the order of the channels; last what shares bytes."""
+    waiting: dict[tuple[str, int], list[str]] = {}
+    shared: list[str] = []
+    for p in placed:
+        if SHARED in (one.need(p.code) or {}):
+            shared += [f"{word}:{bits}" for word, bits in zip(p.code.words, p.code.bits, strict=True)]
+            continue
+        if p.code.kind == SRGB or len(p.code.words) != len(p.code.bits):
+            yield p.code.words[0].partition(".")[0]
+            continue
+        channels = one.channels_of(p.code)
+        for word, channel in zip(p.code.words, channels, strict=True):
+            waiting.setdefault(channel, []).append(word)
+    order = list(one.channels)
+    for at, channel in enumerate(order):
+        words = waiting.pop(channel, [])
+        yield from words
+        if channel[0] != SRGB and waiting and at + 1 < len(order):
+            yield from [FREE] * (one.channels[channel] - len(words))
+    yield from shared
+
+
+def file_of(row: Mapping[str, Any]) -> str:
+    """The layout of a row as a file that `--layout` reads, with what it is worth in its comment."""
+    normal = next(code for code in row["codes"].split("; ") if code.startswith(f"{NORMAL} "))
+    lines = [
+        f"# {row['bytes_per_pixel']} bytes a pixel; {row['scene']} at {row['size']}: {row['worst_class']} "
+        f"{row['worst_db']:.1f} dB, frame {row['psnr_db']:.1f} dB",
+        f"# {row['codes']}",
+        f'title = "normalbench budget, {row["bytes_per_pixel"]} bytes"',
+        f'encoding = "{normal.split()[1]}"',
+        'space = "world"',
+    ]
+    for target in row["targets"].split("; "):
+        name, holds = target.split(": ", 1)
+        lines += ["", "[[targets]]", f'format = "{name}"', f'holds = "{holds}"']
+    return "\n".join(lines) + "\n"
