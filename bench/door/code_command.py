@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ...encodings.codecs.codec import Codec
-from ...encodings.codecs.kind import CURVE, NORMAL
+from ...encodings.codecs.kind import CURVE, FRAME, NORMAL
 from ...gbuffer.gl.device import NoDeviceError
 from ...gbuffer.gl.shader import ShaderError
 from ..ground.choose import choose
@@ -35,6 +35,9 @@ from .code_figures import figures, head, rounding_of
 Row = dict[str, Any]
 SHIPPED = "rgba8,rg8,rgb10a2,rgb8_12_12,rg16,rg16f"
 LONGEST = 60
+# Codes whose numbers may be cut off.
+ROUNDED = (NORMAL, CURVE, FRAME)
+ROUNDED_WORDS = "normals, curves and tangent frames"
 VERIFIED, DIFFERS, NOT_RUN = "verified", "differs", "not run"
 # What no compiler of its own runs here, and what is run in its place, the first that can be.
 WITNESSED, WITNESSES = ("msl",), ("c", "glsl")
@@ -82,8 +85,8 @@ def _codecs(options: CodeOptions) -> list[Any]:
     kind = kind_named(options.codec, options.of)
     if kind is not NORMAL:
         rounded = roundings_named(options.rounding)
-        if rounded != ["nearest"] and kind is not CURVE:
-            raise UsageError(f"--rounding is for normals and curves; codes of {kind.name} are rounded to the nearest")
+        if rounded != ["nearest"] and kind not in ROUNDED:
+            raise UsageError(f"--rounding is for {ROUNDED_WORDS}; codes of {kind.word} are rounded to the nearest")
         return that_fit(codecs_of_kind(kind, options.codec, options.storage or "", rounded))
     storages = options.storage or (SHIPPED if options.check else "rgba8")
     codecs, left_out = fitting(codecs_named(options.codec, storages, options.rounding))
@@ -158,7 +161,7 @@ def _all_made(codecs: Sequence[Any], languages: Sequence[str], prefix: str) -> l
 def _command(codec: Any, language: str, prefix: str) -> str:
     kind = kind_of(codec)
     name = codec.encoding.name if kind.is_ours(codec) else codec.encoding.citation
-    words = ["normalbench", "code", name, *([] if kind.kind is NORMAL else ["--of", kind.kind.name])]
+    words = ["normalbench", "code", name, *([] if kind.kind is NORMAL else ["--of", kind.kind.word])]
     words += ["--storage", codec.storage.name, "--to", language]
     words += ["--rounding", rounding_of(codec)] if rounding_of(codec) != "nearest" else []
     return shlex.join([*words, *(["--prefix", prefix] if prefix else [])])

@@ -47,6 +47,11 @@ class Kind:
     folder: str
     encoding: type
 
+    @property
+    def word(self) -> str:
+        """Its name as one word: frame of tangent frames."""
+        return self.name.rpartition(" ")[2]
+
 
 NORMAL = Kind("normal", "normals", Encoding)
 DEPTH = Kind("depth", "depth", DepthEncoding)

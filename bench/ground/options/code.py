@@ -17,8 +17,8 @@ class CodeOptions(Sources):
         str,
         Option(
             "--of",
-            "What the codes are of: normal, motion, curve (roughness and the like), light or depth. Default: what the "
-            "names say.",
+            "What the codes are of: normal, frame (tangent frames and quaternions), motion, curve (roughness and the "
+            "like), light or depth. Default: what the names say.",
         ),
     ] = ""
     storage: Annotated[

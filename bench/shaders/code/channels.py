@@ -293,6 +293,7 @@ class Channels:
             "words": self.words,
             "has_sign": bool(numbers.sign_bits),
             "is_precise": numbers.is_precise,
+            "settle": numbers.settle,
             "is_biased": numbers.is_biased,
             "is_centred": numbers.storage.is_centred,
             "rounds_itself": numbers.storage.is_centred or any(one != "nearest" for one in numbers.roundings),

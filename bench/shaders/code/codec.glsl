@@ -2,6 +2,9 @@
 // What a codec's code is made from: the encoding's own functions, and bits of floats. The storage's functions, which
 // storage.glsl.j2 makes, follow.
 #include "vec.glsl"
+#ifdef FRAMES
+#include "rotation.glsl"
+#endif
 #include ENCODING
 #include "turned.glsl"
 

@@ -14,6 +14,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 
 from ....gbuffer.gl.shader import Source
 from ..translator.c_writer import CWriter
+from ..translator.changes import given_back
 from ..translator.glsl_parser import read_glsl
 from ..translator.glsl_writer import EsslWriter, GlslWriter
 from ..translator.hlsl_writer import HlslWriter
@@ -98,7 +99,8 @@ def program_of(codec: Any, prefix: str) -> Program:
     except TranslationError as error:
         # At the place in the file that it was included from.
         raise TranslationError(source.explain(re.sub(r"^(\d+):\d+: ", r"0:\1: ", str(error)))) from error
-    encode = "nearest_encode" if channels.numbers.is_precise else str(defines["ENCODE"])
+    made = {"nearest_encode": channels.numbers.is_precise, "settled_encode": channels.numbers.settle}
+    encode = next((name for name, is_made in made.items() if is_made), str(defines["ENCODE"]))
     own = {"encode": encode, "decode": str(defines["DECODE"])}
     roots = {own.get(name, name): name for name in PUBLIC}
-    return reduced(program, roots, prefix, encoding.prefix, kind.bound(codec))
+    return given_back(reduced(program, roots, prefix, encoding.prefix, kind.bound(codec)))

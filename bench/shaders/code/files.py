@@ -11,7 +11,7 @@ from typing import Any
 from ....encodings.codecs.kind import NORMAL
 from ...ground.output.errors import UsageError
 from ..languages.words import is_translated
-from ..translator.tree import Program, TranslationError
+from ..translator.tree import TranslationError
 from ..translator.writer import identifier
 from .emit import LANGUAGES, program_of
 from .kinds.table import kind_of
@@ -73,7 +73,7 @@ def file_name(codec: Any, language: str) -> str:
 def prefix_of(codec: Any) -> str:
     """What the names of a codec's functions begin with: its kind, but of normals, its encoding and its storage."""
     kind = kind_of(codec).kind
-    return identifier(codec.name if kind is NORMAL else f"{kind.name} {codec.encoding.name}/{codec.storage.name}")
+    return identifier(codec.name if kind is NORMAL else f"{kind.word} {codec.encoding.name}/{codec.storage.name}")
 
 
 def code_of(codec: Any, language: str, prefix: str = "") -> Code:
@@ -92,7 +92,7 @@ def code_of(codec: Any, language: str, prefix: str = "") -> Code:
     prefix = prefix or prefix_of(codec)
     try:
         program = program_of(codec, prefix)
-        interface = interface_of(codec, prefix, _parameters(program, prefix))
+        interface = interface_of(codec, prefix, program)
         writer = LANGUAGES[language].writer
         sizes: dict[str, tuple[int, int, int]] = {name: table.shape for name, table in interface.tables.items()}
         body = writer(prefix, sizes).program(program)
@@ -109,11 +109,6 @@ def _untranslatable_reason(codec: Any, said: str) -> str:
         return said if re.match(r"\S+:\d+: ", said) else f"{encoding.glsl}: {said}"
     what = re.sub(r"^\S*?:?\d+:(\d+:)? ", "", said).replace("is not a type that is known here", "parameters or types")
     return f"{source}: it is measured, but cannot be written in other languages: {what}"
-
-
-def _parameters(program: Program, prefix: str) -> set[str]:
-    """The names of what the encoder takes."""
-    return {parameter.name for parameter in program.function(f"{prefix}_encode").parameters}
 
 
 def _check_written(codec: Any) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,6 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ....encodings.storages.rounding import store_texel
+from ..translator.tree import Program
 from .channels import Channels
 from .kinds.table import kind_of
 from .reference import Reference, reference, signed
@@ -41,7 +41,7 @@ class Agreement:
         count: of values.
         texels: how many different ones these have in the catalogue.
         differing: values whose texel is not the catalogue's.
-        steps: by how many steps of the storage a number differs at most.
+        steps: by how many steps of the storage a number differs at most, in texels that do not decode to the same.
         are_ties: whether no number differs by more than a step or CODE, whichever is larger.
         share: how many of the texels may differ.
         worse: how much farther off a texel that differs is decoded, at most, in `unit`.
@@ -95,8 +95,8 @@ class Agreement:
             near = "as near" if self.worse <= SEARCHED else f"up to {self.worse:.1g} {self.unit} farther off"
             codes = f"the texels of {self._share_text} differ, {near}: a search finds several codes alike"
         else:
-            steps = f"{self.steps} step{'s' * (self.steps != 1)}"
-            codes = f"the texels of {self._share_text} differ, by {steps} at most"
+            steps = f"by {self.steps} step{'s' * (self.steps != 1)} at most"
+            codes = f"the texels of {self._share_text} differ, {steps if self.steps else 'not what they decode to'}"
         codes += "" if self.are_ties or self.searches else ", which is more than a tie"
         wrong = f"; {self.unpacked} numbers come back otherwise" if self.unpacked else ""
         wrong += f"; {self.targets} texels of the render target differ" if self.targets else ""
@@ -105,13 +105,15 @@ class Agreement:
         return f"{codes}; decoded {self.plural} are {decoded}{far}{wrong}"
 
 
-def interface_of(codec: Any, prefix: str, parameters: Collection[str]) -> Interface:
+def interface_of(codec: Any, prefix: str, program: Program) -> Interface:
     """What the functions of a codec's code are called with.
 
     Args:
         codec: of any kind.
-        parameters: the names of what its functions take, of which settings are left.
+        program: its functions, from which settings that nothing reads are gone.
     """
+    parameters = program.function(f"{prefix}_encode").parameters
+    names, kinds = ([getattr(one, word) for one in parameters] for word in ("name", "kind"))
     kind, channels = kind_of(codec), Channels(codec)
     tables = codec.encoding.tables() if hasattr(codec.encoding, "tables") else {}
     return Interface(
@@ -119,11 +121,13 @@ def interface_of(codec: Any, prefix: str, parameters: Collection[str]) -> Interf
         channels.numbers.size,
         channels.numbers.sign_bits,
         channels.words,
-        tuple(place for name, place in kind.settings.items() if name in parameters),
+        tuple(place for name, place in kind.settings.items() if name in names),
         {f"{prefix}_{name}": table for name, table in tables.items()},
         kind.is_ours(codec),
         kind.given(codec),
         kind.result(codec),
+        next((struct.name for struct in program.structs if struct.name in kinds), ""),
+        kind.fields,
     )
 
 
@@ -153,9 +157,12 @@ def compared(codec: Any, expected: Reference, ran: Ran) -> Agreement:
     kind = kind_of(codec)
     differs = (ran.words != expected.words).any(axis=1)
     same = ~differs
-    given = expected.n[:, : expected.decoded.shape[1]].astype(np.float64)
+    given = _given(expected)
     units = kind.units(given)
-    off = (np.abs(ran.decoded.astype(np.float64) - expected.decoded) / units)[same]
+    every = np.abs(ran.decoded.astype(np.float64) - expected.decoded) / units
+    # Two codes may stand for one value: angles of -180 and 180 degrees.
+    apart[(every <= DECODED).all(axis=1)] = 0
+    off = every[same]
     allowed = DECODED + OF_ERROR * (np.abs(expected.decoded - given) / units).max(axis=1, keepdims=True)[same]
     return Agreement(
         count=len(differs),
@@ -177,6 +184,11 @@ def compared(codec: Any, expected: Reference, ran: Ran) -> Agreement:
     )
 
 
+def _given(expected: Reference) -> np.ndarray:
+    """What was encoded, as it is decoded; float64 of shape (count, numbers)."""
+    return np.concatenate([expected.n, expected.view], axis=1)[:, : expected.decoded.shape[1]].astype(np.float64)
+
+
 def _numbers_apart(expected: Reference, ran: Ran) -> np.ndarray:
     """How far the stored numbers of two texels are apart, (count, components)."""
     count = expected.integers.shape[1]
@@ -187,9 +199,8 @@ def _worse(codec: Any, expected: Reference, ran: Ran, differs: np.ndarray) -> fl
     """How much farther off what other texels decode to is, at most."""
     if not differs.any():
         return 0.0
-    errors = kind_of(codec).errors
-    ours = errors(expected.n[differs], ran.decoded[differs])
-    return float((ours - errors(expected.n[differs], expected.decoded[differs])).max())
+    errors, given = kind_of(codec).errors, _given(expected)[differs]
+    return float((errors(given, ran.decoded[differs]) - errors(given, expected.decoded[differs])).max())
 
 
 def _targets_apart(channels: Channels, expected: Reference, ran: Ran, same: np.ndarray) -> int:

@@ -7,15 +7,16 @@ an index that an array does not have is its nearest. What is not a number has on
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from types import MappingProxyType
 
 from .builtins import BITS, FETCH
 from .c_defined import HELPERS, OPERATIONS, Range, counted, range_of
 from .parser import BINDING, SHIFTS
-from .tree import SCALARS as LETTERS
 from .tree import (
+    MATRICES,
+    SIZES,
     Assign,
     Binary,
     Call,
@@ -28,10 +29,12 @@ from .tree import (
     Function,
     Index,
     Literal,
+    Member,
     Name,
     Program,
     Return,
     Statement,
+    Struct,
     Swizzle,
     TranslationError,
     Unary,
@@ -40,6 +43,7 @@ from .tree import (
     scalar_of,
     size_of,
 )
+from .tree import SCALARS as LETTERS
 from .writer import CHOICE, FIELDS, INDENT, PRIMARY, UNARY, Writer, words
 
 Part = tuple[str, int]
@@ -62,8 +66,6 @@ FORMULAS: Mapping[str, str] = MappingProxyType(
         "sign": "(float)(({0} > 0.0f) - ({0} < 0.0f))",
     }
 )
-STRUCTS = tuple(f"{letter}vec{size}" for letter in LETTERS.values() for size in (2, 3, 4))
-MATRICES = ("mat2", "mat3", "mat4")
 SCALARS: Mapping[str, str] = MappingProxyType({"float": "float", "int": "int32_t", "uint": "uint32_t", "bool": "bool"})
 # A part that may stand in several places without being computed twice.
 PLAIN = frozenset("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.")
@@ -101,7 +103,6 @@ class CWriter(Writer):
         constants = [self._constant(each) for each in program.constants]
         functions = [self._function(each) for each in program.functions]
         parts = [
-            *map(self._struct, program.structs),
             *self._head_parts(program),
             *(["\n".join(constants)] if constants else []),
             *functions,
@@ -110,6 +111,7 @@ class CWriter(Writer):
 
     def _head_parts(self, program: Program) -> list[str]:
         kinds = {getattr(node, "kind", "").partition("[")[0] for node in inside([program.constants, program.functions])}
+        kinds |= {kind for struct in program.structs for kind in struct.kinds.values()}
         kinds |= {f"vec{kind[3]}" for kind in kinds & set(MATRICES)}
         includes = ["#include <math.h>", "#include <stdbool.h>", "#include <stdint.h>", "#include <string.h>"]
         includes += [f'#include "{self._prefix}_tables.h"'] if program.tables else []
@@ -117,8 +119,13 @@ class CWriter(Writer):
         helpers = [
             f"static inline {HELPERS[name].format(self._helpers[name])}" for name in HELPERS if name in self._helpers
         ]
-        structs = [self._structure(kind) for kind in (*STRUCTS, *MATRICES) if kind in kinds]
+        structs = [self._structure(kind) for kind in (*SIZES, *MATRICES) if kind in kinds]
+        structs += map(self._struct, program.structs)
         return [part for part in ("\n".join(includes), contract, "\n".join(structs), "\n".join(helpers)) if part]
+
+    def _struct(self, struct: Struct) -> str:
+        fields = "".join(f"{INDENT}{self._kind(kind)} {name};\n" for name, kind in self._fields(struct).items())
+        return f"typedef struct {{\n{fields}}} {struct.name};"
 
     def _structure(self, kind: str) -> str:
         if kind in MATRICES:
@@ -134,7 +141,7 @@ class CWriter(Writer):
         return f"{self._helpers[name]}({', '.join(given)})", PRIMARY
 
     def _kind(self, kind: str) -> str:
-        return SCALARS.get(kind) or f"{self._prefix}_{kind}"
+        return SCALARS.get(kind) or (kind if kind in self._structs else f"{self._prefix}_{kind}")
 
     def _global_text(self, constant: Declare) -> str:
         self._used, self._count = set(self._taken), 0
@@ -252,6 +259,8 @@ class CWriter(Writer):
                 return self._name(name)
             case Swizzle(_, inner, names) if len(names) == 1:
                 return self._component(inner, names)
+            case Member(_, inner, name):
+                return f"{self._place(inner)}.{self._field(name)}"
             case Index(_, inner, at) if inner.kind.endswith("]"):
                 count = int(inner.kind.partition("[")[2].rstrip("]"))
                 return f"{self._place(inner)}[{self._within(at, count)}]"
@@ -311,6 +320,10 @@ class CWriter(Writer):
             case Swizzle(_, inner, names):
                 parts = self._parts(inner)
                 return [parts[FIELDS.index(name)] for name in names]
+            case Member(_, inner, name):
+                fields = self._structs[inner.kind].kinds
+                before = sum(self._count_of(fields[other]) for other in [*fields][: [*fields].index(name)])
+                return self._parts(inner)[before:][: self._count_of(value.kind)]
             case Index():
                 return self._indexed_parts(value)
         raise TranslationError(f"a {type(value).__name__} of {value.kind} cannot be written in C")
@@ -318,7 +331,7 @@ class CWriter(Writer):
     def _indexed_parts(self, value: Index) -> list[Part]:
         inner, at = value.value, value.at
         base = inner
-        while isinstance(base, Index | Swizzle):
+        while isinstance(base, Index | Swizzle | Member):
             base = base.value
         is_there = isinstance(base, Name) and base.name not in self._computed
         if is_there and not isinstance(inner, Swizzle):
@@ -332,7 +345,16 @@ class CWriter(Writer):
         count = len(parts) // size
         return self._member_parts(f"(&{whole}.x)[{self._within(at, count)}]", value.kind)
 
+    def _count_of(self, kind: str) -> int:
+        """How many scalars a value has."""
+        if kind in self._structs:
+            return sum(map(self._count_of, self._structs[kind].kinds.values()))
+        return int(kind[3]) ** 2 if kind in MATRICES else size_of(kind)
+
     def _member_parts(self, name: str, kind: str) -> list[Part]:
+        if kind in self._structs:
+            fields = self._fields(self._structs[kind]).items()
+            return [part for field, inner in fields for part in self._member_parts(f"{name}.{field}", inner)]
         if kind in MATRICES:
             fields = FIELDS[: int(kind[3])]
             return [(f"{name}.{column}.{row}", PRIMARY) for column in fields for row in fields]
@@ -386,7 +408,7 @@ class CWriter(Writer):
     def _size(self, value: Binary) -> int:
         """How many components an operation has."""
         kinds = (value.kind, value.left.kind, value.right.kind)
-        return max(int(kind[3]) ** 2 if kind in MATRICES else size_of(kind) for kind in kinds)
+        return max(map(self._count_of, kinds))
 
     def _is_safe(self, value: Binary) -> bool:
         """Whether C defines what an operation of whole numbers gives."""
@@ -447,7 +469,7 @@ class CWriter(Writer):
         return [self._once(part, scalar_of(value.kind)) for part in self._parts(value)]
 
     def _choice_parts(self, value: Choice) -> list[Part]:
-        count = int(value.kind[3]) ** 2 if value.kind in MATRICES else size_of(value.kind)
+        count = self._count_of(value.kind)
         if size_of(value.condition.kind) > 1:
             parts = zip(*(self._parts(one) for one in (value.condition, value.chosen, value.other)), strict=True)
             return [_choice_part(*three) for three in parts]
@@ -479,13 +501,19 @@ class CWriter(Writer):
         return parts, self._apart(write, indent)[1]
 
     def _assembled_text(self, parts: list[Part], kind: str) -> str:
-        texts = [text for text, _ in parts]
+        texts = self._braced_text(kind, iter([text for text, _ in parts]))
+        return texts if kind in SCALARS else f"({self._kind(kind)}){texts}"
+
+    def _braced_text(self, kind: str, texts: Iterator[str]) -> str:
+        """What a value begins with, of the scalars that are left."""
         if kind in SCALARS:
-            return texts[0]
+            return next(texts)
+        inner = [scalar_of(kind)] * size_of(kind)
         if kind in MATRICES:
-            size = int(kind[3])
-            texts = [f"{{{', '.join(texts[at : at + size])}}}" for at in range(0, size**2, size)]
-        return f"({self._kind(kind)}){{{', '.join(texts)}}}"
+            inner = [f"vec{kind[3]}"] * int(kind[3])
+        elif kind in self._structs:
+            inner = list(self._structs[kind].kinds.values())
+        return f"{{{', '.join(self._braced_text(one, texts) for one in inner)}}}"
 
     def _call_parts(self, value: Call) -> list[Part]:
         if value.is_own:
@@ -589,6 +617,8 @@ class CWriter(Writer):
     def _constructed_parts(self, value: Construct) -> list[Part]:
         parts = [(part, scalar_of(a.kind)) for a in value.arguments for part in self._parts(a)]
         if value.kind in MATRICES:
+            return [part for part, _ in parts]
+        if value.kind in self._structs:
             return [part for part, _ in parts]
         scalar, size = scalar_of(value.kind), size_of(value.kind)
         if len(parts) == 1 < size:

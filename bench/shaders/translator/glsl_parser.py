@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import deepcopy
 
 from .parser import Parser
 from .tokens import END, Preprocessor, Token, suffixed
@@ -11,6 +12,7 @@ from .tree import (
     Binary,
     Block,
     Call,
+    Construct,
     Declare,
     Elements,
     Expression,
@@ -19,11 +21,13 @@ from .tree import (
     If,
     Leave,
     Literal,
+    Member,
     Name,
     Parameter,
     Program,
     Return,
     Statement,
+    Struct,
     Table,
     Unary,
     While,
@@ -38,7 +42,6 @@ TYPES = frozenset(
         *(f"{letter}vec{size}" for letter in ("", "i", "u", "b") for size in (2, 3, 4)),
     )
 )
-UNTRANSLATED = {"struct": "structures are not translated", "out": "`out` parameters are not translated"}
 PRECISIONS = frozenset(("highp", "mediump", "lowp", "precise"))
 
 
@@ -60,6 +63,7 @@ class GlslParser(Parser):
 
     def __init__(self, given: Sequence[Token], constants: dict[str, list[Token]]):
         super().__init__(given)
+        self._structs: dict[str, Struct] = {}
         for name, words in constants.items():
             value = GlslParser(words, {})._initial()
             self._constant(name, value)
@@ -83,6 +87,8 @@ class GlslParser(Parser):
             self._table()
         elif self._skip("precision"):
             self._at += 3
+        elif self._skip("struct"):
+            self._struct()
         elif self._next_token.text == "const":
             self._constants_of(self._declaration())
         else:
@@ -100,14 +106,31 @@ class GlslParser(Parser):
         self._made.tables.append(Table(name))
         self._declared(name, "sampler2D")
 
+    def _struct(self) -> None:
+        name = self._word_token().text
+        self._take("{")
+        kinds: dict[str, str] = {}
+        while not self._skip("}"):
+            kind = self._kind()
+            kinds[self._word_token().text] = kind
+            while self._skip(","):
+                kinds[self._word_token().text] = kind
+            if self._next_token.text == "[":
+                raise self._error("an array in a structure is not translated")
+            self._take(";")
+        self._take(";")
+        self._structs[name] = Struct(name, kinds)
+        self._made.structs.append(self._structs[name])
+
+    def _is_type(self, text: str) -> bool:
+        return text in TYPES or text in self._structs
+
     def _kind(self) -> str:
         while self._next_token.text in PRECISIONS:
             self._take()
         token = self._word_token()
-        if token.text not in TYPES and token.text != "void":
+        if not self._is_type(token.text) and token.text != "void":
             self._at -= 1
-            if token.text in UNTRANSLATED:
-                raise self._error(UNTRANSLATED[token.text])
             raise self._error(f"{token.text} is not a type that is known here")
         return token.text
 
@@ -131,12 +154,13 @@ class GlslParser(Parser):
     def _parameters(self) -> list[Parameter]:
         found: list[Parameter] = []
         while not self._skip(")"):
-            is_changed = False
-            while self._next_token.text in ("const", "in", "inout"):
-                is_changed |= self._take().text == "inout"
+            words = []
+            while self._next_token.text in ("const", "in", "inout", "out"):
+                words.append(self._take().text)
             kind = self._kind()
             name = "" if self._next_token.text in (",", ")") else self._word_token().text
-            found.append(Parameter(self._sized(kind), name or f"unused{len(found)}", is_changed))
+            is_changed = bool({"inout", "out"} & set(words))
+            found.append(Parameter(self._sized(kind), name or f"unused{len(found)}", is_changed, "out" not in words))
             if self._next_token.text != ")":
                 self._take(",")
         return found
@@ -145,6 +169,11 @@ class GlslParser(Parser):
         """A type, or an array of it where a length follows in brackets."""
         length = self._length()
         return kind if length is None else self._array_kind(kind, length)
+
+    def _array_kind(self, kind: str, length: Expression) -> str:
+        if kind in self._structs:
+            raise self._error("an array of structures is not translated")
+        return super()._array_kind(kind, length)
 
     def _length(self) -> Expression | None:
         if not self._skip("["):
@@ -169,7 +198,7 @@ class GlslParser(Parser):
             return []
         if first.text == "{":
             return [Block(self._block())]
-        if (first.text in TYPES and self._text_ahead(1) != "(") or first.text in ("const", *PRECISIONS):
+        if (self._is_type(first.text) and self._text_ahead(1) != "(") or first.text in ("const", *PRECISIONS):
             made = self._declaration()
         else:
             made = [self._simple_statement(first)]
@@ -226,7 +255,7 @@ class GlslParser(Parser):
         """What stands first between a loop's parentheses."""
         if self._skip(";"):
             return []
-        if self._next_token.text in TYPES or self._next_token.text in ("const", *PRECISIONS):
+        if self._is_type(self._next_token.text) or self._next_token.text in ("const", *PRECISIONS):
             return self._declaration()
         return [self._before_semicolon(self._assignment())]
 
@@ -295,12 +324,41 @@ class GlslParser(Parser):
         if token.text in TYPES:
             self._take("(")
             return self._constructed(token.text, self._arguments())
+        if token.text in self._structs and self._skip("("):
+            return self._structure(self._structs[token.text], self._arguments())
         if token.kind != "word":
             self._at -= 1
             raise self._error(f"{token.text} is not expected here")
         if self._skip("("):
             return self._called(token.text, self._arguments(), token.place)
         return self._name_expression(token)
+
+    def _structure(self, struct: Struct, given: list[Expression]) -> Expression:
+        kinds = list(struct.kinds.values())
+        if len(given) != len(kinds):
+            raise self._error(f"{struct.name} has {len(kinds)} fields, not {len(given)}")
+        made = [self._converted(one, scalar_of(kind)) for one, kind in zip(given, kinds, strict=True)]
+        return Construct(struct.name, made)
+
+    def _choice_of(self, condition: Expression, chosen: Expression, other: Expression) -> Expression:
+        """A choice; of structures it is one of each field: not every language has that of wholes."""
+        if chosen.kind not in self._structs or chosen.kind != other.kind:
+            return super()._choice_of(condition, chosen, other)
+        pairs = zip(self._field_values(chosen), self._field_values(other), strict=True)
+        # Whoever renames what is called meets each call once.
+        made = (self._choice_of(*deepcopy((condition, *pair))) for pair in pairs)
+        return Construct(chosen.kind, list(made))
+
+    def _field_values(self, value: Expression) -> list[Expression]:
+        """A structure's fields; of a name or of what is made of its fields, as others would be computed for each."""
+        whole = value
+        while isinstance(whole, Member):
+            whole = whole.value
+        if isinstance(value, Construct):
+            return value.arguments
+        if not isinstance(whole, Name):
+            raise self._error(f"between two {value.kind} that are computed, choose by if")
+        return [Member(kind, value, name) for name, kind in self._structs[value.kind].kinds.items()]
 
     def _array(self, kind: str) -> Expression:
         if self._next_token.text != "]":
@@ -322,12 +380,16 @@ class GlslParser(Parser):
 
     def _operation(self, mark: str, left: Expression, right: Expression) -> Expression:
         """== and != of vectors are one truth value."""
+        if left.kind in self._structs or right.kind in self._structs:
+            raise self._error(f"{left.kind} {mark} {right.kind}: structures are compared field by field")
         found = self._combined(mark, left, right)
         if mark in ("==", "!=") and size_of(found.kind) > 1:
             return Call("bool", "all" if mark == "==" else "any", [found])
         return found
 
     def _member(self, value: Expression, word: Token) -> Expression:
+        if value.kind in self._structs and (kind := self._structs[value.kind].kinds.get(word.text)):
+            return Member(kind, value, word.text)
         is_vector = size_of(value.kind) > 1
         if word.text == "length" and (is_vector or value.kind.endswith("]")):
             self._take("(")

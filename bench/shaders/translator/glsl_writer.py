@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from .parser import COMPARISONS
-from .tree import Binary, Choice, Expression, Struct, Table, Unary, size_of
-from .writer import INDENT, PRIMARY, Writer, words
+from .tree import Binary, Choice, Expression, Table, Unary, size_of
+from .writer import PRIMARY, Writer, words
 
 NAMES: Mapping[str, str] = MappingProxyType({mark: name for name, mark in COMPARISONS.items()})
 
@@ -32,10 +32,6 @@ class GlslWriter(Writer):
     functions: Mapping[str, str] = MappingProxyType({"atan2": "atan"})
     reserved = RESERVED
     has_precise = True
-
-    def _struct(self, struct: Struct) -> str:
-        fields = "".join(f"{INDENT}{self._kind(kind)} {name};\n" for name, kind in struct.kinds.items())
-        return f"struct {struct.name} {{\n{fields}}};"
 
     def _text_and_level(self, value: Expression) -> tuple[str, int]:
         match value:

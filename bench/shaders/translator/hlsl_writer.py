@@ -20,6 +20,7 @@ from .tree import (
     Name,
     Program,
     Statement,
+    Struct,
     Table,
     inside,
     size_of,
@@ -75,6 +76,7 @@ class HlslWriter(Writer):
 
     def _program(self, program: Program) -> str:
         self._choices: dict[str, tuple[str, str]] = {}
+        self._makers: dict[str, str] = {}
         declared = (node for function in program.functions for node in inside(function.body))
         constants = [*program.constants, *(one for one in declared if isinstance(one, Declare) and one.is_constant)]
         self._constants = {constant.name for constant in constants}
@@ -92,6 +94,16 @@ class HlslWriter(Writer):
     def _reads_array(self, loop: For) -> bool:
         arrays = (node.value for node in inside(loop.body) if isinstance(node, Index) and node.value.kind.endswith("]"))
         return any(isinstance(array, Name) and array.name in self._constants for array in arrays)
+
+    def _struct(self, struct: Struct) -> str:
+        """The structure, and a function that makes it of its fields: HLSL has no constructor of one."""
+        fields = self._fields(struct)
+        name = self._makers[struct.name] = self._global_name(f"{struct.name.removeprefix(f'{self._prefix}_')}_of")
+        given = ", ".join(f"{self._kind(kind)} {field}" for field, kind in fields.items())
+        made = "made_" if "made" in fields else "made"
+        sets = "".join(f"{INDENT}{made}.{field} = {field};\n" for field in fields)
+        body = f"{INDENT}{struct.name} {made};\n{sets}{INDENT}return {made};\n"
+        return f"{super()._struct(struct)}\n\n{struct.name} {name}({given}) {{\n{body}}}"
 
     def _table(self, table: Table) -> str:
         return f"Texture2D<float4> {table.name};"
@@ -164,6 +176,8 @@ class HlslWriter(Writer):
 
     def _construct(self, value: Construct) -> str:
         size, given = size_of(value.kind), value.arguments
+        if value.kind in self._makers:
+            return f"{self._makers[value.kind]}({self._arguments(given)})"
         if size > 1 and len(given) == 1 and size_of(given[0].kind) == 1:
             if isinstance(given[0], Literal | Name):
                 return f"{self._kind(value.kind)}({', '.join([self._text(given[0])] * size)})"

@@ -93,6 +93,8 @@ class MslWriter(Writer):
 
     def _construct(self, value: Construct) -> str:
         size = size_of(value.kind)
+        if value.kind in self._structs:
+            return f"{value.kind}{{{self._arguments(value.arguments)}}}"
         if len(value.arguments) == 1 and size == size_of(value.arguments[0].kind):
             return self._conversion(value, value.arguments[0], size)
         return super()._construct(value)

@@ -10,6 +10,7 @@ from .builtins import BITS, FETCH, LIKE_GIVEN, OF_VECTORS
 from .numpy_helpers import HELPERS
 from .parser import COMPARES, SHIFTS
 from .tree import (
+    MATRICES,
     Binary,
     Call,
     Choice,
@@ -85,6 +86,8 @@ class NumpyValues(Writer):
         # written under which a value is wanted.
         self._laned: set[str] = set()
         self._under: list[str] = []
+        # Structures of which one is taken for some normals and another for the rest.
+        self._chosen: set[str] = set()
 
     def _around(self) -> list[str]:
         """The variables that say for which normals a statement is done."""
@@ -218,7 +221,14 @@ class NumpyValues(Writer):
             chosen = self._typed(value.chosen)
         with self._where(f"~{holds}" if is_one else ""):
             other = self._typed(value.other)
-        return f"np.where({text}, {chosen}, {other})", PRIMARY
+        return self._where_text(holds if value.kind in self._structs else text, value.kind, chosen, other), PRIMARY
+
+    def _where_text(self, holds: str, kind: str, chosen: str, other: str) -> str:
+        """One value where something holds, for each of its numbers, and another one elsewhere."""
+        if kind not in self._structs:
+            return f"np.where({holds}, {chosen}, {other})"
+        self._chosen.add(kind)
+        return f"_chosen_{kind}({holds}, {chosen}, {other})"
 
     def _call(self, value: Call) -> str:
         name, given = value.name, value.arguments
@@ -255,7 +265,9 @@ class NumpyValues(Writer):
     def _construct(self, value: Construct) -> str:
         given, kind = value.arguments, value.kind
         scalar, size = scalar_of(kind), size_of(kind)
-        if "mat" in kind:
+        if kind in self._structs:
+            return f"{kind}({', '.join(self._typed(one) for one in given)})"
+        if kind in MATRICES:
             return f"{self._helper_name('_matrix')}({kind[3]}, {', '.join(self._components(given, scalar))})"
         if size == 1:
             first = given[0] if size_of(given[0].kind) == 1 else Swizzle(scalar_of(given[0].kind), given[0], "x")
@@ -303,6 +315,8 @@ class NumpyValues(Writer):
 
     def _zero_text(self, kind: str) -> str:
         """What is read before it is assigned to."""
+        if kind in self._structs:
+            return f"{kind}({', '.join(map(self._zero_text, self._structs[kind].kinds.values()))})"
         scalar = TYPES[scalar_of(kind.partition("[")[0])]
         return f"np.zeros({inner_shape(kind)}, {scalar})" if inner_shape(kind) else f"{scalar}(0)"
 
@@ -327,7 +341,7 @@ def _row_text(numbers: list[str], size: int) -> str:
 def inner_shape(kind: str) -> tuple[int, ...]:
     """The axes that one value of a type has."""
     kind, _, count = kind.partition("[")
-    inner = (int(kind[3]),) * 2 if kind.startswith("mat") else (size_of(kind),) if size_of(kind) > 1 else ()
+    inner = (int(kind[3]),) * 2 if kind in MATRICES else (size_of(kind),) if size_of(kind) > 1 else ()
     return (int(count.rstrip("]")), *inner) if count else inner
 
 

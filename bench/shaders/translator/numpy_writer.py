@@ -26,10 +26,12 @@ from .tree import (
     Index,
     Leave,
     Literal,
+    Member,
     Name,
     Program,
     Return,
     Statement,
+    Struct,
     Swizzle,
     Table,
     TranslationError,
@@ -37,7 +39,7 @@ from .tree import (
     inside,
     scalar_of,
 )
-from .writer import FIELDS, INDENT, words
+from .writer import FIELDS, INDENT, PRIMARY, words
 
 TRUE = Literal("bool", "true")
 # The parameter of functions with loops of their own length: for which normals they are called.
@@ -88,7 +90,7 @@ class NumpyWriter(NumpyValues):
     reserved = words(
         "as and assert async await break class continue def del elif else except finally for from global if import in "
         "is lambda nonlocal not or pass raise return try while with yield True False None match case type np Path "
-        "range print zip len enumerate"
+        "range print zip len enumerate NamedTuple"
     )
 
     def __init__(self, prefix: str, sizes: Mapping[str, tuple[int, int, int]]):
@@ -106,13 +108,51 @@ class NumpyWriter(NumpyValues):
         constants = [self._constant(each) for each in program.constants]
         functions = [self._function(each) for each in program.functions]
         tables = [self._table(each) for each in sorted(program.tables, key=lambda table: table.name)]
-        head = ["from pathlib import Path\n"] * bool(tables) + ["import numpy as np"]
+        head = ["from pathlib import Path"] * bool(tables) + ["from typing import NamedTuple"] * bool(program.structs)
+        head += [""] * bool(head) + ["import numpy as np"]
+        structs = [*map(self._struct, program.structs), *self._choosing_texts()]
         helpers = [HELPERS[name] for name in needed(self._helpers)]
         values = ["\n".join([*tables, *constants])] if tables or constants else []
-        return "\n\n\n".join(["\n".join(head), *helpers, *values, *functions]) + "\n"
+        return "\n\n\n".join(["\n".join(head), *helpers, *structs, *values, *functions]) + "\n"
 
     def _table(self, table: Table) -> str:
         return f'{self._own(table.name)} = np.load(Path(__file__).with_name("{table.name}.npy"))'
+
+    def _struct(self, struct: Struct) -> str:
+        fields = self._fields(struct)
+        shapes = "; ".join(f"{name}: {self._shape_text(kind)}" for name, kind in fields.items())
+        names = "".join(f"\n{INDENT}{name}: np.ndarray" for name in fields)
+        return f'class {struct.name}(NamedTuple):\n{INDENT}"""{shapes}."""\n{names}'
+
+    def _field(self, name: str) -> str:
+        # A field of a NamedTuple begins with no underscore.
+        return super()._field(f"field{name}" if name.startswith("_") else name)
+
+    def _choosing_texts(self) -> list[str]:
+        """The functions that choose between structures, and those between structures in them."""
+        found: dict[str, str] = {}
+        while left := sorted(self._chosen - found.keys()):
+            found |= {kind: self._choosing_text(kind) for kind in left}
+        return list(found.values())
+
+    def _choosing_text(self, kind: str) -> str:
+        """The function that takes one structure where something holds, and another one elsewhere."""
+        fields = self._fields(self._structs[kind]).items()
+        parts = [
+            self._where_text(broad("holds", inner), inner, f"chosen.{name}", f"other.{name}") for name, inner in fields
+        ]
+        said = '"""One where something holds, and the other elsewhere."""'
+        return f"def _chosen_{kind}(holds, chosen, other):\n{INDENT}{said}\n{INDENT}return {kind}({', '.join(parts)})"
+
+    def _shape_text(self, kind: str) -> str:
+        return kind if kind in self._structs else shape_text(kind)
+
+    def _as_text(self, name: str, kind: str) -> str:
+        """What others give, as arrays of its type."""
+        if kind not in self._structs:
+            return f"np.asarray({name}, {TYPES[scalar_of(kind)]})"
+        kinds = self._structs[kind].kinds.values()
+        return f"{kind}({', '.join(self._as_text(f'{name}[{at}]', inner) for at, inner in enumerate(kinds))})"
 
     def _global_text(self, constant: Declare) -> str:
         return f"{self._own(constant.name)} = {self._value_text(constant)}"
@@ -149,10 +189,10 @@ class NumpyWriter(NumpyValues):
         """What a function that others call begins with."""
         if function.name not in self._public:
             return
-        shapes = [f"{p.name}: {shape_text(p.kind)}" for p in function.parameters]
-        yield f'"""{shape_text(function.kind)}, of {"; ".join(shapes)}."""'
+        shapes = [f"{p.name}: {self._shape_text(p.kind)}" for p in function.parameters]
+        yield f'"""{self._shape_text(function.kind)}, of {"; ".join(shapes)}."""'
         for p in function.parameters:
-            yield f"{self._name(p.name)} = np.asarray({self._name(p.name)}, {TYPES[scalar_of(p.kind)]})"
+            yield f"{self._name(p.name)} = {self._as_text(self._name(p.name), p.kind)}"
 
     def _comments(self, statement: Statement, indent: str) -> str:
         above = "".join(f"{indent}# {line}".rstrip() + "\n" for line in statement.above)
@@ -207,6 +247,8 @@ class NumpyWriter(NumpyValues):
                 places = "".join(f"{FIELDS.index(name)}, " for name in names)
                 places = places.strip() if len(names) == 1 else places.removesuffix(", ")
                 return self._anew(inner, f"{self._helper_name('_replaced')}({self._text(inner)}, ({places}), {text})")
+            case Member(_, inner, name):
+                return self._anew(inner, f"{self._text(inner, PRIMARY)}._replace({self._field(name)}={text})")
             case Index(kind, inner, at):
                 axes = f", {len(inner_shape(kind))}" if inner_shape(kind) else ""
                 put = f"{self._helper_name('_put')}({self._text(inner)}, {self._text(at)}, {text}{axes})"
@@ -218,7 +260,7 @@ class NumpyWriter(NumpyValues):
         mask = self._state.masks[-1]
         if self._state.depth.get(name) == len(self._state.masks) - 1 or not mask:
             return text
-        return f"np.where({broad(mask, kind)}, {text}, {self._name(name)})"
+        return self._where_text(broad(mask, kind), kind, text, self._name(name))
 
     def _if(self, statement: If, indent: str) -> str:
         outer = self._state.masks[-1]
@@ -255,14 +297,15 @@ class NumpyWriter(NumpyValues):
         state, mask = self._state, self._state.masks[-1]
         text = self._typed(value)
         if len(state.masks) == 1:
-            chosen = f"np.where({broad(state.live, value.kind)}, {text}, {state.result})"
+            chosen = self._where_text(broad(state.live, value.kind), value.kind, text, state.result)
             return [f"return {chosen if state.live else text}"]
         if not state.live:
             state.live, state.result = self._unused("live"), self._unused("result")
             return [f"{state.result} = {text}", f"{state.live} = ~{mask}"]
         taken = self._unused("taken")
         lines = [f"{taken} = {mask} & {state.live}"]
-        lines += [f"{state.result} = np.where({broad(taken, value.kind)}, {text}, {state.result})"]
+        chosen = self._where_text(broad(taken, value.kind), value.kind, text, state.result)
+        lines += [f"{state.result} = {chosen}"]
         ended = [state.live, *(name for loop in state.loops[-1:] for name in loop.both)]
         return lines + [f"{name} = {name} & ~{taken}" for name in ended]
 

@@ -423,7 +423,8 @@ class Parser:
         if kind.startswith("mat"):
             return self._matrix(kind, [self._cast(a, "float") for a in arguments])
         if len(arguments) == 1 and size_of(arguments[0].kind) in (1, size):
-            return Construct(kind, [self._cast(arguments[0], scalar)]) if size > 1 else self._cast(arguments[0], scalar)
+            cast = self._cast(arguments[0], scalar)
+            return cast if size_of(cast.kind) == size else Construct(kind, [cast])
         found: list[Expression] = []
         for argument in arguments:
             left = size - sum(size_of(one.kind) for one in found)

@@ -21,6 +21,7 @@ from .tree import (
     Member,
     Name,
     Program,
+    Struct,
     Table,
     inside,
     plain_name,
@@ -28,7 +29,7 @@ from .tree import (
 )
 
 # Parameters that functions have for others' sake.
-SETTINGS = ("view", "range", "near", "far")
+SETTINGS = ("view", "range", "near", "far", "least")
 # What an encoding's own functions are called where others go around them: no reader takes them for another pair.
 INNER = {"encode": "own_code", "decode": "own_value"}
 # Whoever calls one of them with a setting calls the other with it.
@@ -68,7 +69,24 @@ def reduced(
     _replace(functions, {table.name: f"{prefix}_{table.name}" for table in tables})
     tables = [Table(f"{prefix}_{table.name}") for table in tables]
     _rename_constants(constants, functions, prefix, own)
-    return Program(constants, tables, functions, program.structs)
+    return Program(constants, tables, functions, _named_structs(program, constants, functions, prefix, own))
+
+
+def _named_structs(
+    program: Program, constants: list[Declare], functions: list[Function], prefix: str, own: str
+) -> list[Struct]:
+    """The structures that are needed, under names of their own."""
+    kinds = {node.kind.partition("[")[0] for node in inside([constants, functions]) if hasattr(node, "kind")}
+    for struct in reversed(program.structs):
+        kinds |= set(struct.kinds.values()) if struct.name in kinds else set()
+    kept = [struct for struct in program.structs if struct.name in kinds]
+    taken = [function.name for function in functions]
+    _rename_structs(
+        Program(constants, [], functions, kept),
+        {struct.name: _free_name(f"{prefix}_{_without(own, struct.name).lower()}", taken) for struct in kept},
+        {},
+    )
+    return kept
 
 
 def _reached_names(program: Program, names: list[str]) -> set[str]:
@@ -180,13 +198,18 @@ def _rename(functions: list[Function], names: dict[str, str], prefix: str, own: 
         if function.name not in names:
             short = plain_name(function)
             size = size_of(function.parameters[0].kind) if plain.count(short) > 1 else 0
-            mine = re.sub(f"^{own}_(?=.)", "", short)
+            mine = _without(own, short)
             mine = INNER.get(mine, mine) if f"{prefix}_{mine}" in names.values() else mine
             names[function.name] = _free_name(f"{prefix}_{mine}{size or ''}", names.values())
     for function in functions:
         for call in (node for node in inside(function.body) if isinstance(node, Call) and node.is_own):
             call.name = names[call.name]
         function.name = names[function.name]
+
+
+def _without(own: str, name: str) -> str:
+    """A name without what those of an encoding's own functions begin with."""
+    return re.sub(f"^{own}_(?=.)", "", name)
 
 
 def _free_name(name: str, taken: Collection[str]) -> str:
@@ -258,6 +281,11 @@ def numbered(program: Program, word: str) -> None:
 def _number_structs(program: Program, word: str, numbers: Iterator[int]) -> None:
     names = {struct.name: f"{word}_{next(numbers)}" for struct in program.structs}
     fields = {(struct.name, name): f"{word}_{next(numbers)}" for struct in program.structs for name in struct.kinds}
+    _rename_structs(program, names, fields)
+
+
+def _rename_structs(program: Program, names: Mapping[str, str], fields: Mapping[tuple[str, str], str]) -> None:
+    """Give structures and some of their fields, by these and the structure's name, other names."""
 
     def named(kind: str) -> str:
         plain, mark, length = kind.partition("[")
@@ -267,10 +295,11 @@ def _number_structs(program: Program, word: str, numbers: Iterator[int]) -> None
     nodes = {id(node): node for node in inside([program.constants, program.functions])}.values()
     for node in nodes:
         if isinstance(node, Member):
-            node.field = fields[node.value.kind, node.field]
+            node.field = fields.get((node.value.kind, node.field), node.field)
     for node in nodes:
         if hasattr(node, "kind"):
             node.kind = named(node.kind)
     for struct in program.structs:
-        struct.kinds = {fields[struct.name, name]: named(kind) for name, kind in struct.kinds.items()}
+        kinds = struct.kinds.items()
+        struct.kinds = {fields.get((struct.name, name), name): named(kind) for name, kind in kinds}
         struct.name = names[struct.name]

@@ -10,6 +10,8 @@ from threading import Lock
 from typing import Any
 
 SCALARS = {"float": "", "int": "i", "uint": "u", "bool": "b"}
+SIZES = {f"{letter}vec{size}": size for letter in SCALARS.values() for size in (2, 3, 4)}
+MATRICES = ("mat2", "mat3", "mat4")
 # Frames of Python for the deepest tree: sums of many terms lean to one side.
 MOST_FRAMES = 12_000
 UNEXPECTED = (ArithmeticError, AssertionError, AttributeError, LookupError, RecursionError, TypeError, ValueError)
@@ -67,15 +69,14 @@ class Place:
 
 def scalar_of(kind: str) -> str:
     """The type of a vector's components; a scalar's own."""
-    for scalar, letter in SCALARS.items():
-        if kind == scalar or (kind.startswith(f"{letter}vec") and kind[len(letter) + 3 :].isdigit()):
-            return scalar
-    return "float" if kind.startswith("mat") else kind
+    if kind in SIZES:
+        return next(scalar for scalar, letter in SCALARS.items() if kind.startswith(f"{letter}vec"))
+    return "float" if kind.partition("[")[0] in MATRICES else kind
 
 
 def size_of(kind: str) -> int:
     """How many components a type has; 1 for a scalar."""
-    return int(kind[-1]) if "vec" in kind and kind[-1].isdigit() else 1
+    return SIZES.get(kind, 1)
 
 
 def vector(scalar: str, size: int) -> str:
@@ -135,7 +136,7 @@ class Call(Expression):
 
 @dataclass
 class Construct(Expression):
-    """A type's constructor: a conversion, a vector of parts, or a matrix of columns."""
+    """A type's constructor: a conversion, a vector of parts, a matrix of columns, or a structure of its fields."""
 
     arguments: list[Expression]
 
@@ -246,11 +247,13 @@ class Return(Statement):
 
 @dataclass
 class Parameter:
-    """`is_changed` where the caller sees what is assigned to it: GLSL's inout."""
+    """`is_changed` where the caller sees what is assigned to it: GLSL's inout; and not `is_given` where it begins as
+    nothing: GLSL's out."""
 
     kind: str
     name: str
     is_changed: bool = False
+    is_given: bool = True
 
 
 @dataclass

@@ -16,6 +16,7 @@ from .tree import (
     Expression,
     Function,
     Literal,
+    Struct,
     Table,
     Unary,
     scalar_of,
@@ -83,6 +84,10 @@ class WgslWriter(Writer):
     def _global_text(self, constant: Declare) -> str:
         value = self._text(constant.value) if constant.value else ""
         return f"const {constant.name}: {self._kind(constant.kind)} = {value};"
+
+    def _struct(self, struct: Struct) -> str:
+        fields = "".join(f"{INDENT}{name}: {self._kind(kind)},\n" for name, kind in self._fields(struct).items())
+        return f"struct {struct.name} {{\n{fields}}}"
 
     def _kind(self, kind: str) -> str:
         element, _, count = kind.partition("[")

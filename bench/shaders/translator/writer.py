@@ -99,12 +99,14 @@ class Writer:
         # Names that no variable of a function may have, and all that it has.
         self._taken: set[str] = set()
         self._used: set[str] = set()
+        self._structs: dict[str, Struct] = {}
 
     def program(self, program: Program) -> str:
         """The text of the whole program. Raises TranslationError."""
         everything = [*program.constants, *program.tables, *program.functions]
         self._taken = {one.name for one in everything} | self.reserved | BUILTINS
-        self._taken |= {*self.kinds.values(), *self.functions.values()}
+        self._taken |= {*self.kinds.values(), *self.functions.values(), *(one.name for one in program.structs)}
+        self._structs = {one.name: one for one in program.structs}
         with one_error_type():
             return self._program(program)
 
@@ -121,7 +123,16 @@ class Writer:
         return [self.head] if self.head else []
 
     def _struct(self, struct: Struct) -> str:
-        raise TranslationError(f"{struct.name} is a structure, which is not written in other languages")
+        fields = "".join(f"{INDENT}{self._kind(kind)} {name};\n" for name, kind in self._fields(struct).items())
+        return f"struct {struct.name} {{\n{fields}}};"
+
+    def _fields(self, struct: Struct) -> dict[str, str]:
+        """A structure's types by the names of its fields, as they are called here."""
+        return {self._field(name): kind for name, kind in struct.kinds.items()}
+
+    def _field(self, name: str) -> str:
+        """A field's name, which no word of the language is."""
+        return f"{name}_" if name in self.reserved else name
 
     def _table(self, table: Table) -> str:
         return f"uniform sampler2D {table.name};"
@@ -307,7 +318,7 @@ class Writer:
             case Index(_, inner, at):
                 return f"{self._text(inner, PRIMARY)}[{self._text(at)}]", PRIMARY
             case Member(_, inner, name):
-                return f"{self._text(inner, PRIMARY)}.{name}", PRIMARY
+                return f"{self._text(inner, PRIMARY)}.{self._field(name)}", PRIMARY
             case Elements():
                 return self._elements(value), PRIMARY
         raise TranslationError(f"a {type(value).__name__} cannot be written")

@@ -26,6 +26,8 @@ class Numbers:
         size: how many numbers the code's vector has; those that are not kept come back as 0.
         sign_bits: 1 where the last of them is a sign that is kept elsewhere, else 0.
         is_precise: whether the encoder takes the one of the codes around that decodes nearest.
+        settle: the function (value, the code as it comes back) -> the code to keep, where some numbers depend on how
+            others are rounded; empty where none do.
         skipped: how many bits are left out before numbers that lie across channels.
         share: "unsigned" or "signed" of an integer as `storage.fixed_code` makes it, in sign and magnitude; else empty.
     """
@@ -36,6 +38,7 @@ class Numbers:
     size: int
     sign_bits: int = 0
     is_precise: bool = False
+    settle: str = ""
     skipped: int = 0
     share: str = ""
 
@@ -58,8 +61,9 @@ class CodeKind:
         kind: of the catalogue.
         plural: what is encoded, in words.
         given: where in these rows lies what an encoder is given: n.xyz.
+        fields: what these are called in the structure that an encoder is given and a decoder gives; none of others.
         settings: by its parameter, where what both functions are given besides lies: view.xyz.
-        result: how many numbers a decoder gives.
+        result: how many numbers a decoder gives; of a structure those of n first.
         defines: (codec) -> the macros of its GLSL: CODE, ENCODE and DECODE, and constants.
         numbers: (codec) -> its numbers.
         bound: (codec) -> the settings that are constants of the codec.
@@ -96,3 +100,4 @@ class CodeKind:
     units: Callable[[np.ndarray], np.ndarray] = field(default=lambda given: np.ones((len(given), 1)))
     bound: Callable[[Any], Mapping[str, float]] = field(default=lambda _: {})
     searches: Callable[[Any], bool] = field(default=lambda _: False)
+    fields: tuple[str, ...] = ()

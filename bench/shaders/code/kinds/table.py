@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from . import curve, depth, light, motion, normal
+from . import curve, depth, frame, light, motion, normal
 from .code_kind import CodeKind
 
-CODE_KINDS = tuple(one.KIND for one in (normal, motion, curve, light, depth))
+CODE_KINDS = tuple(one.KIND for one in (normal, motion, curve, light, depth, frame))
 
 
 def kind_of(codec: Any) -> CodeKind:

@@ -15,15 +15,6 @@
 #define RUN_LAST code.w
 #define RUN_ROW(made, v) ((made)[0] = (v).x, (made)[1] = (v).y, (made)[2] = (v).z, (made)[3] = (v).w)
 #endif
-#if RUN_RESULT == 1
-#define RUN_DECODED(made, v) ((made)[0] = (v))
-#elif RUN_RESULT == 2
-#define RUN_DECODED(made, v) ((made)[0] = (v).x, (made)[1] = (v).y)
-#elif RUN_RESULT == 3
-#define RUN_DECODED(made, v) ((made)[0] = (v).x, (made)[1] = (v).y, (made)[2] = (v).z)
-#else
-#define RUN_DECODED(made, v) ((made)[0] = (v).x, (made)[1] = (v).y, (made)[2] = (v).z, (made)[3] = (v).w)
-#endif
 #if RUN_SIGN
 #define RUN_WITH_SIGN , RUN_LAST
 #else
@@ -40,7 +31,7 @@
 void run_six(size_t count, const float *given, float *made, uint32_t *words);
 
 void run_six(size_t count, const float *given, float *made, uint32_t *words) {
-    for (size_t i = 0; i < count; ++i, given += 12, made += 20, words += 4) {
+    for (size_t i = 0; i < count; ++i, given += 12, made += 24, words += 4) {
         RUN_VEC4 n = {given[0], given[1], given[2], given[3]}, view = {given[4], given[5], given[6], 0.0f};
         RUN_VEC4 texel = {given[8], given[9], given[10], given[11]};
         RUN_CODE code = RUN_ENCODE(RUN_VALUE);
@@ -52,7 +43,8 @@ void run_six(size_t count, const float *given, float *made, uint32_t *words) {
         (void)view;
         RUN_ROW(made, code);
         RUN_ROW(made + 4, unpacked);
-        RUN_DECODED(made + 8, decoded);
+        const float rows[] = {RUN_FIRST, RUN_SECOND};
+        for (int at = 0; at < 4; ++at) made[8 + at] = rows[at], made[20 + at] = rows[4 + at];
         made[12] = target.x, made[13] = target.y, made[14] = target.z, made[15] = target.w;
         RUN_ROW(made + 16, back);
         RUN_SET(words, packed);

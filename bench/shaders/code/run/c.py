@@ -48,8 +48,13 @@ def _macros(interface: Interface) -> list[str]:
     prefix, words = interface.prefix, interface.words
     kinds = {"RUN_VEC4": 4, "RUN_CODE": interface.size, "RUN_KIND": interface.result}
     types = {name: "float" if size == 1 else f"{prefix}_vec{size}" for name, size in kinds.items()}
+    types["RUN_KIND"] = interface.structure or types["RUN_KIND"]
     types["RUN_TEXEL"] = f"{prefix}_uvec{words}" if words > 1 else "uint32_t"
-    return macros(interface.defines_with(lambda places: _listed(places, prefix)) | types)
+    return macros(interface.defines_with(lambda places: _listed(places, prefix), "({}){{{}}}", _scalars) | types)
+
+
+def _scalars(path: str, size: int) -> list[str]:
+    return [f"{path}.{field}" for field in "xyzw"[:size]] if size > 1 else [path]
 
 
 def _listed(places: Sequence[str], prefix: str) -> str:

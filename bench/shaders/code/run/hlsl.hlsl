@@ -23,6 +23,17 @@ uint4 run_words_of(uint4 words) { return words; }
 #else
 #define RUN_CODE float4
 #endif
+#ifdef RUN_STRUCTURE
+#define RUN_KIND RUN_STRUCTURE
+#elif RUN_RESULT == 1
+#define RUN_KIND float
+#elif RUN_RESULT == 2
+#define RUN_KIND float2
+#elif RUN_RESULT == 3
+#define RUN_KIND float3
+#else
+#define RUN_KIND float4
+#endif
 #if RUN_WORDS == 1
 #define RUN_TEXEL uint
 #elif RUN_WORDS == 2
@@ -41,10 +52,12 @@ void main(uint3 id : SV_DispatchThreadID) {
     RUN_CODE code = RUN_ENCODE(RUN_VALUE);
     RUN_TEXEL words = RUN_PACK(code);
     RUN_CODE unpacked = RUN_UNPACK(words ^ asuint(view.w) RUN_WITH_SIGN);
+    RUN_KIND decoded = RUN_DECODE(unpacked RUN_SETTINGS);
     run_words[i] = run_words_of(words);
-    run_made[5u * i] = float4(code RUN_REST);
-    run_made[5u * i + 1u] = float4(unpacked RUN_REST);
-    run_made[5u * i + 2u] = float4(RUN_DECODE(unpacked RUN_SETTINGS) RUN_RESULT_REST);
-    run_made[5u * i + 3u] = RUN_TO_TARGET(code);
-    run_made[5u * i + 4u] = float4(RUN_FROM_TARGET(run_given[3u * i + 2u] RUN_WITH_SIGN) RUN_REST);
+    run_made[6u * i] = float4(code RUN_REST);
+    run_made[6u * i + 1u] = float4(unpacked RUN_REST);
+    run_made[6u * i + 2u] = float4(RUN_FIRST);
+    run_made[6u * i + 3u] = RUN_TO_TARGET(code);
+    run_made[6u * i + 4u] = float4(RUN_FROM_TARGET(run_given[3u * i + 2u] RUN_WITH_SIGN) RUN_REST);
+    run_made[6u * i + 5u] = float4(RUN_SECOND);
 }

@@ -13,6 +13,8 @@ from .interface import Interface, Run, Runner
 from .sources import EmittedSource, compile_with, folder, required
 
 WRAPPER = Path(__file__).with_suffix(".hlsl")
+# How a structure is made: by the function that HlslWriter writes behind it.
+MADE = "{}_of({})"
 # Bindings of what the file declares itself: behind the three buffers.
 OPTIONS = ("-S", "comp", "-e", "main", "-V", "--target-env", "vulkan1.1", "--auto-map-bindings")
 
@@ -25,7 +27,7 @@ def _glslang_path() -> str:
 @contextmanager
 def prepared(path: Path, interface: Interface) -> Iterator[Run]:
     """The file on the GL device. Raises MissingError, ShaderError, NoDeviceError."""
-    source = EmittedSource(WRAPPER, path, interface)
+    source = EmittedSource(WRAPPER, path, interface, MADE)
     with folder() as place:
         given = place / "code.hlsl"
         given.write_text(source.text, encoding="utf-8")

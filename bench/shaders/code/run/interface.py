@@ -15,8 +15,10 @@ from ...translator.writer import PUBLIC
 # How many normals are run at once: it bounds the memory of a run.
 BLOCK = 2**16
 # What a shader is given of each normal (normal, view, texel), and what it makes (code, unpacked, decoded, target, from
-# a target): rows of four numbers.
-GIVEN, MADE = 3, 5
+# a target, and what else is decoded): rows of four numbers.
+GIVEN, MADE = 3, 6
+# What is decoded, under a name, and how many numbers it has, to the texts of its parts.
+Parts = Callable[[str, int], Sequence[str]]
 
 
 @dataclass(frozen=True)
@@ -33,6 +35,8 @@ class Interface:
         is_ours: whether nobody else's code is in the file.
         value: where what `P_encode` is given lies.
         result: how many numbers `P_decode` gives.
+        structure: the type of what `P_encode` is given and `P_decode` gives, if that is a structure; else empty.
+        fields: of the structure, one for each of `value`; what is decoded lies as what is given, in two rows.
     """
 
     prefix: str
@@ -44,6 +48,8 @@ class Interface:
     is_ours: bool = True
     value: tuple[str, ...] = ("n.xyz",)
     result: int = 3
+    structure: str = ""
+    fields: tuple[str, ...] = ()
 
     @property
     def takes_view(self) -> bool:
@@ -55,14 +61,38 @@ class Interface:
         """The macros by which the shaders here call the six functions."""
         return self.defines_with(", ".join)
 
-    def defines_with(self, listed: Callable[[Sequence[str]], str]) -> dict[str, object]:
-        """The same, where what is given is written otherwise than n.xyz, view.x."""
+    def defines_with(
+        self, listed: Callable[[Sequence[str]], str], made: str = "{}({})", parts: Parts = lambda path, _: [path]
+    ) -> dict[str, object]:
+        """The same, where things are written otherwise.
+
+        Args:
+            listed: what is given, in place of n.xyz, view.x.
+            made: a structure of its name and its fields.
+            parts: (path, size) -> what some numbers of what is decoded are, one after the other.
+        """
+        value = [made.format(self.structure, listed(self.value))] if self.structure else [listed(self.value)]
         named = {name.upper(): f"{self.prefix}_{name}" for name in PUBLIC}
         facts = {"SIZE": self.size, "SIGN": self.sign_bits, "WORDS": self.words, "RESULT": self.result}
-        given = {"VALUE": listed((*self.value, *self.settings)), "SETTINGS": listed(("", *self.settings))}
-        # What fills rows of four behind a code and behind what it is decoded to.
-        rest = {name: ", 0.0" * (4 - size) for name, size in (("REST", self.size), ("RESULT_REST", self.result))}
-        return {f"RUN_{name}": value for name, value in {**named, **facts, **given, **rest}.items()}
+        behind = listed(("", *self.settings))
+        given = {"VALUE": value[0] + behind, "SETTINGS": behind}
+        # What fills a row of four behind a code, and the two rows of what it is decoded to.
+        rows = {"REST": ", 0.0" * (4 - self.size)}
+        for name, row in zip(("FIRST", "SECOND"), self._decoded_rows(), strict=True):
+            texts = [text for path, size in row for text in parts(path, size)]
+            rows[name] = ", ".join(texts + ["0.0"] * (4 - sum(size for _, size in row)))
+        structure = {"STRUCTURE": self.structure} if self.structure else {}
+        return {f"RUN_{name}": value for name, value in {**named, **facts, **given, **rows, **structure}.items()}
+
+    def _decoded_rows(self) -> list[list[tuple[str, int]]]:
+        """Of what is decoded, by its two rows, each part and how many numbers it has."""
+        if not self.structure:
+            return [[("decoded", self.result)], []]
+        rows: dict[str, list[tuple[str, int]]] = {"n": [], "view": []}
+        for name, place in zip(self.fields, self.value, strict=True):
+            row, _, numbers = place.partition(".")
+            rows[row].append((f"decoded.{name}", len(numbers)))
+        return list(rows.values())
 
 
 class Ran(NamedTuple):
@@ -139,8 +169,9 @@ def rows_of(n: np.ndarray, view: np.ndarray, texels: np.ndarray) -> np.ndarray:
 
 
 def ran_of(made: np.ndarray, words: np.ndarray, interface: Interface) -> Ran:
-    """What a shader made, five rows of four numbers for each normal and four words, without what is not used."""
+    """What a shader made, six rows of four numbers for each normal and four words, without what is not used."""
     rows, size = made.reshape(-1, MADE, 4), interface.size
     words = np.ascontiguousarray(words.reshape(-1, 4)[:, : interface.words])
-    code, unpacked, decoded, target, back = np.ascontiguousarray(rows.transpose(1, 0, 2))
+    code, unpacked, first, target, back, second = np.ascontiguousarray(rows.transpose(1, 0, 2))
+    decoded = np.concatenate([first, second], axis=1) if interface.result > first.shape[1] else first
     return Ran(code[:, :size], words, unpacked[:, :size], decoded[:, : interface.result], target, back[:, :size])

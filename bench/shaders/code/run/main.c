@@ -59,11 +59,11 @@ int main(int words, char **word) {
     }
 #endif
     float *given = (float *)read_all("given.bin", count * 12 * sizeof *given);
-    float *made = (float *)calloc(count * 20 + 1, sizeof *made);
+    float *made = (float *)calloc(count * 24 + 1, sizeof *made);
     uint32_t *packed = (uint32_t *)calloc(count * 4 + 1, sizeof *packed);
     if (!made || !packed) return 3;
     run_six(count, given, made, packed);
-    write_all("made.bin", made, count * 20 * sizeof *made);
+    write_all("made.bin", made, count * 24 * sizeof *made);
     write_all("words.bin", packed, count * 4 * sizeof *packed);
     free(given), free(made), free(packed);
     return 0;

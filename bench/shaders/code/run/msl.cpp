@@ -23,7 +23,7 @@ static void run_words(uint *words, uint2 v) { words[0] = v.x, words[1] = v.y; }
 static void run_words(uint *words, uint4 v) { words[0] = v.x, words[1] = v.y, words[2] = v.z, words[3] = v.w; }
 
 extern "C" void run_six(size_t count, const float *given, float *made, uint *words) {
-    for (size_t i = 0; i < count; ++i, given += 12, made += 20, words += 4) {
+    for (size_t i = 0; i < count; ++i, given += 12, made += 24, words += 4) {
         float4 n = {given[0], given[1], given[2], given[3]}, view = {given[4], given[5], given[6], 0.0f};
         float4 texel = {given[8], given[9], given[10], given[11]};
         auto code = RUN_ENCODE(RUN_VALUE RUN_ENCODE_TABLES);
@@ -32,9 +32,11 @@ extern "C" void run_six(size_t count, const float *given, float *made, uint *wor
         (void)view;
         run_row(made, code);
         run_row(made + 4, unpacked);
-        run_row(made + 8, RUN_DECODE(unpacked RUN_SETTINGS RUN_DECODE_TABLES));
+        auto decoded = RUN_DECODE(unpacked RUN_SETTINGS RUN_DECODE_TABLES);
+        run_row(made + 8, float4(RUN_FIRST));
         run_row(made + 12, RUN_TO_TARGET(code));
         run_row(made + 16, RUN_FROM_TARGET(texel RUN_WITH_SIGN));
+        run_row(made + 20, float4(RUN_SECOND));
         run_words(words, packed);
     }
 }

@@ -23,7 +23,8 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
         def run(n: np.ndarray, view: np.ndarray, texels: np.ndarray) -> Ran:
             np.savez(place / "given.npz", n=n, view=view, texels=texels)
             places = (",".join(interface.value), ",".join(interface.settings))
-            facts = (interface.prefix, *places, str(interface.sign_bits))
+            structure = (interface.structure, ",".join(interface.fields))
+            facts = (interface.prefix, *places, str(interface.sign_bits), *structure)
             run_apart(path, children.python(f"{__package__}.python_child", str(path.resolve()), str(place), *facts))
             with np.load(place / "made.npz") as made:
                 return _run_result(made, interface, len(n))

@@ -22,6 +22,17 @@ uvec4 run_row(uvec4 words) { return words; }
 #else
 #define RUN_CODE vec4
 #endif
+#ifdef RUN_STRUCTURE
+#define RUN_KIND RUN_STRUCTURE
+#elif RUN_RESULT == 1
+#define RUN_KIND float
+#elif RUN_RESULT == 2
+#define RUN_KIND vec2
+#elif RUN_RESULT == 3
+#define RUN_KIND vec3
+#else
+#define RUN_KIND vec4
+#endif
 #if RUN_WORDS == 1
 #define RUN_TEXEL uint
 #elif RUN_WORDS == 2
@@ -37,10 +48,12 @@ void main() {
     RUN_CODE code = RUN_ENCODE(RUN_VALUE);
     RUN_TEXEL words = RUN_PACK(code);
     RUN_CODE unpacked = RUN_UNPACK(words ^ floatBitsToUint(view.w) RUN_WITH_SIGN);
+    RUN_KIND decoded = RUN_DECODE(unpacked RUN_SETTINGS);
     run_words[i] = run_row(words);
-    run_made[5u * i] = vec4(code RUN_REST);
-    run_made[5u * i + 1u] = vec4(unpacked RUN_REST);
-    run_made[5u * i + 2u] = vec4(RUN_DECODE(unpacked RUN_SETTINGS) RUN_RESULT_REST);
-    run_made[5u * i + 3u] = RUN_TO_TARGET(code);
-    run_made[5u * i + 4u] = vec4(RUN_FROM_TARGET(run_given[3u * i + 2u] RUN_WITH_SIGN) RUN_REST);
+    run_made[6u * i] = vec4(code RUN_REST);
+    run_made[6u * i + 1u] = vec4(unpacked RUN_REST);
+    run_made[6u * i + 2u] = vec4(RUN_FIRST);
+    run_made[6u * i + 3u] = RUN_TO_TARGET(code);
+    run_made[6u * i + 4u] = vec4(RUN_FROM_TARGET(run_given[3u * i + 2u] RUN_WITH_SIGN) RUN_REST);
+    run_made[6u * i + 5u] = vec4(RUN_SECOND);
 }

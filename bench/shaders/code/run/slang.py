@@ -9,7 +9,7 @@ from pathlib import Path
 from ...isa import spirv
 from ...languages import tools
 from . import opengl
-from .hlsl import WRAPPER, glsl_of, translators
+from .hlsl import MADE, WRAPPER, glsl_of, translators
 from .interface import Interface, Run, Runner
 from .sources import EmittedSource, compile_with, first_line, folder
 
@@ -21,7 +21,7 @@ def _compiler() -> str:
 @contextmanager
 def prepared(path: Path, interface: Interface) -> Iterator[Run]:
     """The file on the GL device. Raises MissingError, ShaderError, NoDeviceError."""
-    source = EmittedSource(WRAPPER, path, interface)
+    source = EmittedSource(WRAPPER, path, interface, MADE)
     with folder() as place:
         given, glsl, binary = (place / f"code.{ending}" for ending in ("slang", "comp", "spv"))
         given.write_text(source.text, encoding="utf-8")

@@ -24,10 +24,11 @@ class EmittedSource(Source):
     Args:
         wrapper: the program, whose first line stays the first one.
         code: the file; its own `#version` is left out.
+        made: how the language makes a structure: see `Interface.defines_with`.
     """
 
-    def __init__(self, wrapper: Path, code: Path, interface: Interface):
-        super().__init__(wrapper, interface.defines, {"CODE": code})
+    def __init__(self, wrapper: Path, code: Path, interface: Interface, made: str = "{}({})"):
+        super().__init__(wrapper, interface.defines_with(", ".join, made), {"CODE": code})
         self._lines: list[Line] = [self._kept_line(line) for line in self._lines]
         self.text = "".join(f"{line}\n" for line, _, _ in self._lines)
 

@@ -10,11 +10,12 @@ from typing import Any
 from .....encodings.catalogue import BY_KIND
 from .....encodings.codecs.curve_codec import CurveCodec
 from .....encodings.codecs.depth_codec import DepthCodec
-from .....encodings.codecs.kind import CURVE, DEPTH, LIGHT, MOTION, NORMAL, AnyEncoding, Kind
+from .....encodings.codecs.frame_codec import FrameCodec
+from .....encodings.codecs.kind import CURVE, DEPTH, FRAME, LIGHT, MOTION, NORMAL, AnyEncoding, Kind
 from .....encodings.codecs.light_codec import LightCodec
 from .....encodings.codecs.motion_codec import MotionCodec
 from .....encodings.storages.depth_storage import DEPTH_STORAGES, depth_storage_of
-from .....encodings.storages.storage import CURVE_STORAGES, LIGHT_STORAGES, MOTION_STORAGES
+from .....encodings.storages.storage import CURVE_STORAGES, FRAME_STORAGES, LIGHT_STORAGES, MOTION_STORAGES
 from ....ground.choose import choose
 from ....ground.options.storage_names import storages_named, storages_said
 from ....ground.output.errors import UsageError
@@ -45,8 +46,14 @@ def _depth(encoding: Any, storages: str, _: str) -> Iterator[DepthCodec]:
     return (DepthCodec(encoding, one) for one in choose("depth storage", ",".join(said), known))
 
 
-MADE: Mapping[Kind, Made] = MappingProxyType({MOTION: _motion, CURVE: _curve, LIGHT: _light, DEPTH: _depth})
-NAMED: Mapping[str, Kind] = MappingProxyType({kind.name: kind for kind in (NORMAL, *MADE)})
+def _frame(encoding: Any, storages: str, rounding: str) -> Iterator[FrameCodec]:
+    return (FrameCodec(encoding, one, rounding) for one in storages_named(storages, FRAME_STORAGES, "frame storage"))
+
+
+MADE: Mapping[Kind, Made] = MappingProxyType(
+    {MOTION: _motion, CURVE: _curve, LIGHT: _light, DEPTH: _depth, FRAME: _frame}
+)
+NAMED: Mapping[str, Kind] = MappingProxyType({kind.word: kind for kind in (NORMAL, *MADE)})
 
 
 def kind_named(names: str, of: str) -> Kind:
@@ -63,8 +70,8 @@ def kind_named(names: str, of: str) -> Kind:
         return _kind_of_file(Path(file_of(files[0])))
     found = [kind for kind in NAMED.values() if set(words) <= set(BY_KIND[kind])]
     if len(found) > 1 and NORMAL not in found:
-        several = ", ".join(kind.name for kind in found)
-        raise UsageError(f"{names}: codes of {several} have this name; say which with --of, as in --of {found[0].name}")
+        several = ", ".join(kind.word for kind in found)
+        raise UsageError(f"{names}: codes of {several} have this name; say which with --of, as in --of {found[0].word}")
     return found[0] if found else NORMAL
 
 
