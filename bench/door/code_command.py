@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ...encodings.codecs.codec import Codec
-from ...encodings.codecs.kind import CURVE, FRAME, NORMAL
+from ...encodings.codecs.kind import CURVE, FRAME, NORMAL, Kind
 from ...gbuffer.gl.device import NoDeviceError
 from ...gbuffer.gl.shader import ShaderError
 from ..ground.choose import choose
@@ -28,7 +28,7 @@ from ..shaders.code.kinds.table import kind_of
 from ..shaders.code.run import runner
 from ..shaders.code.verify import Agreement, agreement
 from ..shaders.languages.source_options import in_names
-from ..subjects.codecs.kinds.codecs import codecs_of_kind, kind_named
+from ..subjects.codecs.kinds.codecs import codecs_of_kind, kinds_named
 from ..subjects.codecs.names import codecs_named, fitting
 from .code_figures import figures, head, rounding_of
 
@@ -82,14 +82,34 @@ def _check_prefix(prefix: str) -> None:
 
 
 def _codecs(options: CodeOptions) -> list[Any]:
-    kind = kind_named(options.codec, options.of)
-    if kind is not NORMAL:
-        rounded = roundings_named(options.rounding)
-        if rounded != ["nearest"] and kind not in ROUNDED:
-            raise UsageError(f"--rounding is for {ROUNDED_WORDS}; codes of {kind.word} are rounded to the nearest")
-        return that_fit(codecs_of_kind(kind, options.codec, options.storage or "", rounded))
+    """The codecs of every kind that is named; a kind that does not take the options is named on standard error.
+
+    Raises:
+        UsageError: none does, or an unknown name.
+    """
+    found: list[Any] = []
+    complaints: list[str] = []
+    for kind, names in kinds_named(options.codec, options.of).items():
+        if kind is NORMAL:
+            found += _normals(names, options)
+            continue
+        try:
+            found += _of_kind(kind, names, options)
+        except UsageError as error:
+            complaints.append(str(error))
+    return what_is_left(found, complaints)
+
+
+def _of_kind(kind: Kind, names: str, options: CodeOptions) -> list[Any]:
+    rounded = roundings_named(options.rounding)
+    if rounded != ["nearest"] and kind not in ROUNDED:
+        raise UsageError(f"--rounding is for {ROUNDED_WORDS}; codes of {kind.word} are rounded to the nearest")
+    return that_fit(codecs_of_kind(kind, names, options.storage or "", rounded))
+
+
+def _normals(names: str, options: CodeOptions) -> list[Codec]:
     storages = options.storage or (SHIPPED if options.check else "rgba8")
-    codecs, left_out = fitting(codecs_named(options.codec, storages, options.rounding))
+    codecs, left_out = fitting(codecs_named(names, storages, options.rounding))
     if not options.check or options.storage:
         for line in left_out:
             leave_out(line)
@@ -160,7 +180,7 @@ def _all_made(codecs: Sequence[Any], languages: Sequence[str], prefix: str) -> l
 
 def _command(codec: Any, language: str, prefix: str) -> str:
     kind = kind_of(codec)
-    name = codec.encoding.name if kind.is_ours(codec) else codec.encoding.citation
+    name = kind.named(codec) if kind.is_ours(codec) else codec.encoding.citation
     words = ["normalbench", "code", name, *([] if kind.kind is NORMAL else ["--of", kind.kind.word])]
     words += ["--storage", codec.storage.name, "--to", language]
     words += ["--rounding", rounding_of(codec)] if rounding_of(codec) != "nearest" else []

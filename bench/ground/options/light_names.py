@@ -14,28 +14,44 @@ LEAST_RANGE, MOST_LIGHT = 1e-3, 1e4
 
 
 def light_buffers_named(names: str) -> list[LightCodec]:
-    """The light codecs that comma-separated names stand for; `linear:1` is one over the range [0, 1].
+    """The light codecs that comma-separated names stand for; `linear:1` and `linear:range=1` are over the range [0, 1].
 
     Raises:
         UsageError: an unknown name, or a range that is none or that the encoding does not have.
     """
     words = dict.fromkeys(name.strip() for name in names.split(","))
-    ranged = {word: _ranged_codec(word) for word in words if ":" in word}
+    ranged = {word: ranged_light_buffer(word) for word in words if ":" in word}
     chosen = choose("light buffer", names, {**LIGHT_BUFFERS, **ranged})
     return list({codec.name: codec for codec in chosen}.values())
 
 
-def _ranged_codec(word: str) -> LightCodec:
-    name, _, text = word.partition(":")
+def ranged_light_buffer(word: str) -> LightCodec:
+    """The light codec over the range that a name gives.
+
+    Raises:
+        UsageError: a range that is none or that the encoding does not have.
+    """
+    name, text = name_and_range(word)
     known = {name: codec for name, codec in LIGHT_BUFFERS.items() if codec.encoding.ranged}
     codec = known.get(name)
     if not codec or not codec.encoding.ranged:
         raise UsageError(f"light buffer {word}: of {', '.join(known)} the range may be given, as in linear:1")
+    return replace(codec, encoding=codec.encoding.ranged(range_in(f"light buffer {word}", text)))
+
+
+def name_and_range(word: str) -> tuple[str, str]:
+    """A name and the text of its range: rgbm and 8 of rgbm:8 and of rgbm:range=8."""
+    name, _, text = word.partition(":")
+    return name.strip(), text.strip().removeprefix("range=")
+
+
+def range_in(what: str, text: str) -> float:
+    """The range that a text is. Raises UsageError for what is none; `what` is called so there."""
     try:
         limit = float(text)
     except ValueError:
         limit = math.nan
     if not LEAST_RANGE <= limit <= MOST_LIGHT:
-        raise UsageError(f"light buffer {word}: a range is {LEAST_RANGE:g} to {MOST_LIGHT:g}, as in {name}:1")
+        raise UsageError(f"{what}: a range is {LEAST_RANGE:g} to {MOST_LIGHT:g}, as in NAME:1")
     # As its name has it: two ranges that are called the same are the same.
-    return replace(codec, encoding=codec.encoding.ranged(float(f"{limit:g}")))
+    return float(f"{limit:g}")

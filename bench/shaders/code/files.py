@@ -71,9 +71,14 @@ def file_name(codec: Any, language: str) -> str:
 
 
 def prefix_of(codec: Any) -> str:
-    """What the names of a codec's functions begin with: its kind, but of normals, its encoding and its storage."""
-    kind = kind_of(codec).kind
-    return identifier(codec.name if kind is NORMAL else f"{kind.word} {codec.encoding.name}/{codec.storage.name}")
+    """What the names of a codec's functions begin with: its kind, but of normals, its encoding, its storage, and how it
+    rounds, but to the nearest."""
+    kind = kind_of(codec)
+    if kind.kind is NORMAL:
+        return identifier(codec.name)
+    rounding = getattr(codec, "rounding", "nearest")
+    named = f"{kind.kind.word} {kind.named(codec)}/{codec.storage.name}"
+    return identifier(named if rounding == "nearest" else f"{named}/{rounding}")
 
 
 def code_of(codec: Any, language: str, prefix: str = "") -> Code:

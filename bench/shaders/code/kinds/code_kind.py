@@ -61,6 +61,7 @@ class CodeKind:
         kind: of the catalogue.
         plural: what is encoded, in words.
         given: where in these rows lies what an encoder is given: n.xyz.
+        named: (codec) -> its encoding as people name it.
         fields: what these are called in the structure that an encoder is given and a decoder gives; none of others.
         settings: by its parameter, where what both functions are given besides lies: view.xyz.
         result: how many numbers a decoder gives; of a structure those of n first.
@@ -100,4 +101,5 @@ class CodeKind:
     units: Callable[[np.ndarray], np.ndarray] = field(default=lambda given: np.ones((len(given), 1)))
     bound: Callable[[Any], Mapping[str, float]] = field(default=lambda _: {})
     searches: Callable[[Any], bool] = field(default=lambda _: False)
+    named: Callable[[Any], str] = field(default=lambda codec: codec.encoding.name)
     fields: tuple[str, ...] = ()

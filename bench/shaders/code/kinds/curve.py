@@ -24,6 +24,11 @@ def _store(codec: CurveCodec, codes: np.ndarray) -> np.ndarray:
     return np.asarray(store_texel(jnp.asarray(codes[:, 0]), codec.storage, 0, rounds_to(codec.rounding)))[:, None]
 
 
+def _named(codec: CurveCodec) -> str:
+    is_usual = codec.range == codec.encoding.usual_range
+    return codec.encoding.name if is_usual else f"{codec.encoding.name}:{codec.range:g}"
+
+
 KIND = CodeKind(
     kind=CURVE,
     plural="quantities",
@@ -40,6 +45,7 @@ KIND = CodeKind(
     is_ours=is_in(CURVE),
     errors=lambda given, back: np.abs(back[:, 0].astype(np.float64) - given[:, 0]),
     unit="",
+    named=_named,
     held=lambda codec: f"from 0 to {codec.range:g}",
     units=lambda given: np.broadcast_to(given.max(), (len(given), 1)),
     bound=lambda codec: {"range": codec.range},

@@ -13,7 +13,7 @@ from .....encodings.codecs.kind import LIGHT
 from .....encodings.codecs.light_codec import LightCodec
 from .....encodings.vec import Vec4
 from .code_kind import COUNT, CodeKind, Numbers
-from .own import by_device, defines, is_in
+from .own import by_device, defines
 
 # The brightest light that codes without a limit of their own are tried with.
 BRIGHTEST = 1024.0
@@ -72,6 +72,11 @@ def _errors(given: np.ndarray, back: np.ndarray) -> np.ndarray:
     return off.max(axis=1)
 
 
+def _is_ours(codec: LightCodec) -> bool:
+    """Over another range it has another name, and the same file."""
+    return codec.encoding.glsl in {one.glsl for one in LIGHT_ENCODINGS.values()}
+
+
 KIND = CodeKind(
     kind=LIGHT,
     plural="lights",
@@ -84,9 +89,8 @@ KIND = CodeKind(
     stored=lambda codec, n, _: codec.stored(_planes(n, _size(codec))),
     decoded=_decoded,
     by_device=_by_device,
-    has_twin=is_in(LIGHT),
-    # Over another range it has another name, and the same file.
-    is_ours=lambda codec: codec.encoding.glsl in {one.glsl for one in LIGHT_ENCODINGS.values()},
+    has_twin=_is_ours,
+    is_ours=_is_ours,
     errors=_errors,
     unit="of the brightest channel",
     held=lambda codec: f"linear, not negative, up to {codec.limit:g}",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -16,9 +17,12 @@ from .....encodings.codecs.light_codec import LightCodec
 from .....encodings.codecs.motion_codec import MotionCodec
 from .....encodings.storages.depth_storage import DEPTH_STORAGES, depth_storage_of
 from .....encodings.storages.storage import CURVE_STORAGES, FRAME_STORAGES, LIGHT_STORAGES, MOTION_STORAGES
-from ....ground.choose import choose
+from ....ground.choose import choose, unknown_name
+from ....ground.options.light_names import name_and_range, range_in, ranged_light_buffer
 from ....ground.options.storage_names import storages_named, storages_said
+from ....ground.options.words import Words, given_in
 from ....ground.output.errors import UsageError
+from ....ground.spelling import meant, spelled
 from ....shaders.languages.words import file_of, names_an_encoder, split_names
 from .named import kind_by_names, own_codes_named
 from .named import kind_of as kind_of_file
@@ -56,22 +60,42 @@ MADE: Mapping[Kind, Made] = MappingProxyType(
 NAMED: Mapping[str, Kind] = MappingProxyType({kind.word: kind for kind in (NORMAL, *MADE)})
 
 
-def kind_named(names: str, of: str) -> Kind:
-    """The kind that encodings are of: the one that is said, or what comma-separated names say; of normals in doubt.
+def kinds_named(names: str, of: str) -> dict[Kind, str]:
+    """Comma-separated names by the kind that they are of: the one that is said, or what each name says; of normals in
+    doubt.
 
     Raises:
         UsageError: an unknown kind, or names that several kinds have.
     """
     if of:
         (kind,) = choose("kind", of, NAMED)
-        return kind
-    words = split_names(names)
-    if files := [word for word in words if names_an_encoder(word)]:
-        return _kind_of_file(Path(file_of(files[0])))
-    found = [kind for kind in NAMED.values() if set(words) <= set(BY_KIND[kind])]
+        return {kind: names}
+    words, given = split_names(names), given_in(names)
+    shared = {kind for kind in NAMED.values() if all(_has(kind, word) for word in words)}
+    if len(shared) == 1:
+        return dict.fromkeys(shared, names)
+    found: dict[Kind, list[str]] = {}
+    for word in words:
+        found.setdefault(NORMAL if word in given else _kind_of_word(word), []).append(word)
+    return {kind: Words(some, given) for kind, some in found.items()}
+
+
+def _has(kind: Kind, word: str) -> bool:
+    """Whether a kind of the catalogue has an encoding of a name, over whatever range."""
+    return spelled(f"{kind.name} encoding", name_and_range(word)[0], BY_KIND[kind]) is not None
+
+
+def _kind_of_word(word: str) -> Kind:
+    """The kind of one name. Raises UsageError where several kinds have it."""
+    if names_an_encoder(word):
+        return _kind_of_file(Path(file_of(word)))
+    found = [kind for kind in NAMED.values() if _has(kind, word)]
     if len(found) > 1 and NORMAL not in found:
         several = ", ".join(kind.word for kind in found)
-        raise UsageError(f"{names}: codes of {several} have this name; say which with --of, as in --of {found[0].word}")
+        raise UsageError(f"{word}: codes of {several} have this name; say which with --of, as in --of {found[0].word}")
+    others = list(dict.fromkeys(name for kind in MADE for name in BY_KIND[kind]))
+    if not found and meant(word, others) and not meant(word, BY_KIND[NORMAL]):
+        raise unknown_name("encoding", [word], others)
     return found[0] if found else NORMAL
 
 
@@ -92,14 +116,32 @@ def _kind_of_file(path: Path) -> Kind:
 def codecs_of_kind(kind: Kind, names: str, storages: str, roundings: Sequence[str]) -> list[Any]:
     """Codecs of another kind than normals; in each encoding's first usual storage where none is named.
 
+    Args:
+        names: of encodings and of users' files; of light and curves over a range as well: rgbm:8.
+
     Raises:
-        UsageError: an unknown name.
+        UsageError: an unknown name, or a range that is none.
     """
-    encodings: list[AnyEncoding] = own_codes_named(kind, names, BY_KIND[kind])
+    words, catalogue = split_names(names), BY_KIND[kind]
+    ranged = [word for word in words if ":" in word and not names_an_encoder(word)]
+    plain = ",".join(word for word in words if word not in ranged)
+    encodings: list[AnyEncoding] = own_codes_named(kind, plain, catalogue) if plain or not ranged else []
+    chosen = [(encoding, None) for encoding in encodings] + [_with_range(kind, word) for word in ranged]
     made = (
-        codec
-        for encoding in encodings
+        codec if largest is None else replace(codec, range=largest)
+        for encoding, largest in chosen
         for rounding in roundings
         for codec in MADE[kind](encoding, storages or encoding.storages[0], rounding)  # pyright: ignore[reportAttributeAccessIssue]
     )
     return list(dict.fromkeys(made))
+
+
+def _with_range(kind: Kind, word: str) -> tuple[Any, float | None]:
+    """The encoding of a name with a range, and the range where the encoding does not have it itself."""
+    name, text = name_and_range(word)
+    if kind is LIGHT:
+        return ranged_light_buffer(word).encoding, None
+    if kind is not CURVE:
+        raise UsageError(f"{word}: its functions take the range, or need none; name {name}")
+    (encoding,) = choose("curve encoding", name, BY_KIND[CURVE])
+    return encoding, range_in(word, text)

@@ -7,9 +7,9 @@ import pytest
 from languages import require_runner
 
 from normalbench.bench.shaders.code.emit import LANGUAGES
-from normalbench.bench.shaders.code.files import code_of
+from normalbench.bench.shaders.code.files import code_of, prefix_of
 from normalbench.bench.shaders.code.verify import agreement
-from normalbench.bench.subjects.codecs.kinds.codecs import NAMED, codecs_of_kind, kind_named
+from normalbench.bench.subjects.codecs.kinds.codecs import NAMED, codecs_of_kind, kinds_named
 from normalbench.encodings.catalogue import BY_KIND
 
 # Of each kind, codes and storages that are made otherwise: shares, polynomials, powers, floats, and integers.
@@ -131,7 +131,7 @@ def test_a_users_code_of_a_kind_is_written(kind, tmp_path):
     text, storage = OWN[kind]
     path = tmp_path / "mine.hlsl"
     path.write_text(text)
-    assert kind_named(str(path), "").name == kind
+    assert [one.word for one in kinds_named(str(path), "")] == [kind]
     codec = codec_of(kind, str(path), storage)
     for language in ("c", "python"):
         found = agreement_of(codec, language, tmp_path)
@@ -145,7 +145,7 @@ def test_a_users_light_is_of_light_and_stays_theirs(tmp_path, monkeypatch, run):
     text = "float4 EncodeLight(float3 light) { return float4(light * 0.25, 1.0); }\n"
     Path("mine.hlsl").write_text(text + "float3 DecodeLight(float4 code) { return code.rgb * 4.0; }\n")
     for word in ("mine.hlsl", "mine.hlsl:EncodeLight:DecodeLight"):
-        assert kind_named(word, "").name == "light"
+        assert [one.word for one in kinds_named(word, "")] == ["light"]
         _, out, err = run("code", word, "--storage", "rgba8", "--to", "glsl")
         assert "Encode and decode are yours." in out, err
 
@@ -179,9 +179,46 @@ def test_a_kind_is_checked_as_normals_are(run):
         (["plain", "--of", "light", "--storage", "srgb8_a8"], "made for"),
         (["linear", "--of", "light", "--storage", "srgb8_a8"], "by itself"),
         (["linear_sign", "--storage", "depth16"], "no room for a sign"),
+        (["octahedral,cube_rot"], "did you mean cube_root?"),
+        (["octahedral,nonsense,rgbm"], "unknown encoding 'nonsense'"),
+        (["octahedral,linear"], "say which with --of"),
+        (["cube_root:range=4"], "its functions take the range"),
+        (["rgbm:range=0"], "a range is 0.001 to 10000"),
+        (["log:4"], "say which with --of"),
     ],
 )
 def test_what_cannot_be_written_of_a_kind_is_a_line(run, arguments, said):
     status, out, err = run("code", *arguments)
     assert (status, out) == (2, "")
     assert said in err and err.count("\n") == 1, err
+
+
+@pytest.mark.usefixtures("gl")
+def test_names_of_several_kinds_are_written(run, tmp_path):
+    """Each in what its kind usually lies in; what a kind does not take is named, and spares the others."""
+    status, _, err = run("code", "octahedral,cube_root,rgbm:range=8,Octahedral-Angle", "--to", "c", "-o", str(tmp_path))
+    made = sorted(path.name for path in tmp_path.iterdir())
+    assert status == 0 and made == [
+        "frame_octahedral_angle_rgb10a2.h",
+        "light_rgbm_8_rgba8.h",
+        "motion_cube_root_rg8.h",
+        "octahedral_rgba8.h",
+    ], err
+    assert "normalbench code rgbm:8 --of light" in (tmp_path / "light_rgbm_8_rgba8.h").read_text()
+    status, out, err = run("code", "octahedral,rgbm", "--storage", "rg8", "--to", "c", "--check")
+    assert status == 0 and "octahedral" in out and "left out: rgbm: rgbm is made for rgba8" in err
+
+
+def test_a_range_is_a_constant_of_the_code():
+    """Of light another encoding, of a curve another number; the curve's name has it."""
+    assert "8.0" in code_of(codec_of("light", "rgbm:8", "rgba8"), "glsl", "p").body
+    log = codec_of("curve", "log:range=4", "r8")
+    assert log.range == 4 and prefix_of(log) == "curve_log_4_r8"
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("kind, name", [("light", "rgbm:8"), ("curve", "log:4")])
+def test_the_code_over_another_range_gives_the_catalogues_texels(kind, name, tmp_path):
+    require_runner("c")
+    found = agreement_of(codec_of(kind, name, ""), "c", tmp_path)
+    assert found.holds, found.says

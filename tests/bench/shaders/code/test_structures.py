@@ -11,7 +11,7 @@ from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.shaders.code.kinds.table import kind_of
 from normalbench.bench.shaders.code.reference import reference
 from normalbench.bench.shaders.code.verify import agreement
-from normalbench.bench.subjects.codecs.kinds.codecs import NAMED, codecs_of_kind, kind_named
+from normalbench.bench.subjects.codecs.kinds.codecs import NAMED, codecs_of_kind, kinds_named
 from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.encodings.catalogue import FRAME_ENCODINGS
 
@@ -95,7 +95,7 @@ def test_a_hand_that_comes_back_as_the_other_is_an_error_of_half_a_turn():
 def test_a_users_code_of_tangent_frames_is_written(ending, language, tmp_path):
     """Bitangents, out parameters, a structure, and a quaternion alone."""
     path = str(OWN / f"frame.{ending}")
-    assert kind_named(path, "").word == "frame"
+    assert [one.word for one in kinds_named(path, "")] == ["frame"]
     found = agreement_of(frame_codec(path, "unorm:12:12:7:1"), language, tmp_path)
     assert found.holds, found.says
 
