@@ -13,6 +13,7 @@ import numpy as np
 from ..storages.dither import Dither
 from ..storages.local_range import back, bits_of_bounds, bounds, within
 from ..storages.rounding import numbers_around, store_number
+from ..storages.rules import of_count
 from ..storages.storage import BITS_32, DITHERED, FORMS, Storage, of_unit, rounds_to
 from ..vec import Vec3, dot, jnp, select
 from .encoding import Encoding
@@ -62,6 +63,7 @@ class Codec:
     rounding: str = "nearest"
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "storage", of_count(self.storage, self.encoding.components))
         if self.encoding.is_packed:
             object.__setattr__(self, "storage", BITS_32)
             # An integer is as it is made; noise, which would make another one of it, does not fit.

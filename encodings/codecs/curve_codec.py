@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ..storages.rounding import store_texel
+from ..storages.rules import of_count
 from ..storages.storage import DITHERED, Storage, rounds_to
 from .codec import rounding_misfit
 
@@ -81,6 +82,9 @@ class CurveCodec:
     storage: Storage
     range: float = 1.0
     rounding: str = "nearest"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "storage", of_count(self.storage, 1))
 
     @property
     def name(self) -> str:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from ..rotation import Frame
 from ..storages.rounding import store_number
+from ..storages.rules import of_count
 from ..storages.storage import Storage, of_unit
 from ..vec import TINY, Vec4, select
 from .codec import codec_name, numbers_misfit, rounding_misfit
@@ -22,6 +23,7 @@ class FrameCodec:
     rounding: str = "nearest"
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "storage", of_count(self.storage, self.encoding.components))
         if self.encoding.is_unit:
             object.__setattr__(self, "storage", of_unit(self.storage))
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..storages.rounding import store_texel
+from ..storages.rules import of_count
 from ..storages.storage import Storage
 from ..vec import Vec4
 from .light_encoding import LightEncoding
@@ -17,6 +18,9 @@ class LightCodec:
 
     encoding: LightEncoding
     storage: Storage
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "storage", of_count(self.storage, 4))
 
     @property
     def name(self) -> str:

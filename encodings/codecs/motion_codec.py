@@ -11,6 +11,7 @@ from typing import Any
 
 from ..storages.dither import Dither
 from ..storages.rounding import store_number
+from ..storages.rules import of_count
 from ..storages.storage import DITHERED, Storage, of_unit, rounds_to
 from ..vec import Vec2
 from .codec import codec_name, numbers_misfit, rounding_misfit
@@ -84,6 +85,7 @@ class MotionCodec:
     rounding: str = "nearest"
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "storage", of_count(self.storage, NUMBERS))
         if self.encoding.is_unit:
             object.__setattr__(self, "storage", of_unit(self.storage))
 

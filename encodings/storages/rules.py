@@ -20,6 +20,7 @@ ENDINGS: Mapping[str, str] = MappingProxyType({"unorm": "", "snorm": "_snorm", "
 # Other words for the same numbers. SNORM of OpenGL before 4.2 is (2 i + 1) / (2^n - 1), which are UNORM's.
 SAME: Mapping[str, str] = MappingProxyType({"uint": "unorm", "sint": "snorm", "snorm_gl2": "unorm"})
 MOST_EXPONENT, MOST_MANTISSA = 8, 23
+RGBA = "rgba"
 
 
 def across(kind: str, bits: tuple[int, ...]) -> Storage:
@@ -48,7 +49,7 @@ def across(kind: str, bits: tuple[int, ...]) -> Storage:
 def _target_of(bits: int) -> str:
     """As few channels as hold so many bits: rgb8."""
     part = 8 if bits <= 32 else 16
-    return f"{'rgba'[: -(-bits // part)]}{part}"
+    return f"{RGBA[: -(-bits // part)]}{part}"
 
 
 # Storages by rule: unorm:9:7, float:5:10.
@@ -62,7 +63,7 @@ def by_rule(kind: str, bits: tuple[int, ...]) -> Storage:
     Args:
         kind: "unorm", "snorm", "snorm_full", or another word for these; "uint" and "sint" are never a format's own
             conversion. "centred" for the integers of SNORM in the channels of a UNORM format. "float" and "ufloat" have
-            the bits of exponent and mantissa, with and without a sign, and are all alike.
+            the bits of exponent and mantissa, with and without a sign, and are all alike: see `of_count`.
 
     Raises:
         ValueError: as `across`; centred ones that are no format of a GPU; and floats that cannot be.
@@ -84,7 +85,7 @@ def by_rule(kind: str, bits: tuple[int, ...]) -> Storage:
 
 
 def _of_floats(kind: str, bits: tuple[int, ...]) -> Storage:
-    """As many floats of an exponent and a mantissa as a texel of 64 bits holds, four at most; GPUs' own where they are.
+    """Floats of an exponent and a mantissa, as many as a texel of 64 bits holds, four at most.
 
     Raises:
         ValueError: no such floats; a line.
@@ -93,11 +94,22 @@ def _of_floats(kind: str, bits: tuple[int, ...]) -> Storage:
     if len(bits) != 2 or not (2 <= bits[0] <= MOST_EXPONENT and 1 <= bits[1] <= MOST_MANTISSA):
         known = f"{kind}:EXPONENT:MANTISSA, of 2 to {MOST_EXPONENT} and of 1 to {MOST_MANTISSA} bits"
         raise ValueError(f"floats are said as {known}, such as float:5:10, not {said}")
-    form = FloatForm(*bits, is_signed=kind == "float")
-    own = {FORMS[16]: "rgba16f", FORMS[32]: "rgba32f"}
+    return replace(_floats(FloatForm(*bits, is_signed=kind == "float"), len(RGBA)), is_uncounted=True)
+
+
+def of_count(storage: Storage, count: int) -> Storage:
+    """A storage of floats with as many as a code has numbers, where only the bits of each were said."""
+    return _floats(storage.float_form(0), count) if storage.is_uncounted else storage
+
+
+def _floats(form: FloatForm, count: int) -> Storage:
+    """At least so many floats of a form, as far as a texel of 64 bits has room; GPUs' own where they are."""
+    own = {FORMS[16]: "16f", FORMS[32]: "32f"}
     if form in own:
-        return STORAGES[own[form]]
-    count = min(4, MOST_TOGETHER // form.bits)
+        # No GPU has three.
+        return FORMATS[f"{RGBA[: count if count < 3 else len(RGBA)]}{own[form]}"]
+    count = min(count, len(RGBA), MOST_TOGETHER // form.bits)
+    kind, bits = "float" if form.is_signed else "ufloat", (form.exponent, form.mantissa)
     title = f"{count} floats of {'sign, ' if form.is_signed else ''}{bits[0]}:{bits[1]} bits"
     part = 8 if form.bits * count <= 32 else 16
     name = f"{kind}_{bits[0]}_{bits[1]}"

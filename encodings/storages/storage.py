@@ -83,6 +83,7 @@ class Storage:
         is_full: its signed integers are -2^(n-1) to 2^(n-1) - 1, and 2^(n-1) would stand for 1.
         form: of its floats, where they are none of a GPU's.
         is_integer: whether its channels are whole numbers, which hold bits and are not blended.
+        is_uncounted: somebody said the bits of its floats, and not how many there are: see `rules.of_count`.
     """
 
     name: str
@@ -98,6 +99,7 @@ class Storage:
     is_full: bool = False
     form: FloatForm | None = None
     is_integer: bool = False
+    is_uncounted: bool = False
 
     @property
     def is_packed(self) -> bool:
@@ -284,6 +286,7 @@ FORMATS: Mapping[str, Storage] = MappingProxyType(
         "r16": Storage("r16", "R16", "unorm", (16,), 0x822A),
         "r16f": R16F,
         "r32f": R32F,
+        "rg32f": Storage("rg32f", "RG32F", "float", (32, 32), 0x8230),
         "srgb8_a8": SRGB8_A8,
     }
 )

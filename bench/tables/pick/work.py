@@ -9,6 +9,7 @@ from fnmatch import fnmatchcase
 from ....encodings.catalogue import is_in_catalogue
 from ....encodings.codecs.codec import Codec
 from ....encodings.codecs.encoding import Encoding
+from ....encodings.storages.rules import of_count
 from ....encodings.storages.storage import STORAGES, Storage
 from ....gbuffer.effects.effect import ChosenEffect
 from ....gbuffer.gl.device import Device
@@ -121,7 +122,9 @@ def _say_if_few(sets: Iterable[NormalSet]) -> None:
 def _asked(options: PickOptions) -> dict[str, list[Storage]]:
     """The storages of each question, by what was asked for. Raises UsageError."""
     if options.bytes is None:
-        return {storage.name: [storage, *_packings(storage)] for storage in storages_named(options.storage)}
+        # Of floats whose number nobody said, all that a texel has.
+        asked = [of_count(storage, storage.channels) for storage in storages_named(options.storage)]
+        return {storage.name: [storage, *_packings(storage)] for storage in asked}
     sizes = sorted({storage.texel_bytes for storage in STORAGES.values()})
     chosen = choose("number of bytes", options.bytes, {str(size): size for size in sizes})
     return {f"{size} bytes": [one for one in STORAGES.values() if one.texel_bytes == size] for size in chosen}

@@ -13,7 +13,7 @@ from ....encodings import vec
 from ....encodings.codecs.depth_codec import DepthCodec, DepthEncoding
 from ....encodings.shared.position import Camera
 from ....encodings.storages.depth_storage import DepthStorage, store_depth
-from ....encodings.storages.storage import FORMATS, Storage
+from ....encodings.storages.storage import FORMATS
 from ....encodings.vec import jnp
 from ...gl.device import Device, read_pixels
 from ...gl.handles import Texture, VertexArray
@@ -22,7 +22,6 @@ from ..codec_passes import storage_kind
 from ..harness import Passes, Textures, check_functions, exact, set_uniforms
 
 HOMES = ("packed", "channel", "attachment")
-RG32F = Storage("rg32f", "RG32F", "float", (32, 32), 0x8230)
 
 
 def depth_defines(encoding: DepthEncoding) -> dict[str, object]:
@@ -92,7 +91,7 @@ class DepthPasses(Passes):
         given = _camera_uniforms(camera, self._codec.encoding) | {"way": way}
         for program in (self._encode.program, self._decode.program):
             set_uniforms(program, given)
-        positions, stored = self._through([FORMATS["rgba32f"], RG32F], points=points)
+        positions, stored = self._through([FORMATS["rgba32f"], FORMATS["rg32f"]], points=points)
         return Rebuilt(positions[..., :3], stored[..., 0], stored[..., 1])
 
     def _written_textures(self, stack: ExitStack, sources: Textures) -> Textures:

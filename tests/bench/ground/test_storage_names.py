@@ -7,6 +7,18 @@ import pytest
 from normalbench.bench.door.python.codecs import codec_of
 from normalbench.bench.ground.options.storage_names import storages_named
 from normalbench.bench.ground.output.errors import UsageError
+from normalbench.encodings.catalogue import (
+    CURVE_ENCODINGS,
+    ENCODINGS,
+    FRAME_ENCODINGS,
+    LIGHT_ENCODINGS,
+    MOTION_ENCODINGS,
+)
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.codecs.curve_codec import CurveCodec
+from normalbench.encodings.codecs.frame_codec import FrameCodec
+from normalbench.encodings.codecs.light_codec import LightCodec
+from normalbench.encodings.codecs.motion_codec import MotionCodec
 from normalbench.encodings.storages.rules import rule_of, storage_of
 from normalbench.encodings.storages.storage import MOTION_STORAGES, STORAGES
 
@@ -86,3 +98,29 @@ def test_centred_numbers_are_measured_and_not_laid_out(run):
 def test_python_takes_one_codec_at_a_time():
     with pytest.raises(UsageError, match="one codec at a time, not 3"):
         codec_of("octahedral/unorm:4:4..6:6")
+
+
+@pytest.mark.parametrize(
+    "encoding, said, name, sizes",
+    [
+        ("octahedral", "float:5:10", "rg16f", (16, 16)),
+        ("xyz", "float:5:10", "rgba16f", (16, 16, 16, 16)),
+        ("octahedral", "float:8:23", "rg32f", (32, 32)),
+        ("octahedral", "float:4:3", "float_4_3", (8, 8)),
+        ("xyz", "float_4_3", "float_4_3", (8, 8, 8)),
+        ("octahedral", "rgba16f", "rgba16f", (16, 16, 16, 16)),
+    ],
+)
+def test_floats_are_as_many_as_the_codes_numbers(encoding, said, name, sizes):
+    """Where nobody says how many; a format that is named has its own."""
+    (storage,) = storages_named(said)
+    stored = Codec(ENCODINGS[encoding], storage).storage
+    assert (stored.name, stored.bits) == (name, sizes)
+
+
+def test_floats_are_as_many_as_a_code_of_any_kind_has_numbers():
+    (storage,) = storages_named("float:5:10")
+    assert CurveCodec(CURVE_ENCODINGS["linear"], storage).storage.name == "r16f"
+    assert MotionCodec(MOTION_ENCODINGS["linear"], storage).storage.name == "rg16f"
+    assert FrameCodec(FRAME_ENCODINGS["qtangent"], storage).storage == STORAGES["rgba16f"]
+    assert LightCodec(LIGHT_ENCODINGS["plain"], storage).storage == STORAGES["rgba16f"]
