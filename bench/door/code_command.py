@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ...encodings.codecs.codec import Codec
-from ...encodings.codecs.kind import CURVE, FRAME, NORMAL, Kind
+from ...encodings.codecs.kind import CURVE, FRAME, MOTION, NORMAL, Kind
 from ...gbuffer.gl.device import NoDeviceError
 from ...gbuffer.gl.shader import ShaderError
 from ..ground.choose import choose
@@ -36,8 +36,8 @@ Row = dict[str, Any]
 SHIPPED = "rgba8,rg8,rgb10a2,rgb8_12_12,rg16,rg16f"
 LONGEST = 60
 # Codes whose numbers may be cut off.
-ROUNDED = (NORMAL, CURVE, FRAME)
-ROUNDED_WORDS = "normals, curves and tangent frames"
+ROUNDED = (NORMAL, MOTION, CURVE, FRAME)
+ROUNDED_WORDS = "normals, motion, curves and tangent frames"
 VERIFIED, DIFFERS, NOT_RUN = "verified", "differs", "not run"
 # What no compiler of its own runs here, and what is run in its place, the first that can be.
 WITNESSED, WITNESSES = ("msl",), ("c", "glsl")

@@ -34,8 +34,9 @@ def motions() -> tuple[np.ndarray, np.ndarray]:
 
 
 def _store(codec: MotionCodec, codes: np.ndarray) -> np.ndarray:
-    numbers = [np.asarray(store_number(jnp.asarray(codes[:, i]), codec.storage, i)) for i in range(NUMBERS)]
-    return np.stack(numbers, axis=1)
+    planes = [jnp.asarray(codes[:, i]) for i in range(NUMBERS)]
+    stored = [store_number(plane, codec.storage, i, codec.rounding) for i, plane in enumerate(planes)]
+    return np.stack([np.asarray(number) for number in stored], axis=1)
 
 
 def _decoded(codec: MotionCodec, code: Vec2, view: Any) -> Vec2:
@@ -54,7 +55,7 @@ KIND = CodeKind(
     settings=MappingProxyType({"range": "view.x"}),
     result=lambda _: NUMBERS,
     defines=lambda codec: defines(codec.encoding, "_motion", "vec2"),
-    numbers=lambda codec: Numbers(codec.storage, ("nearest",) * NUMBERS, codec.storage.is_biased, NUMBERS),
+    numbers=lambda codec: Numbers(codec.storage, (codec.rounding,) * NUMBERS, codec.storage.is_biased, NUMBERS),
     values=lambda _: motions(),
     stored=lambda codec, n, view: codec.stored(Vec2(n[:, 0], n[:, 1]), view[:, 0]),
     decoded=_decoded,

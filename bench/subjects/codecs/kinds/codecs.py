@@ -31,8 +31,8 @@ from .named import kind_of as kind_of_file
 Made = Callable[[Any, str, str], Iterator[Any]]
 
 
-def _motion(encoding: Any, storages: str, _: str) -> Iterator[MotionCodec]:
-    return (MotionCodec(encoding, one) for one in storages_named(storages, MOTION_STORAGES, "motion storage"))
+def _motion(encoding: Any, storages: str, rounding: str) -> Iterator[MotionCodec]:
+    return (MotionCodec(encoding, one, rounding) for one in storages_named(storages, MOTION_STORAGES, "motion storage"))
 
 
 def _curve(encoding: Any, storages: str, rounding: str) -> Iterator[CurveCodec]:

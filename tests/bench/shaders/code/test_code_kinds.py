@@ -3,11 +3,13 @@
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 from languages import require_runner
 
 from normalbench.bench.shaders.code.emit import LANGUAGES
 from normalbench.bench.shaders.code.files import code_of, prefix_of
+from normalbench.bench.shaders.code.reference import reference
 from normalbench.bench.shaders.code.verify import agreement
 from normalbench.bench.subjects.codecs.kinds.codecs import NAMED, codecs_of_kind, kinds_named
 from normalbench.encodings.catalogue import BY_KIND
@@ -62,6 +64,19 @@ def test_the_code_of_a_kind_gives_the_catalogues_texels(kind, name, storage, lan
     require_runner(language)
     found = agreement_of(codec_of(kind, name, storage), language, tmp_path)
     assert found.holds, found.says
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("storage", ["rg16_snorm", "rg8_centred", "float:4:5", "unorm:9:7"])
+def test_motion_is_rounded_as_it_is_said(storage, tmp_path):
+    """Cut off toward zero; the file's name says so, and the texels are not those of the nearest."""
+    require_runner("c")
+    (codec,) = codecs_of_kind(NAMED["motion"], "cube_root", storage, ["truncate"])
+    found = agreement_of(codec, "c", tmp_path)
+    assert found.holds, found.says
+    assert prefix_of(codec).endswith("_truncate")
+    nearest = reference(codec_of("motion", "cube_root", storage))
+    assert np.mean((reference(codec).words != nearest.words).any(axis=1)) > 0.25
 
 
 @pytest.mark.parametrize("kind", ["motion", "curve", "depth"])
@@ -175,7 +190,7 @@ def test_a_kind_is_checked_as_normals_are(run):
     [
         (["linear"], "say which with --of"),
         (["linear", "--of", "sound"], "unknown kind 'sound'"),
-        (["cube_root", "--rounding", "truncate"], "rounded to the nearest"),
+        (["rgbm", "--rounding", "truncate"], "rounded to the nearest"),
         (["plain", "--of", "light", "--storage", "srgb8_a8"], "made for"),
         (["linear", "--of", "light", "--storage", "srgb8_a8"], "by itself"),
         (["linear_sign", "--storage", "depth16"], "no room for a sign"),
