@@ -10,6 +10,7 @@ from ..vec import Vec3, Vec4, floor, floor_log2, jnp, maximum, minimum, power_of
 
 BITS, BIAS = 9, 15
 MOST = 65408.0  # (2^9 - 1) / 2^9 * 2^16
+STEPS = 255.0
 
 
 def encode(light: Vec4) -> Vec4:
@@ -23,12 +24,12 @@ def encode(light: Vec4) -> Vec4:
     # m = floor(c / 2^(x - B - N) + 1/2)
     r, g, b = (floor(channel * power_of_two((BITS + BIAS) - x) + 0.5).astype(jnp.uint32) for channel in c)
     word = r | g << BITS | b << 2 * BITS | x.astype(jnp.uint32) << 3 * BITS
-    return Vec4(*((word >> 8 * i & 0xFF).astype(jnp.float32) * (1.0 / 255.0) for i in range(4)))
+    return Vec4(*((word >> 8 * i & 0xFF).astype(jnp.float32) * (1.0 / STEPS) for i in range(4)))
 
 
 def decode(e: Vec4) -> Vec4:
     """A texel's light; the fourth number is 0."""
-    r, g, b, a = ((c * 255.0 + 0.5).astype(jnp.uint32) for c in e)
+    r, g, b, a = ((c * STEPS + 0.5).astype(jnp.uint32) for c in e)
     word = r | g << 8 | b << 16 | a << 24
     # L = m 2^(x - B - N)
     x = (word >> 3 * BITS).astype(jnp.float32)
@@ -48,7 +49,7 @@ ENCODING = LightEncoding(
     limit=MOST,
     citation="EXT_texture_shared_exponent; OpenGL 4.6, section 8.25",
     glsl=Path(__file__).with_suffix(".glsl"),
-    ulps=(1, 0),
-    ulps_reason="whole numbers and powers of two; a byte is divided by 255 in one language, multiplied in the other",
-    constants={"RGB9E5_BITS": BITS, "RGB9E5_BIAS": BIAS, "RGB9E5_MOST": MOST},
+    ulps=(0, 0),
+    ulps_reason="whole numbers and powers of two",
+    constants={"RGB9E5_BITS": BITS, "RGB9E5_BIAS": BIAS, "RGB9E5_MOST": MOST, "RGB9E5_STEPS": STEPS},
 )

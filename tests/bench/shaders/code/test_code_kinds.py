@@ -27,6 +27,8 @@ CODECS = (
     ("light", "plain", "rgba16f"),
     ("light", "plain", "r11g11b10f"),
     ("light", "rgbm", "rgba8"),
+    ("light", "nao32", "rgba8"),
+    ("light", "rgb9e5", "rgba8"),
     ("depth", "linear", "r32f"),
     ("depth", "linear", "unorm:20"),
     ("depth", "linear_sign", "packed24"),
@@ -79,7 +81,7 @@ def test_motion_is_rounded_as_it_is_said(storage, tmp_path):
     assert np.mean((reference(codec).words != nearest.words).any(axis=1)) > 0.25
 
 
-@pytest.mark.parametrize("kind", ["motion", "curve", "depth"])
+@pytest.mark.parametrize("kind", ["motion", "curve", "light", "depth"])
 def test_the_code_of_every_encoding_of_a_kind_is_written(kind, tmp_path):
     """In the first storage where each usually lies, in C."""
     require_runner("c")
@@ -95,6 +97,8 @@ MUTANTS = {
     "a range": (("curve", "log", "r8"), "log2f(1.0f + 31.0f)", "log2f(1.0f + 30.0f)"),
     "a plane": (("depth", "linear", "r32f"), "return number;", "return number * 1.001f;"),
     "a byte": (("depth", "linear", "packed16"), "x >> 8", "x >> 7"),
+    "an exponent": (("light", "rgb9e5", "rgba8"), "(1.0f + (float)P_BIAS)", "(2.0f + (float)P_BIAS)"),
+    "a matrix": (("light", "nao32", "rgba8"), "0.7319f", "0.7219f"),
     "a channel": (("light", "rgbm", "rgba8"), "code.y, 0.0f", "code.x, 0.0f"),
 }
 
