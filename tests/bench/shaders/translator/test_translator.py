@@ -119,7 +119,7 @@ def test_names_that_a_language_reserves_get_an_underscore():
         ("#define A B\n#define B A\nfloat f() { return A; }", r"A stands for itself|B stands for itself"),
         ("float f(float x) { return x $ 1; }", r"^1:29: '\$' begins nothing known here$"),
         ("struct S { float x[2]; };", r"^1:19: an array in a structure is not translated"),
-        ("struct S { float x; }; S f(S a[2]) { return a[0]; }", r"^1:33: an array of structures is not translated"),
+        ("struct S { float x; }; S f(S a[2]) { return a[0]; }", r"^1:34: an array of structures is not translated"),
         ("struct S { float x; }; float f(S a) { return a.y; }", r"^1:48: a S has no .y"),
         ("struct S { float x; }; S f() { return S(1.0, 2.0); }", r"S has 1 fields, not 2"),
         ("struct S { float x; }; bool f(S a, S b) { return a == b; }", r"structures are compared field by field"),
