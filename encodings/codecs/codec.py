@@ -50,6 +50,11 @@ def rounding_misfit(storage: Storage, rounding: str) -> str | None:
     return None
 
 
+def dither_of(storage: Storage, levels: Sequence[int], frame: int) -> Dither:
+    """The noise of a whole step for numbers of so many values, 0 for any: none for one of few. See `Dither.frame`."""
+    return Dither(tuple(0.0 if count else storage.step(channel) for channel, count in enumerate(levels)), frame)
+
+
 @dataclass(frozen=True)
 class Codec:
     """An encoding, the storage of its components, and how that rounds: one of `storage.ROUNDINGS`, or DITHERED.
@@ -141,8 +146,7 @@ class Codec:
 
     def dither(self, frame: int) -> Dither:
         """The noise of a whole step for its numbers; of moving noise that of a frame, else of frame 0."""
-        numbers = range(self.encoding.components)
-        return Dither(tuple(0.0 if self.encoding.levels_of(i) else self.storage.step(i) for i in numbers), frame)
+        return dither_of(self.storage, list(map(self.encoding.levels_of, range(self.encoding.components))), frame)
 
     @property
     def fits(self) -> bool:

@@ -6,17 +6,19 @@ import math
 from dataclasses import dataclass
 
 from ..rotation import Frame
+from ..storages.dither import Dither
 from ..storages.rounding import store_number
 from ..storages.rules import of_count
-from ..storages.storage import Storage, of_unit
+from ..storages.storage import DITHERED, Storage, of_unit, rounds_to
 from ..vec import TINY, Vec4, select
-from .codec import codec_name, numbers_misfit, rounding_misfit
+from .codec import codec_name, dither_of, numbers_misfit, rounding_misfit
 from .frame_encoding import FrameEncoding
 
 
 @dataclass(frozen=True)
 class FrameCodec:
-    """A frame encoding, the storage of its numbers, and how that rounds; numbers of few values to the nearest."""
+    """A frame encoding, the storage of its numbers, and how that rounds: one of `storage.ROUNDINGS`, or DITHERED.
+    Numbers of few values are rounded to the nearest, without noise."""
 
     encoding: FrameEncoding
     storage: Storage
@@ -57,10 +59,20 @@ class FrameCodec:
             return max(2.0 ** (1 - self.storage.float_form(self.encoding.hand_in).one), TINY)
         return 1.0 / self.storage.scale(self.encoding.hand_in)
 
+    @property
+    def is_dithered(self) -> bool:
+        """Whether noise is added to its numbers before they are rounded to the nearest."""
+        return self.rounding == DITHERED
+
+    @property
+    def dither(self) -> Dither:
+        """The noise of a whole step for its numbers, which stands still."""
+        return dither_of(self.storage, self.encoding.levels, 0)
+
     def rounding_of(self, component: int) -> str:
         """How a component rounds: one of few values to the nearest, whatever the others do."""
         has_levels = component < self.encoding.components and self.encoding.levels[component]
-        return "nearest" if has_levels else self.rounding
+        return "nearest" if has_levels else rounds_to(self.rounding)
 
     def store(self, code: Vec4) -> Vec4:
         """A code (float32, any shape) as it comes back from the storage."""
@@ -71,19 +83,28 @@ class FrameCodec:
             )
         )
 
-    def stored(self, frame: Frame) -> Vec4:
-        """The code of frames as it comes back from the storage."""
-        code = self.store(self.encoding.encode(frame, self.least))
+    def stored(self, frame: Frame, noise: Vec4 | None = None) -> Vec4:
+        """The code of frames as it comes back from the storage.
+
+        Args:
+            noise: what is added to the numbers before they are rounded, of the same shape; None for nothing.
+        """
+
+        def store(code: Vec4) -> Vec4:
+            return self.store(code + noise if noise else code)
+
+        code = store(self.encoding.encode(frame, self.least))
         if not self.encoding.settle:
             return code
         settled = self.encoding.settle(frame, code)
-        stored = self.store(settled)
+        stored = store(settled)
         if self.rounding == "nearest":
             return stored
-        # What is stored already stays, as to the nearest it does by itself: cut off again it could lose a step.
+        # What is stored already stays, as to the nearest it does by itself: cut off again, or with more noise, it could
+        # lose a step.
         kept = zip(settled, code, stored, strict=True)
         return Vec4(*(select(number == before, before, after) for number, before, after in kept))
 
-    def round_trip(self, frame: Frame) -> Frame:
-        """Frames (float32, any shape, as `frame_of` makes them) encoded, stored and decoded."""
-        return self.encoding.decode(self.stored(frame), self.least)
+    def round_trip(self, frame: Frame, noise: Vec4 | None = None) -> Frame:
+        """Frames (float32, any shape, as `frame_of` makes them) encoded, stored and decoded; see `stored`."""
+        return self.encoding.decode(self.stored(frame, noise), self.least)

@@ -14,7 +14,7 @@ from ..storages.rounding import store_number
 from ..storages.rules import of_count
 from ..storages.storage import DITHERED, Storage, of_unit, rounds_to
 from ..vec import Vec2
-from .codec import codec_name, numbers_misfit, rounding_misfit
+from .codec import codec_name, dither_of, numbers_misfit, rounding_misfit
 
 NUMBERS = 2
 
@@ -105,7 +105,7 @@ class MotionCodec:
 
     def dither(self, frame: int) -> Dither:
         """The noise of a whole step for its numbers in a frame."""
-        return Dither(tuple(map(self.storage.step, range(NUMBERS))), frame)
+        return dither_of(self.storage, [0] * NUMBERS, frame)
 
     @property
     def bits(self) -> int:

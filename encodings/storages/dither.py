@@ -14,7 +14,8 @@ import numpy as np
 
 from .blue_noise import SIZE, blue_noise
 
-# The numbers of a code that noise is added to, at most; and the golden ratio of two dimensions, x^3 = x + 1.
+# The numbers of a code that moving noise is added to, at most; still noise has a fourth one. And the golden ratio of
+# two dimensions, x^3 = x + 1.
 NUMBERS, RATIO = 3, 1.3247179572447460
 
 

@@ -763,7 +763,7 @@ def frames(
     Args:
         encoding: Tangent frame codes or files of yours, comma-separated, or all; `normalbench list` shows them.
         storage: Tangent frame storages, comma-separated, or all; `normalbench list` shows them. Default: each code's usual.
-        rounding: nearest, truncate, truncate_half; comma-separated, or all.
+        rounding: nearest, truncate, truncate_half, dithered; comma-separated, or all.
         frames: Tangent frame sets or mesh files, whose vertices are taken, comma-separated, or all; `normalbench list` shows them.
         backend: jax, glsl; comma-separated, or all.
         count: Tangent frames in a uniform set.

@@ -6,9 +6,10 @@ import math
 from collections.abc import Iterable
 from typing import Protocol, TypeVar
 
+from ....encodings.storages.storage import DITHERED
 from ....gbuffer.gl.device import Device
 from ....gbuffer.scenes.setting import Setting
-from ..output.errors import UsageError, leave_out
+from ..output.errors import UsageError, by_reason, leave_out
 from .counts import MAX_LIGHTS, MAX_OBJECTS, check_seed, checked_sides, in_range
 
 # A pixel of a frame takes up to a few hundred bytes: one frame of 8K at one sample is the most.
@@ -67,6 +68,32 @@ def that_fit(codecs: Iterable[F]) -> list[F]:
     made = list(codecs)
     complaints = [f"{codec.name}: {codec.misfit}" for codec in made if codec.misfit]
     return what_is_left([codec for codec in made if not codec.misfit], complaints)
+
+
+class Noisy(Protocol):
+    """What may be rounded with noise."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def is_dithered(self) -> bool: ...
+
+
+N = TypeVar("N", bound=Noisy)
+
+
+def not_with_noise(option: str) -> str:
+    """Why codes with noise are not measured where an option asks for what only exact codes have."""
+    return f"{option} is of codes without noise; leave it out to measure --rounding {DITHERED}"
+
+
+def without_noise(codecs: Iterable[N], reason: str) -> list[N]:
+    """The codecs without noise; others are named on standard error. Raises UsageError where none is left."""
+    every = list(codecs)
+    exact = [codec for codec in every if not codec.is_dithered]
+    if not exact:
+        raise UsageError(reason)
+    return what_is_left(exact, by_reason((codec.name, reason) for codec in every if codec.is_dithered))
 
 
 def what_is_left(made: list[T], complaints: list[str]) -> list[T]:

@@ -13,8 +13,8 @@ from ....reports.tables import text_of
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_count
-from ...ground.options.targets import what_is_left
-from ...ground.output.errors import UsageError, by_reason, lacks_twin, leave_out, names_by_reason
+from ...ground.options.targets import not_with_noise, what_is_left, without_noise
+from ...ground.output.errors import UsageError, lacks_twin, leave_out, names_by_reason
 from ...ground.output.writing import check_folder, without
 from ...measures.metrics import published
 from ...subjects.codecs.names import check_twin, codecs_named, fitting
@@ -62,7 +62,7 @@ def cases(options: QualityOptions) -> list[measure.Case]:
     backends = backends_named(options.backend, measure.BACKENDS)
     codecs, left_out = fitting(codecs)
     if reason := _not_of_noise(options, backends):
-        codecs = _without_noise(codecs, reason)
+        codecs = without_noise(codecs, reason)
     require_jax()
     if backends == ["glsl"]:
         require_device()
@@ -86,14 +86,8 @@ def _not_of_noise(options: QualityOptions, backends: Sequence[str]) -> str:
     """Why codes with noise are not measured as it is asked; empty where they are."""
     exact = [option for option, is_asked in zip(EXACT, (options.worst_case, options.codes), strict=True) if is_asked]
     if exact:
-        return f"{exact[0]} is of codes without noise; leave it out to measure --rounding {DITHERED}"
+        return not_with_noise(exact[0])
     return f"--rounding {DITHERED} is measured by --backend jax,glsl; WGSL adds no noise" if "wgsl" in backends else ""
-
-
-def _without_noise(codecs: Sequence[Codec], reason: str) -> list[Codec]:
-    """The codecs without noise; others are named on standard error. Raises UsageError where none is left."""
-    noisy = {codec.name: reason for codec in codecs if codec.is_dithered}
-    return what_is_left([codec for codec in codecs if not codec.is_dithered], by_reason(noisy.items()))
 
 
 def _set_names(said: Sequence[str], codec: Codec) -> Iterator[str]:

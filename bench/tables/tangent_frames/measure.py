@@ -16,7 +16,8 @@ import numpy as np
 
 from ....encodings.codecs.frame_codec import FrameCodec
 from ....encodings.rotation import frame_of
-from ....encodings.vec import Vec3
+from ....encodings.storages.dither import laid_out
+from ....encodings.vec import Vec3, Vec4
 from ....gbuffer.codecs.frames.frame_passes import FramePasses
 from ....gbuffer.gl.device import device
 from ...measures.metrics.code_limits import is_measurable
@@ -49,19 +50,21 @@ class Case:
 
 
 @cache
-def _compiled_trip(codec: FrameCodec) -> Callable[[Any, Any], Any]:
-    def trip(normals, tangents):
+def _compiled_trip(codec: FrameCodec) -> Callable[[Any, Any, Any], Any]:
+    def trip(normals, tangents, noise):
         given = frame_of(Vec3(*normals[:3]), Vec3(*tangents[:3]), normals[3])
-        return codec.round_trip(given)
+        return codec.round_trip(given, None if noise is None else Vec4(*noise))
 
     return jax.jit(trip)
 
 
 @contextmanager
 def _trip_by_jax(codec: FrameCodec) -> Iterator[tuple[Trip, dict[str, str]]]:
+    noise = np.ascontiguousarray(laid_out(codec.dither.added, WIDTH, CHUNK).T) if codec.is_dithered else None
+
     def trip(given: Frames) -> Frames:
-        planes = (jnp.asarray(np.ascontiguousarray(a.T)) for a in (given.normals, given.tangents))
-        n, t, hand = _compiled_trip(codec)(*planes)
+        normals, tangents = (jnp.asarray(np.ascontiguousarray(a.T)) for a in (given.normals, given.tangents))
+        n, t, hand = _compiled_trip(codec)(normals, tangents, noise)
         found = (np.stack([np.asarray(c) for c in v], axis=1) for v in ((*n, hand), (*t, 0 * hand)))
         return Frames(*found)
 

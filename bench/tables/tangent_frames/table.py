@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from ...ground.options.option import Backends, Names, Option, Roundings, Seed
+from ...ground.options.option import Backends, Names, Option, RoundingsAndDithered, Seed
 from ...shaders.languages.source_options import SourceOptions
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
@@ -23,7 +23,7 @@ class FramesOptions(SourceOptions):
     storage: Annotated[
         str | None, Option("--storage", f"Tangent frame storages, {Names}. Default: each code's usual.")
     ] = None
-    rounding: Roundings = "nearest"
+    rounding: RoundingsAndDithered = "nearest"
     frames: Annotated[
         str, Option("--frames", f"Tangent frame sets or mesh files, whose vertices are taken, {Names}.", files=True)
     ] = "rotations"
@@ -46,7 +46,7 @@ def _angle_columns(what: str, says: str, *drops: int) -> tuple[Column, ...]:
 COLUMNS = (
     Column("encoding", "How a tangent frame becomes a few numbers.", KEY),
     shared.STORAGE,
-    shared.ROUNDING,
+    shared.ROUNDING_OR_DITHERED,
     Column("frame_set", "The set of tangent frames that was measured on.", KEY),
     shared.BACKEND,
     shared.BITS,

@@ -8,12 +8,12 @@ from collections.abc import Iterator, Sequence
 from ....encodings.catalogue import FRAME_ENCODINGS
 from ....encodings.codecs.frame_codec import FrameCodec
 from ....encodings.codecs.kind import FRAME
-from ....encodings.storages.storage import FRAME_STORAGES
+from ....encodings.storages.storage import FRAME_STORAGES, ROUNDINGS_AND_DITHERED
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_count
 from ...ground.options.storage_names import roundings_named, storages_named
-from ...ground.options.targets import that_fit
+from ...ground.options.targets import not_with_noise, that_fit, without_noise
 from ...subjects.codecs.kinds.named import own_codes_named
 from ..table import NoOutputs, Row, Sheet, Step, Work, each
 from . import measure
@@ -46,13 +46,14 @@ def cases(options: FramesOptions) -> list[measure.Case]:
 
 def codecs(options: FramesOptions) -> list[FrameCodec]:
     """The codecs asked for; those that do not fit are named on standard error."""
-    roundings = roundings_named(options.rounding)
-    return that_fit(
+    roundings = roundings_named(options.rounding, ROUNDINGS_AND_DITHERED)
+    made = (
         FrameCodec(encoding, storage, rounding)
         for encoding in own_codes_named(FRAME, options.encoding, FRAME_ENCODINGS, "frame encoding")
         for storage in storages_named(options.storage or ",".join(encoding.storages), FRAME_STORAGES, "frame storage")
         for rounding in roundings
     )
+    return that_fit(without_noise(made, not_with_noise("--worst-case")) if options.worst_case else made)
 
 
 def _steps(options: FramesOptions, _: NoOutputs) -> list[Step]:

@@ -3,6 +3,7 @@
 #include "frame_code.glsl"
 #define STORAGE_ROUNDS_TWICE
 #include "storage.glsl"
+#include "dither.glsl"
 
 uniform sampler2D normals;  // normal, hand
 uniform sampler2D tangents;
@@ -13,12 +14,17 @@ void main() {
     vec4 normal = texelFetch(normals, pixel, 0);
     Frame frame = frame_of(normal.xyz, texelFetch(tangents, pixel, 0).xyz, normal.w);
     vec4 code = FRAME_ENCODE(frame, FRAME_LEAST);
+    vec4 noisy = dithered(code);
 #if FRAME_SETTLES
-    vec4 stored = unbiased(round_texel(biased(code)));
+    vec4 stored = unbiased(round_texel(biased(noisy)));
     code = FRAME_SETTLE(frame, stored);
-    // A number that is stored already stays: cut off again it could lose a step.
-    for (int i = 0; i < 4; ++i)
-        if (code[i] == stored[i]) storage_rounding[i] = 0;
+    noisy = dithered(code);
+    // A number that is stored already stays: cut off again, or with more noise, it could lose a step.
+    for (int i = 0; i < 4; ++i) {
+        if (code[i] != stored[i]) continue;
+        storage_rounding[i] = 0;
+        noisy[i] = stored[i];
+    }
 #endif
-    texel = to_texel(code);
+    texel = to_texel(noisy);
 }

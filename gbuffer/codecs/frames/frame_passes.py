@@ -7,10 +7,10 @@ import numpy as np
 from ....encodings import vec
 from ....encodings.codecs.frame_codec import FrameCodec
 from ....encodings.codecs.frame_encoding import FrameEncoding
-from ....encodings.storages.storage import STORAGES
+from ....encodings.storages.storage import STORAGES, rounds_to
 from ...gl.device import Device
 from ..codec_passes import rounding_defines
-from ..harness import Passes, check_functions, exact
+from ..harness import Passes, check_functions, dithering, exact
 
 
 def frame_defines(encoding: FrameEncoding, least: float) -> dict[str, object]:
@@ -46,10 +46,11 @@ class FramePasses(Passes):
     def __init__(self, device: Device, codec: FrameCodec):
         encoding, storage = codec.encoding, codec.storage
         channels = [codec.rounding_of(channel) for channel in range(storage.channels)]
-        self.rounded_by, rounds = rounding_defines(device, storage, codec.rounding, channels)
-        defines = frame_defines(encoding, codec.least) | rounds
+        self.rounded_by, rounds = rounding_defines(device, storage, rounds_to(codec.rounding), channels)
+        added, tables = dithering(codec.dither.added if codec.is_dithered else None)
+        defines = frame_defines(encoding, codec.least) | rounds | added
         shaders, names = ("frame_encode.frag", "frame_decode.frag"), {"FRAME_ENCODING": encoding.glsl}
-        super().__init__(device, shaders, defines, names, {"texels": storage.target})
+        super().__init__(device, shaders, defines, names, {"texels": storage.target}, tables)
 
     def round_trip(self, normals: np.ndarray, tangents: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Normals with hands, and tangents, float32 of shape (height, width, 4), encoded, stored and decoded.

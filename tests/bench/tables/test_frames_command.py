@@ -4,6 +4,7 @@ import json
 import math
 from dataclasses import replace
 
+import jax.numpy as jnp
 import numpy as np
 import pytest
 from written import as_document
@@ -18,6 +19,7 @@ from normalbench.bench.tables.tangent_frames.sets import CHUNK, Frames, frames_f
 from normalbench.encodings.catalogue import FRAME_ENCODINGS
 from normalbench.encodings.codecs.frame_codec import FrameCodec
 from normalbench.encodings.storages.storage import FRAME_STORAGES
+from normalbench.encodings.vec import Vec4
 from normalbench.gbuffer.gl.device import NoDeviceError
 from normalbench.gbuffer.scenes.mesh import sphere
 
@@ -137,6 +139,50 @@ def test_every_code_keeps_its_hand_and_its_limit(request, backend):
             assert (row["hands_lost"] is None) == row["encoding"].startswith("rotation_")
             assert not row["below_limit"] and row["reached_rms_percent"] < 90, row
             assert row["effective_bits"] < row["bits"], row
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize(
+    "name, storage",
+    [("octahedral_angle", "unorm:12:12:12:1"), ("qtangent", "rgba8_snorm"), ("rotation_vector", "rgb10a2")],
+)
+def test_noise_costs_a_bit_and_a_half_and_no_hand(name, storage):
+    """A squared error is a sixth of a squared step in place of a twelfth: half a bit of each of three numbers. What is
+    settled after the first numbers were rounded is noisy as well, and both languages add the same."""
+
+    def row(rounding: str, backend: str) -> dict:
+        codec = FrameCodec(FRAME_ENCODINGS[name], storages_named(storage)[0], rounding)
+        return frames.measure(frames.Case(codec, rotations(2**14, 3), backend))
+
+    nearest, noisy, by_gl = row("nearest", "jax"), row("dithered", "jax"), row("dithered", "glsl")
+    assert noisy["rotation_rms_deg"] / nearest["rotation_rms_deg"] == pytest.approx(2**0.5, rel=0.015)
+    assert nearest["effective_bits"] - noisy["effective_bits"] == pytest.approx(1.5, abs=0.05)
+    assert noisy["rounding"] == "dithered" and not noisy["hands_lost"] and not noisy["below_limit"]
+    for figure in ("rotation_rms_deg", "rotation_max_deg", "normal_mean_deg", "tangent_mean_deg"):
+        assert by_gl[figure] == pytest.approx(noisy[figure], rel=2e-3), figure
+
+
+def test_noise_of_a_frame_is_added_to_each_number_but_one_of_few_values():
+    """The mean over a whole tile is the number, and what was stored before it was settled has no noise twice."""
+    codec = FrameCodec(FRAME_ENCODINGS["smallest_three"], FRAME_STORAGES["rgb10a2"], "dithered")
+    added = codec.dither.added.reshape(-1, 4)
+    assert np.allclose(np.ptp(added, axis=0) / codec.storage.step(0), [1, 1, 1, 0], atol=1e-3)
+    given = np.random.default_rng(3).uniform(-0.9, 0.9, 3).astype(np.float32)
+    noisy = Vec4(*(jnp.asarray(np.float32(g) + a) for g, a in zip((*given, 1.0), added.T, strict=True)))
+    stored = np.array(codec.store(noisy), np.float64)
+    assert abs(stored.mean(axis=1) - [*given, 1.0]).max() < 2e-3 * codec.storage.step(0)
+
+
+@pytest.mark.parametrize(
+    "asked, said",
+    [
+        (["--rounding", "dithered", "--worst-case"], "--worst-case is of codes without noise"),
+        (["--rounding", "dithered", "--storage", "rgba16f"], "noise is for fixed point"),
+    ],
+)
+def test_what_noise_has_no_part_in_is_a_line(run, asked, said):
+    status, out, err = run(*QUICK[:5], "--encoding", "octahedral_angle", *asked)
+    assert (status, out, err.count("\n")) == (2, "", 1) and said in err, err
 
 
 @pytest.mark.usefixtures("gl")
