@@ -20,7 +20,10 @@ from ..shared.position import (
     position_from_window_depth,
 )
 from ..storages.depth_storage import DepthStorage, store_depth
-from ..vec import Vec2, Vec3, depth_or_far, jnp
+from ..storages.dither import Dither
+from ..storages.storage import DITHERED, rounds_to
+from ..vec import Vec2, Vec3, depth_or_far, jnp, maximum, with_sign_of
+from .codec import codec_name, rounding_misfit
 
 # A unit in the last place of 1 in float32.
 ULP = 2.0**-23
@@ -92,21 +95,39 @@ class DepthEncoding:
 
 @dataclass(frozen=True)
 class DepthCodec:
-    """A depth encoding and the storage of its number."""
+    """A depth encoding, the storage of its number, and how that rounds: one of `storage.ROUNDINGS`, or DITHERED."""
 
     encoding: DepthEncoding
     storage: DepthStorage
+    rounding: str = "nearest"
 
     @property
     def name(self) -> str:
-        return f"{self.encoding.name}/{self.storage.name}"
+        return codec_name(self.encoding.name, self.storage.name, self.rounding)
 
     @property
     def misfit(self) -> str | None:
-        """Why the storage cannot hold what the encoding makes; None where it can."""
-        return (
-            None if self.storage.is_signed or not self.encoding.signed else f"{self.storage.title}: no room for a sign"
-        )
+        """Why the storage cannot hold what the encoding makes, or not so; None where it can."""
+        if self.encoding.signed and not self.storage.is_signed:
+            return f"{self.storage.title}: no room for a sign"
+        if self.storage.home == "attachment" and self.rounding != "nearest":
+            return f"{self.storage.title}: the device rounds it, to the nearest"
+        return rounding_misfit(self.storage.format, self.rounding)
+
+    @property
+    def is_dithered(self) -> bool:
+        """Whether noise is added to its number before it is rounded to the nearest."""
+        return self.rounding == DITHERED
+
+    @property
+    def step(self) -> float:
+        """How far apart the numbers are that a fixed-point storage tells apart."""
+        return 1.0 / (self.storage.scale // 2 if self.encoding.signed else self.storage.scale)
+
+    @property
+    def dither(self) -> Dither:
+        """The noise of a whole step for its number, which stands still."""
+        return Dither((self.step,))
 
     @property
     def fits(self) -> bool:
@@ -135,15 +156,19 @@ class DepthCodec:
         """The far plane as the encoding is given it: at 1 where the storage holds the depth in the scene's units."""
         return jnp.ones_like(far) if self.encoding.own_units and self.storage.is_open else far
 
-    def stored(self, depth, near, far):
+    def stored(self, depth, near, far, noise=None):
         """The numbers of depths (float32, any shape) as they come back from the storage.
 
         Args:
             depth: view depth, with the sign of the normal's z where the encoding keeps one.
             near, far: the planes' distances, float32 scalars; 0 < near < far.
+            noise: what is added to the numbers before they are rounded, of the depths' shape; None for nothing. Their
+                sign stays.
         """
         number = self.encoding.encode(depth_or_far(depth, far), near, self.far(far))
-        return store_depth(number, self.storage, self.encoding.signed)
+        if noise is not None:
+            number = with_sign_of(maximum(abs(number) + noise, 0.0), number)
+        return store_depth(number, self.storage, self.encoding.signed, rounds_to(self.rounding))
 
     def depths(self, number, near, far):
         """The depths of numbers, under the sign that was kept."""
@@ -156,8 +181,8 @@ class DepthCodec:
     def furthest(self, depth: np.ndarray, camera: Camera, with_arithmetic: bool = True) -> np.ndarray:
         """How far each depth may move on its way through the storage, at worst.
 
-        Half a step of the storage, through the exact maps; and, if asked for, what float32 arithmetic adds to the
-        number and to the depth, down to the position.
+        What rounding moves the number by, through the exact maps; and, if asked for, what float32 arithmetic adds to
+        the number and to the depth, down to the position.
 
         Args:
             depth: float64, positive, any shape.
@@ -174,7 +199,7 @@ class DepthCodec:
             exact = jnp.asarray(depth, jnp.float64)
             number = self.encoding.encode(exact, near, far)
             by_depth = abs(self.encoding.encode(exact * (1 + slack), near, far) - number)
-            off = jnp.asarray(self._half_step(np.asarray(number))) + slack * number + by_depth
+            off = jnp.asarray(self._rounded_by(np.asarray(number))) + slack * number + by_depth
             top = jnp.inf if self.storage.is_open and self.encoding.own_units else 1 + slack
             ends = (jnp.clip(number + side * off, 0.0, top) for side in (1.0, -1.0))
             moved = [self.encoding.decode(end, near, far) for end in ends]
@@ -182,15 +207,15 @@ class DepthCodec:
             errors = [jnp.where(d >= 0, abs(d - exact) + after * jnp.maximum(d, exact), jnp.inf) for d in moved]
             return np.asarray(jnp.maximum(*errors))
 
-    def _half_step(self, number: np.ndarray) -> np.ndarray:
-        """Half a step of the storage at numbers of float64."""
+    def _rounded_by(self, number: np.ndarray) -> np.ndarray:
+        """How far rounding moves numbers of float64 at most: half a step of the storage to the nearest, else a step."""
+        share = 0.5 if self.rounding == "nearest" else 1.0
         if self.storage.format.kind != "float":
-            scale = self.storage.scale // 2 if self.encoding.signed else self.storage.scale
-            return np.full_like(number, 0.5 / scale)
+            return np.full_like(number, share * self.step)
         with np.errstate(over="ignore"):
             rounded = number.astype(np.float16 if self.storage.bits == 16 else np.float32)
             finite = np.isfinite(rounded)
-            return np.where(finite, 0.5 * np.spacing(np.where(finite, rounded, 1)).astype(np.float64), np.inf)
+            return np.where(finite, share * np.spacing(np.where(finite, rounded, 1)).astype(np.float64), np.inf)
 
 
 def by_inverse_projection(_: DepthCodec, number, place: Vec2, seen: Seen) -> Vec3:

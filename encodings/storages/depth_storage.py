@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from ..vec import jnp, maximum, minimum, select, sign_bit
-from .rounding import scale_of, store_half, store_unorm
+from .rounding import rounded, scale_of, store_half, store_unorm
 from .storage import R16F, R32F, STORAGES, Storage
 
 
@@ -79,14 +79,15 @@ def depth_storage_of(storage: Storage) -> DepthStorage | None:
     )
 
 
-def fixed(c, scale: int, is_signed: bool):
-    """The unsigned integer (uint32) for c in [0, 1] (float32, any shape) where `scale` stands for 1; NaN is 0.
+def fixed(c, scale: int, is_signed: bool, rounding: str = "nearest"):
+    """The unsigned integer (uint32) for c in [0, 1] (float32, any shape) where `scale` stands for 1; NaN is 0. It is
+    rounded in one of ROUNDINGS.
 
     A signed c in [-1, 1] lies in sign and magnitude: the upper half of the integers is for the negative and for -0.
     """
     half = scale // 2
     magnitude = minimum(maximum(abs(c) if is_signed else c, 0.0), 1.0)
-    integer = jnp.round(magnitude * jnp.float32(half if is_signed else scale)).astype(jnp.uint32)
+    integer = rounded(magnitude, scale_of(half if is_signed else scale), rounding).astype(jnp.uint32)
     return select(sign_bit(c), integer + jnp.uint32(half + 1), integer) if is_signed else integer
 
 
@@ -120,12 +121,13 @@ def store_bytes(integer, bits: int):
     return together
 
 
-def store_depth(c, storage: DepthStorage, is_signed: bool = False):
-    """The number of a depth (float32, any shape) as it comes back; with a sign where `is_signed`."""
+def store_depth(c, storage: DepthStorage, is_signed: bool = False, rounding: str = "nearest"):
+    """The number of a depth (float32, any shape) as it comes back, rounded in one of ROUNDINGS; with a sign where
+    `is_signed`. A depth buffer rounds to the nearest."""
     if storage.home == "packed":
-        integer = store_bytes(fixed(c, storage.scale, is_signed), storage.bits)
+        integer = store_bytes(fixed(c, storage.scale, is_signed, rounding), storage.bits)
         return from_fixed(integer, storage.scale, is_signed)
     if storage.format.kind != "float":
         return store_unorm(c, scale_of(storage.scale))
     kept = c if storage.is_open else minimum(maximum(c, 0.0), 1.0)
-    return store_half(kept) if storage.bits == 16 else kept
+    return store_half(kept, rounding) if storage.bits == 16 else kept

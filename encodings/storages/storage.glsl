@@ -66,13 +66,18 @@ float round_number(float x, int kind, float scale, int bits, int rounding) {
     return round_whole(clamp(x, kind == 0 ? 0.0 : -1.0, 1.0), scale, rounding) / scale;
 }
 
+// The unsigned integer of a magnitude, which is a whole number of steps, under the sign of c: where there is a sign the upper
+// half of the integers is for the negative ones and for -0.
+uint signed_code(float magnitude, float c, float scale, bool is_signed) {
+    uint integer = uint(magnitude);
+    return is_signed && sign_bit(c) ? integer + uint(floor(scale * 0.5)) + 1u : integer;
+}
+
 // The unsigned integer that stands for c in [0, 1] where `scale` stands for 1. A signed c in [-1, 1] lies in sign and
-// magnitude: the upper half of the integers is for the negative ones and for -0.
+// magnitude.
 uint fixed_code(float c, float scale, bool is_signed) {
-    float half_scale = floor(scale * 0.5);
-    float magnitude = clamp(is_signed ? abs(c) : c, 0.0, 1.0) * (is_signed ? half_scale : scale);
-    uint integer = uint(roundEven(magnitude));
-    return is_signed && sign_bit(c) ? integer + uint(half_scale) + 1u : integer;
+    float magnitude = clamp(is_signed ? abs(c) : c, 0.0, 1.0) * (is_signed ? floor(scale * 0.5) : scale);
+    return signed_code(roundEven(magnitude), c, scale, is_signed);
 }
 
 // integer / scale for a scale of 2^n - 1, rounded once: i / (2^n - 1) = i 2^-n + i 2^-2n + ... As a quotient a compiler may

@@ -693,6 +693,7 @@ def depth(
     *,
     depth: Names = ...,
     storage: Names | None = ...,
+    rounding: Names = ...,
     rebuild: Names | None = ...,
     near: Names = ...,
     far: Names = ...,
@@ -719,6 +720,7 @@ def depth(
     Args:
         depth: Depth codes or files of yours, comma-separated, or all; `normalbench list` shows them.
         storage: Depth storages, comma-separated, or all; `normalbench list` shows them. Default: each code's usual.
+        rounding: nearest, truncate, truncate_half, dithered; comma-separated, or all.
         rebuild: inverse_projection, projection_terms, eye_ray; comma-separated, or all. Default: each code's usual.
         near: Near planes, comma-separated.
         far: Far planes, comma-separated.

@@ -24,13 +24,14 @@ def depth_chart(rows: Sequence[Row]) -> Chart:
         rows: of depth codes, whose distances are numbers.
     """
     points = [
-        {name: row[name] for name in ("depth", "storage", "rebuilt")}
+        {name: row[name] for name in ("depth", "storage", "rounding", "rebuilt")}
         | {"line": _line_name(row, rows), "range": _range_text(row), "x": row["distance"], "y": row["error_max"]}
         for row in sorted(rows, key=lambda row: row["distance"])
         if row["error_max"] > 0
     ]
     looks: dict[str, Any] = {"by": ("line", "range"), "colour": "depth"}
-    tips = (("depth", "depth"), ("storage", "storage"), ("rebuilt", "rebuilt"), ("x", "distance"), ("y", "error"))
+    tips = tuple((name, name) for name in ("depth", "storage", "rounding", "rebuilt"))
+    tips = (*tips, ("x", "distance"), ("y", "error"))
     first = rows[0]
     return Chart(
         name="depth",
@@ -60,7 +61,8 @@ def _range_text(row: Row) -> str:
 def _line_name(row: Row, rows: Sequence[Row]) -> str:
     """What a line is called; with the way to its positions where codes have several."""
     several = len({(one["depth"], one["rebuilt"]) for one in rows}) > len({one["depth"] for one in rows})
-    words = (row["depth"], row["storage"], row["rebuilt"] if several else "")
+    rounding = "" if row["rounding"] == "nearest" else row["rounding"]
+    words = (row["depth"], row["storage"], rounding, row["rebuilt"] if several else "")
     return " ".join(filter(None, words)).replace("_", " ")
 
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from ....encodings.codecs.depth_codec import REBUILDS, DepthCodec
 from ....encodings.shared.position import Camera
+from ....encodings.storages.dither import laid_out
 from ....encodings.vec import Vec2
 from ....gbuffer.codecs.depth.depth_passes import DepthPasses, Rebuilt
 from ....gbuffer.gl.device import device
@@ -26,7 +27,6 @@ from .table import TABLE
 # A distance stands for depths that are up to this share of it nearer or farther.
 BAND = 1 / 16
 ASPECT = 16 / 9
-WIDTH = 4096
 BLOCK = 2**14
 
 Row = dict[str, Any]
@@ -110,32 +110,33 @@ def _in_blocks(function: Callable[..., Sequence[Any]], *arrays: np.ndarray) -> l
     return [np.concatenate([np.asarray(part) for part in parts])[:count] for parts in zip(*made, strict=True)]
 
 
-def _rebuilt_by_jax(case: Case, signed: np.ndarray, places: np.ndarray) -> tuple[Rebuilt, dict[str, str]]:
+def _rebuilt_by_jax(case: Case, signed: np.ndarray, on: Points) -> tuple[Rebuilt, dict[str, str]]:
     codec, seen = case.codec, case.camera.seen(case.codec.encoding.projection)
+    noise = [laid_out(codec.dither.added, on.width, len(signed))[:, 0]] if codec.is_dithered else []
 
     # Not compiled as a whole: for so few points that would take longer than all else.
-    def rebuilt(depths: np.ndarray, right: np.ndarray, up: np.ndarray):
-        number = codec.stored(jnp.asarray(depths), seen.near, seen.far)
+    def rebuilt(depths: np.ndarray, right: np.ndarray, up: np.ndarray, *added: np.ndarray):
+        number = codec.stored(jnp.asarray(depths), seen.near, seen.far, *map(jnp.asarray, added))
         position = REBUILDS[case.rebuilt].position(codec, number, Vec2(jnp.asarray(right), jnp.asarray(up)), seen)
         return np.stack([np.asarray(c) for c in position], axis=-1), number, codec.depths(number, seen.near, seen.far)
 
     how = {"device": jax.devices()[0].device_kind, "rounded_by": "emulation"}
-    return Rebuilt(*_in_blocks(rebuilt, signed, places[:, 0], places[:, 1])), how
+    return Rebuilt(*_in_blocks(rebuilt, signed, *on.places.T, *noise)), how
 
 
-def _rebuilt_by_glsl(case: Case, signed: np.ndarray, places: np.ndarray) -> tuple[Rebuilt, dict[str, str]]:
+def _rebuilt_by_glsl(case: Case, signed: np.ndarray, on: Points) -> tuple[Rebuilt, dict[str, str]]:
     gl, count = device(), len(signed)
-    height = -(-count // WIDTH)
-    pixels = np.ones((height * WIDTH, 3), np.float32)
-    pixels[:count] = np.concatenate([places, signed[:, None]], axis=1)
+    height = -(-count // on.width)
+    pixels = np.ones((height * on.width, 3), np.float32)
+    pixels[:count] = np.concatenate([on.places, signed[:, None]], axis=1)
     with DepthPasses(gl, case.codec) as passes:
-        got = passes.round_trip(pixels.reshape(height, WIDTH, 3), case.camera, REBUILDS[case.rebuilt].way)
+        got = passes.round_trip(pixels.reshape(height, on.width, 3), case.camera, REBUILDS[case.rebuilt].way)
         how = {"device": gl.renderer, "rounded_by": passes.rounded_by}
     flat = Rebuilt(got.positions.reshape(-1, 3)[:count], got.numbers.ravel()[:count], got.depths.ravel()[:count])
     return flat, how
 
 
-BACKENDS: Mapping[str, Callable[[Case, np.ndarray, np.ndarray], tuple[Rebuilt, dict[str, str]]]] = MappingProxyType(
+BACKENDS: Mapping[str, Callable[[Case, np.ndarray, Points], tuple[Rebuilt, dict[str, str]]]] = MappingProxyType(
     {"jax": _rebuilt_by_jax, "glsl": _rebuilt_by_glsl}
 )
 
@@ -146,7 +147,7 @@ class Measured:
 
     Attributes:
         errors: between the true position and the rebuilt one; infinite where that is not a position.
-        half_steps: how far half a step of the storage may move the position.
+        half_steps: how far rounding may move the position: half a step to the nearest, otherwise a step.
         bounds: the same with float32 arithmetic.
         relative: how far the depth along the axis is off, as a share of it; infinite likewise.
         lost: bool, whether the depth's sign came back as the other; never where the encoding keeps none.
@@ -184,7 +185,7 @@ def through(case: Case, on: Points) -> Measured:
         NoDeviceError, ShaderError, FormatError: the device cannot; UNMEASURABLE.
     """
     away = (np.arange(len(on.depths)) % 2 == 1) & case.codec.encoding.signed
-    rebuilt, how = BACKENDS[case.backend](case, np.where(away, -on.depths, on.depths), on.places)
+    rebuilt, how = BACKENDS[case.backend](case, np.where(away, -on.depths, on.depths), on)
     apart = np.linalg.norm(rebuilt.positions - on.positions(case.camera), axis=1)
     half_steps, bounds = _limits(case.codec, case.camera, on)
     lost = (np.signbit(rebuilt.depths) != away) & case.codec.encoding.signed
@@ -200,6 +201,7 @@ def measure(case: Case) -> list[Row]:
     shared = TABLE.empty() | {
         "depth": codec.encoding.name,
         "storage": codec.storage.name,
+        "rounding": codec.rounding,
         "bits": codec.storage.bits,
         "rebuilt": case.rebuilt,
         "backend": case.backend,

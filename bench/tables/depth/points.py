@@ -8,6 +8,8 @@ import numpy as np
 
 from ....encodings.shared.position import Camera
 
+WIDTH = 4096
+
 
 @dataclass(frozen=True, eq=False)
 class Points:
@@ -16,10 +18,12 @@ class Points:
     Attributes:
         places: from -1 to 1, right and up; float32 of shape (count, 2).
         depths: view depth, float32 of shape (count,).
+        width: how many of them lie side by side where they are drawn, which says what noise each has.
     """
 
     places: np.ndarray
     depths: np.ndarray
+    width: int = WIDTH
 
     def positions(self, camera: Camera) -> np.ndarray:
         """Where they truly are, view space, float64 of shape (count, 3)."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from ...ground.options.option import Backends, Images, Names, Option, Plot, Seed
+from ...ground.options.option import Backends, Images, Names, Option, Plot, RoundingsAndDithered, Seed
 from ...shaders.languages.source_options import SourceOptions
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
@@ -19,6 +19,7 @@ class DepthOptions(SourceOptions):
 
     depth: Annotated[str, Option("--depth", f"Depth codes or files of yours, {Names}.", files=True)] = "all"
     storage: Annotated[str | None, Option("--storage", f"Depth storages, {Names}. Default: each code's usual.")] = None
+    rounding: RoundingsAndDithered = "nearest"
     rebuild: Annotated[
         str | None,
         Option(
@@ -74,6 +75,7 @@ class DepthOutputs:
 COLUMNS = (
     Column("depth", "How a distance becomes a number.", KEY),
     Column("storage", "The format that the number is stored in.", KEY),
+    shared.ROUNDING_OR_DITHERED,
     Column("bits", "Bits of the stored depth.", drops=4),
     Column(
         "rebuilt",
@@ -102,8 +104,12 @@ COLUMNS = (
         "error_mean", "Mean distance between true and rebuilt position, in the unit of near and far.", better="less"
     ),
     Column("error_max", "The largest distance between true and rebuilt position.", better="less"),
-    Column("half_step", "How far half a step of the storage moves the position at worst.", HOW),
-    Column("bound", "How far half a step and float32 arithmetic can move the position at worst.", HOW),
+    Column(
+        "half_step",
+        "How far rounding moves the position at worst: half a step of the storage to the nearest, otherwise a step.",
+        HOW,
+    ),
+    Column("bound", "How far rounding and float32 arithmetic can move the position at worst.", HOW),
     Column("signs_lost", "Signs stored with the depth that came back wrong.", better="less", drops=3),
     shared.DEVICE,
     shared.ROUNDED_BY,

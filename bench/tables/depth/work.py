@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from ....encodings.codecs.depth_codec import REBUILDS, DepthCodec
 from ....encodings.codecs.kind import DEPTH
 from ....encodings.shared.position import Camera
 from ....encodings.storages.depth_storage import DEPTH_STORAGES, DepthStorage, depth_storage_of
+from ....encodings.storages.storage import ROUNDINGS_AND_DITHERED
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device
 from ....gbuffer.layouts.presets import LAYOUTS
@@ -29,7 +31,7 @@ from ...ground.choose import choose
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_numbers, in_range
-from ...ground.options.storage_names import storages_said
+from ...ground.options.storage_names import roundings_named, storages_said
 from ...ground.options.targets import what_is_left
 from ...ground.output.errors import UsageError
 from ...ground.output.writing import check_folder, whole_file
@@ -89,11 +91,12 @@ def codecs(options: DepthOptions) -> list[tuple[DepthCodec, str]]:
     """Codecs with the ways to their positions; those that cannot be are named on standard error."""
     made: list[tuple[DepthCodec, str]] = []
     complaints: list[str] = []
+    roundings = roundings_named(options.rounding, ROUNDINGS_AND_DITHERED)
     asked = None if options.rebuild is None else choose("rebuild", options.rebuild, {name: name for name in REBUILDS})
     for encoding in own_codes_named(DEPTH, options.depth, DEPTH_ENCODINGS, "depth"):
         names = ",".join(encoding.storages) if options.storage is None else options.storage
-        for storage in _storages_named(names):
-            codec = DepthCodec(encoding, storage)
+        for storage, rounding in product(_storages_named(names), roundings):
+            codec = DepthCodec(encoding, storage, rounding)
             if codec.misfit:
                 complaints.append(f"{codec.name}: {codec.misfit}")
                 continue
@@ -187,8 +190,8 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
         lines: dict[tuple[Any, ...], Row] = {}
         for row in rows:
             if _is_at(row, near, far) and row["backend"] == rows[0]["backend"]:
-                line = {name: row[name] for name in ("depth", "storage", "rebuilt")}
-                at = lines.setdefault((row["depth"], row["storage"], row["rebuilt"]), line)
+                line = {name: row[name] for name in ("depth", "storage", "rounding", "rebuilt")}
+                at = lines.setdefault(tuple(line.values()), line)
                 at[f"at_{row['distance']:g}"] = row["error_max"]
         if lines:
             yield Sheet(f"the worst position error, near {near:g}, far {far:g}", list(lines.values()))
@@ -202,7 +205,7 @@ def _beside(rows: Sequence[Row]) -> list[Row]:
     """A line for each code, camera, way and back end: the worst error at each distance, and of points spread evenly the
     worst and the mean."""
     lines: dict[tuple[object, ...], Row] = {}
-    names = ("depth", "storage", "bits", "rebuilt", "backend", "near", "far", "fov")
+    names = ("depth", "storage", "rounding", "bits", "rebuilt", "backend", "near", "far", "fov")
     for row in rows:
         line = lines.setdefault(tuple(row[name] for name in names), {name: _said(row[name]) for name in names})
         if row["distance"] is not None:
@@ -218,7 +221,7 @@ def _beside(rows: Sequence[Row]) -> list[Row]:
 
 def _of_frames(rows: Sequence[Row]) -> list[Row]:
     """A line for each row of a frame."""
-    names = ("depth", "storage", "bits", "rebuilt", "backend", "depths", "near", "far", "fov")
+    names = ("depth", "storage", "rounding", "bits", "rebuilt", "backend", "depths", "near", "far", "fov")
     figures = ("relative_mean", "relative_max", "error_mean", "error_max", "signs_lost")
     how = ("count", "background", "not_finite", "rounded_by", "device")
     return [{name: _said(row[name]) for name in names} | {name: row[name] for name in (*figures, *how)} for row in rows]
@@ -273,7 +276,7 @@ class Surface:
         x, y = (np.arange(width) + 0.5) / width * 2 - 1, 1 - (np.arange(height) + 0.5) / height * 2
         places = np.stack(np.meshgrid(x, y), axis=-1).astype(np.float32).reshape(-1, 2)
         depths = np.where(self.within(camera), self.depths, np.float32(camera.far))
-        return measure.Points(places, depths.ravel().astype(np.float32))
+        return measure.Points(places, depths.ravel().astype(np.float32), width)
 
 
 @cache

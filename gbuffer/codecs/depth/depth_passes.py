@@ -13,13 +13,13 @@ from ....encodings import vec
 from ....encodings.codecs.depth_codec import DepthCodec, DepthEncoding
 from ....encodings.shared.position import Camera
 from ....encodings.storages.depth_storage import DepthStorage, store_depth
-from ....encodings.storages.storage import FORMATS
+from ....encodings.storages.storage import FORMATS, ROUNDINGS, rounds_to
 from ....encodings.vec import jnp
 from ...gl.device import Device, read_pixels
 from ...gl.handles import Texture, VertexArray
 from ...gl.raw import DepthBuffer
 from ..codec_passes import storage_kind
-from ..harness import Passes, Textures, check_functions, exact, set_uniforms
+from ..harness import Passes, Textures, check_functions, dithering, exact, set_uniforms
 
 HOMES = ("packed", "channel", "attachment")
 
@@ -41,8 +41,9 @@ def depth_defines(encoding: DepthEncoding) -> dict[str, object]:
     }
 
 
-def _storage_defines(storage: DepthStorage, shader_rounds: bool) -> dict[str, object]:
+def _storage_defines(storage: DepthStorage, rounding: str, shader_rounds: bool) -> dict[str, object]:
     return {
+        "ROUNDING": ROUNDINGS.index(rounding),
         "HOME": HOMES.index(storage.home),
         "BITS": storage.bits,
         "FIRST": sum(storage.format.bits) - storage.bits,
@@ -67,7 +68,7 @@ class DepthPasses(Passes):
     """A depth codec on a GL device; a context manager that releases what it holds there.
 
     Attributes:
-        rounded_by: "device" where the storage's own conversion rounds to nearest, else "shader".
+        rounded_by: "device" where the storage's own conversion rounds as the codec asks, else "shader".
 
     Raises:
         ShaderError: the encoding's GLSL does not compile.
@@ -75,11 +76,13 @@ class DepthPasses(Passes):
     """
 
     def __init__(self, device: Device, codec: DepthCodec):
-        self._codec, is_native = codec, rounds_to_nearest(device, codec.storage)
+        self._codec, rounding = codec, rounds_to(codec.rounding)
+        is_native = rounds_by_itself(device, codec.storage, rounding)
         self.rounded_by = "device" if is_native else "shader"
-        defines = depth_defines(codec.encoding) | _storage_defines(codec.storage, not is_native)
+        added, tables = dithering(codec.dither.added if codec.is_dithered else None)
+        defines = depth_defines(codec.encoding) | _storage_defines(codec.storage, rounding, not is_native) | added
         shaders, names = ("depth_encode.frag", "depth_decode.frag"), {"DEPTH_ENCODING": codec.encoding.glsl}
-        super().__init__(device, shaders, defines, names, {"texels": codec.storage.format})
+        super().__init__(device, shaders, defines, names, {"texels": codec.storage.format}, tables)
 
     def round_trip(self, points: np.ndarray, camera: Camera, way: int) -> Rebuilt:
         """Points on the screen through the storage.
@@ -95,7 +98,8 @@ class DepthPasses(Passes):
         return Rebuilt(positions[..., :3], stored[..., 0], stored[..., 1])
 
     def _written_textures(self, stack: ExitStack, sources: Textures) -> Textures:
-        return {"texels": _stored_texture(self._device, stack, self._codec.storage, self._encode, sources["points"])}
+        given = {"points": sources["points"], **self._tables}
+        return {"texels": _stored_texture(self._device, stack, self._codec.storage, self._encode, given)}
 
 
 def _camera_uniforms(camera: Camera, encoding: DepthEncoding) -> dict[str, Any]:
@@ -111,24 +115,25 @@ def _camera_uniforms(camera: Camera, encoding: DepthEncoding) -> dict[str, Any]:
 
 
 def _stored_texture(
-    device: Device, stack: ExitStack, storage: DepthStorage, passed: VertexArray, source: Texture
+    device: Device, stack: ExitStack, storage: DepthStorage, passed: VertexArray, given: Textures
 ) -> Texture:
-    """What a pass writes into a storage, as a texture; released with the stack."""
+    """What a pass makes of textures, by its samplers, in a storage: a texture of that size, released with it."""
+    size = given["points"].size
     if storage.home != "attachment":
-        target = device.owned(stack, device.target(source.size, storage.format))
-        device.render(passed, [target], points=source)
+        target = device.owned(stack, device.target(size, storage.format))
+        device.render(passed, [target], **given)
         return target
-    buffer = DepthBuffer(device.context, source.size, 1, storage.format.internal_format)
+    buffer = DepthBuffer(device.context, size, 1, storage.format.internal_format)
     stack.callback(buffer.release)
     # A framebuffer of moderngl's has a colour target; nothing is written there.
-    unused = device.owned(stack, device.target(source.size, FORMATS["r8"]))
-    device.render(passed, [unused], buffer, points=source)
+    unused = device.owned(stack, device.target(size, FORMATS["r8"]))
+    device.render(passed, [unused], buffer, **given)
     return buffer.texture
 
 
 @cache
-def rounds_to_nearest(device: Device, storage: DepthStorage) -> bool:
-    """Whether the device's own conversion into a storage is the emulation's.
+def rounds_by_itself(device: Device, storage: DepthStorage, rounding: str) -> bool:
+    """Whether the device's own conversion into a storage is the emulation's; into a depth buffer that to the nearest.
 
     Raises:
         FormatError: the device cannot render to it.
@@ -136,7 +141,7 @@ def rounds_to_nearest(device: Device, storage: DepthStorage) -> bool:
     if storage.home == "packed":
         return True  # bytes are whole numbers of the format's steps
     if storage.home == "channel":
-        return device.native_rounding(storage.format) == "nearest"
+        return device.native_rounding(storage.format) == rounding
     # An odd number of steps: no value falls on a tie, where the formats leave devices a choice.
     numbers = np.linspace(0, 1, 4086, dtype=np.float32)
     expected = np.asarray(store_depth(jnp.asarray(numbers), storage))
@@ -157,7 +162,7 @@ def through(device: Device, storage: DepthStorage, numbers: np.ndarray) -> np.nd
         write = device.owned(stack, device.fragment_pass("depth_as_it_is.frag", home))
         copy = device.owned(stack, device.fragment_pass("copy.frag"))
         result = device.owned(stack, device.target(source.size, FORMATS["rgba32f"]))
-        device.render(copy, [result], source=_stored_texture(device, stack, storage, write, source))
+        device.render(copy, [result], source=_stored_texture(device, stack, storage, write, {"points": source}))
         return read_pixels(result)[0, :, 0].copy()
 
 

@@ -2,6 +2,7 @@
 
 import json
 
+import jax.numpy as jnp
 import numpy as np
 import pytest
 from PIL import Image
@@ -9,6 +10,9 @@ from PIL import Image
 from normalbench.bench.ground.machine import devices
 from normalbench.bench.tables.depth import measure as depth
 from normalbench.bench.tables.registry import TABLES
+from normalbench.encodings.catalogue import DEPTH_ENCODINGS
+from normalbench.encodings.codecs.depth_codec import DepthCodec
+from normalbench.encodings.storages.depth_storage import DEPTH_STORAGES
 from normalbench.gbuffer.gl.device import NoDeviceError
 
 QUICK = ["depth", "--depth", "linear,window", "--near", "1", "--far", "100", "--count", "500", "--backend", "jax"]
@@ -96,6 +100,12 @@ BAD = {
     "a view": (["--fov", "180"], ["--fov 180", "170"]),
     "no view": (["--fov", "nan"], ["--fov nan", "170"]),
     "no room": (["--depth", "linear_sign", "--storage", "depth24"], ["linear_sign/depth24", "no room for a sign"]),
+    "a way to round": (["--rounding", "up"], ["'up'", "truncate", "dithered"]),
+    "a depth buffer's rounding": (
+        ["--depth", "window", "--storage", "depth24", "--rounding", "truncate"],
+        ["window/depth24/truncate", "the device rounds it, to the nearest"],
+    ),
+    "noise of floats": (["--depth", "linear", "--storage", "r16f", "--rounding", "dithered"], ["R16F", "fixed point"]),
     "no projection": (["--depth", "linear", "--rebuild", "inverse_projection"], ["linear/packed16"]),
     "a plot": (["--plot", "plot.gif"], ["plot.gif", ".png"]),
     "no folder": (["-o", "/proc/nowhere/rows.csv"], ["/proc/nowhere"]),
@@ -153,6 +163,47 @@ def test_the_plot_is_drawn(run, tmp_path):
     svg = (tmp_path / "plot.svg").read_text()
     labels = ("linear packed16 eye ray", "window depth32f projection terms", "near 1, far 100")
     assert all(f">{label}</text>" in svg for label in labels), svg[:500]
+
+
+# The mean error of the depth over that of the nearest, a quarter of a step: half a step, or a third. A number f cut off
+# of f (scale + 1/2) is off by f/2 - t of a step for t from 0 to 1: (f^2 / 4 + (1 - f / 2)^2) / 2, a third on average.
+WAYS = {"truncate": 2.0, "truncate_half": 4 / 3, "dithered": 4 / 3}
+
+
+@pytest.mark.usefixtures("gl", "rows_are_kept")
+@pytest.mark.parametrize(
+    "code", [("linear", "packed16"), ("linear_sign", "unorm:13"), ("logarithmic", "packed16"), ("linear", "r16f")]
+)
+def test_numbers_are_rounded_as_is_asked_in_both_languages(run, code):
+    words = ["--depth", code[0], "--storage", code[1], "--near", "1", "--rounding", "all", "--format", "json"]
+    status, out, _ = run("depth", *words, "--count", "4096")
+    found = {(row["rounding"], row["backend"], row["distance"]): row for row in json.loads(out)}
+    roundings = list(dict.fromkeys(rounding for rounding, _, _ in found))
+    assert status == 0 and roundings == ["nearest", "truncate"] + (["truncate_half", "dithered"] * (code[1] != "r16f"))
+    for (rounding, backend, distance), row in found.items():
+        assert row["error_max"] <= row["bound"] and not row["signs_lost"], row
+        assert row["half_step"] / found["nearest", backend, distance]["half_step"] == pytest.approx(
+            1 if rounding == "nearest" else 2, rel=0.01
+        )
+        assert row["error_mean"] == pytest.approx(found[rounding, "jax", distance]["error_mean"], rel=0.02)
+    if code[0].startswith("linear"):
+        nearest = found["nearest", "jax", None]["error_mean"]
+        for rounding in roundings[1:]:
+            ratio = found[rounding, "jax", None]["error_mean"] / nearest
+            assert ratio == pytest.approx(WAYS[rounding], rel=0.05), rounding
+
+
+def test_noise_leaves_a_depths_sign_and_the_mean_of_its_codes():
+    """Near 0, too, where noise is larger than the number: there the mean is a little more."""
+    codec = DepthCodec(DEPTH_ENCODINGS["linear_sign"], DEPTH_STORAGES["packed16"], "dithered")
+    noise = codec.dither.added[..., 0].ravel()
+    for exact in (0.5 * codec.step, 3.25 * codec.step, 0.7):
+        given = np.full_like(noise, exact)
+        for sign in (1, -1):
+            stored = np.asarray(codec.stored(jnp.asarray(sign * given), 0.001, 1.0, jnp.asarray(noise)), np.float64)
+            assert (np.signbit(stored) == (sign < 0)).all()
+            assert abs(abs(stored).mean() - exact) < 2e-3 * codec.step
+            assert abs(abs(stored) - exact).max() < 1.001 * codec.step
 
 
 def test_without_a_gl_driver_the_jax_rows_are_there(run, tmp_path, monkeypatch):
