@@ -19,6 +19,7 @@ def pick(
     *,
     storage: Names = ...,
     bytes: Names | None = ...,
+    rounding: Names = ...,
     encoding: Names = ...,
     against: Names | None = ...,
     normals: Names | None = ...,
@@ -62,6 +63,7 @@ def pick(
     Args:
         storage: Storages, comma-separated, or all; `normalbench list` shows them. Any bits are one too: unorm:9:7, snorm:12:12, unorm:4:4..16:16.
         bytes: Bytes of a texel, comma-separated: all storages of that size, not --storage.
+        rounding: nearest, truncate, truncate_half; comma-separated, or all.
         encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
         against: Encodings or files of GLSL, HLSL or Slang to compare with the answer, comma-separated, or all; `normalbench list` shows them.
         normals: Normal sets or files, comma-separated, or all; `normalbench list` shows them. Default: those of --domain.
@@ -842,7 +844,7 @@ def curves(
     Args:
         encoding: Curves or files of yours, comma-separated, or all; `normalbench list` shows them.
         storage: Storages, comma-separated, or all; `normalbench list` shows them. Default: each curve's usual.
-        rounding: nearest, truncate or dithered, comma-separated.
+        rounding: nearest, truncate, truncate_half, dithered; comma-separated, or all.
         backend: jax, glsl; comma-separated, or all.
         range: Largest quantities that are kept, comma-separated. Default: each curve's usual.
         count: Quantities, one at random in each of as many steps to the range.

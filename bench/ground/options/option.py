@@ -50,7 +50,8 @@ StorageNames = Annotated[
 Roundings = Annotated[
     str, Option("--rounding", "nearest, truncate, truncate_half; comma-separated, or all.", in_run=True)
 ]
-# Of a table that adds noise as well.
+# The tables that add noise, and their option.
+WITH_NOISE = ("quality", "frames", "vectors", "curves", "depth")
 RoundingsAndDithered = Annotated[
     str, Option("--rounding", "nearest, truncate, truncate_half, dithered; comma-separated, or all.", in_run=True)
 ]

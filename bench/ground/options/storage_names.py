@@ -6,10 +6,11 @@ import re
 from collections.abc import Collection, Mapping
 
 from ....encodings.storages.rules import BY_RULE, KINDS, storage_of
-from ....encodings.storages.storage import FORMATS, ROUNDINGS, STORAGES, Storage
+from ....encodings.storages.storage import DITHERED, FORMATS, ROUNDINGS, STORAGES, Storage
 from ..choose import choose, unknown_name
 from ..output.errors import UsageError
 from ..spelling import channels_of, spelled
+from .option import WITH_NOISE
 from .words import given_in
 
 # Storages by rule from some bits to some others, and what begins like one.
@@ -42,7 +43,9 @@ def storages_named(names: str, known: Mapping[str, Storage] = STORAGES, what: st
 
 
 def roundings_named(names: str, known: Collection[str] = ROUNDINGS) -> list[str]:
-    """Ways to round by their comma-separated names. Raises UsageError for an unknown one."""
+    """Ways to round by their comma-separated names. Raises UsageError for one that is not among the known."""
+    if DITHERED not in known and DITHERED in map(str.strip, names.split(",")):
+        raise UsageError(f"--rounding {DITHERED} is for {', '.join(WITH_NOISE)}; roughness adds noise by --dither")
     return choose("rounding", names, {name: name for name in known})
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from ...ground.options.option import Backends, Names, Option, Seed
+from ...ground.options.option import Backends, Names, Option, RoundingsAndDithered, Seed
 from ...shaders.languages.source_options import SourceOptions
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
@@ -19,7 +19,7 @@ class CurvesOptions(SourceOptions):
 
     encoding: Annotated[str, Option("--encoding", f"Curves or files of yours, {Names}.", files=True)] = "all"
     storage: Annotated[str | None, Option("--storage", f"Storages, {Names}. Default: each curve's usual.")] = None
-    rounding: Annotated[str, Option("--rounding", "nearest, truncate or dithered, comma-separated.")] = "nearest"
+    rounding: RoundingsAndDithered = "nearest"
     backend: Backends = "jax,glsl"
     range: Annotated[
         str | None, Option("--range", "Largest quantities that are kept, comma-separated. Default: each curve's usual.")

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from ....encodings.catalogue import CURVE_ENCODINGS
 from ....encodings.codecs.curve_codec import CurveCodec
 from ....encodings.codecs.kind import CURVE
-from ....encodings.storages.storage import CURVE_STORAGES, DITHERED
+from ....encodings.storages.storage import CURVE_STORAGES, ROUNDINGS_AND_DITHERED
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_numbers, in_range
@@ -21,7 +21,6 @@ from . import measure
 from .charts import charts
 from .table import CurvesOptions
 
-ROUNDINGS = ("nearest", "truncate", DITHERED)
 MAX_QUANTITIES, RANGES = 2**22, (1e-4, 65504.0)
 
 
@@ -44,7 +43,7 @@ def cases(options: CurvesOptions) -> list[measure.Case]:
 
 def codecs(options: CurvesOptions) -> list[CurveCodec]:
     """The codecs asked for; those that do not fit are named on standard error."""
-    roundings = roundings_named(options.rounding, ROUNDINGS)
+    roundings = roundings_named(options.rounding, ROUNDINGS_AND_DITHERED)
     said = options.range and checked_numbers("--range", options.range, float, *RANGES)
     # A user's file is looked at once, however many ways to round are named.
     encodings = own_codes_named(CURVE, options.encoding, CURVE_ENCODINGS)

@@ -230,11 +230,17 @@ def shown_share(percent: float) -> str:
 
 
 def groups(rows: Sequence[Row]) -> dict[tuple[str, str, str], list[Row]]:
-    """Rows by the question that they answer: a storage or a number of bytes, normals, and scenes."""
+    """Rows by the question that they answer: a storage or a number of bytes and how it rounds, normals, and scenes."""
     found: dict[tuple[str, str, str], list[Row]] = {}
     for row in rows:
-        found.setdefault((row["asked"], row["normals"], row["scene"]), []).append(row)
+        found.setdefault((asked_of(row), row["normals"], row["scene"]), []).append(row)
     return found
+
+
+def asked_of(row: Row) -> str:
+    """What was asked for, in words; rounding to the nearest is not said."""
+    rounding = row.get("rounding") or "nearest"
+    return row["asked"] if rounding == "nearest" else f"{row['asked']} rounded by {rounding}"
 
 
 def answered(rows: Sequence[Row]) -> list[Row]:

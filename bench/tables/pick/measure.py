@@ -69,6 +69,11 @@ class Case:
     pipeline: Pipeline = PIPELINES["hybrid"]
 
     @property
+    def name(self) -> str:
+        """What it is called among the cases of a question, which all round alike."""
+        return f"{self.codec.encoding.name}/{self.codec.storage.name}"
+
+    @property
     def is_beside(self) -> bool:
         """Whether it is of another storage of the same bytes, and is compared by its angles alone."""
         return bool(self.said["beside"])
@@ -111,12 +116,12 @@ class Question:
 
     def __init__(self, chosen: Sequence[Case], pool: Executor, costs: Costs):
         self._pool, self._costs, self._aim = pool, costs, chosen[0].said["aim"]
-        self._cases = {case.codec.name: case for case in chosen}
+        self._cases = {case.name: case for case in chosen}
         self._suprema: dict[str, Future[float | None]] = {}
         self._rows = {name: _case_columns(case) | costs.of(case.codec) for name, case in self._cases.items()}
         # Of other storages only codes are compared that cost little, of packings those that do not cost much.
         chosen = [case for name, case in self._cases.items() if price(self._rows[name]) <= self._most_price(case)]
-        self._rows = {case.codec.name: self._rows[case.codec.name] for case in chosen}
+        self._rows = {case.name: self._rows[case.name] for case in chosen}
         self._by_jax = [case for case in chosen if has_twin(case.codec.encoding)]
         # What has no twin is measured by GL, in the thread that draws.
         self._by_gl = [case for case in chosen if not has_twin(case.codec.encoding)]
@@ -124,7 +129,7 @@ class Question:
 
     def _most_price(self, case: Case) -> float:
         """The price up to which a code is compared."""
-        cheap = AFFORDABLE * floor(self._rows[case.codec.name])
+        cheap = AFFORDABLE * floor(self._rows[case.name])
         return cheap if case.is_beside else 2 * cheap if case.said["packed"] else math.inf
 
     def measure(self, tick: Callable[[str], None]) -> None:
@@ -132,15 +137,15 @@ class Question:
         measured = zip(
             [*self._by_gl, *self._by_jax], [*_angle_columns(self._by_gl), *self._angle_columns.result()], strict=True
         )
-        angles = {case.codec.name: row for case, row in measured}
+        angles = {case.name: row for case, row in measured}
         for name in self._rows:
             self._rows[name] |= angles[name]
             if not self._cases[name].is_beside:
-                tick(f"{name} {self._cases[name].normal_set.name}")
+                tick(f"{self._cases[name].codec.name} {self._cases[name].normal_set.name}")
         # Also of codes with a hole, which has none where the codes without it do not survive.
         for row in list(self._rows.values()):
             if row["mixing"] and not row["beside"] and not why_left_out(row | {"aim": "angle"}):
-                self._rows[_codec_name(row)] |= _mixing_columns(self._cases[_codec_name(row)])
+                self._rows[_case_name(row)] |= _mixing_columns(self._cases[_case_name(row)])
         self._judge_others()
         self._find_suprema(self._qualified_rows("angle") if self._aim == "worst" else self._placed_rows())
 
@@ -149,11 +154,11 @@ class Question:
         survive."""
         judged: set[str] = set()
         while waits := [
-            row for row in self._placed_rows() if row["beside"] and row["mixing"] and _codec_name(row) not in judged
+            row for row in self._placed_rows() if row["beside"] and row["mixing"] and _case_name(row) not in judged
         ]:
             for row in waits:
-                judged.add(_codec_name(row))
-                self._rows[_codec_name(row)] |= _mixing_columns(self._cases[_codec_name(row)])
+                judged.add(_case_name(row))
+                self._rows[_case_name(row)] |= _mixing_columns(self._cases[_case_name(row)])
 
     def draw(self, pictures: Pictures | None) -> None:
         """Images, if there is what draws them, and the suprema of codes that have a place then."""
@@ -161,14 +166,14 @@ class Question:
             self._take_suprema()
         if pictures:
             for row in self._qualified_rows("angle") if self._aim == "image" else self._placed_rows():
-                self._rows[_codec_name(row)] |= pictures.of(self._cases[_codec_name(row)])
+                self._rows[_case_name(row)] |= pictures.of(self._cases[_case_name(row)])
         placed = self._placed_rows()
         self._find_suprema(placed)
-        self._measure_axes([self._cases[_codec_name(row)] for row in placed])
+        self._measure_axes([self._cases[_case_name(row)] for row in placed])
 
     def _measure_axes(self, cases: Sequence[Case]) -> None:
         """Errors of axis-aligned normals: of all, or of those with z >= 0 where the code need not hold others."""
-        axes = {case.codec.name: replace(case, normal_set=_axis_set(_is_half(case))) for case in cases}
+        axes = {case.name: replace(case, normal_set=_axis_set(_is_half(case))) for case in cases}
         for name, row in zip(axes, _angle_columns(list(axes.values())), strict=True):
             self._rows[name][AXES] = row["angle_max_deg"]
 
@@ -186,7 +191,7 @@ class Question:
         return [row for row in answer if not row["left_out"] and not row["beside"]]
 
     def _find_suprema(self, wanted: Iterable[Row]) -> None:
-        for name in map(_codec_name, wanted):
+        for name in map(_case_name, wanted):
             if name not in self._suprema:
                 self._suprema[name] = self._pool.submit(_supremum_deg, self._cases[name])
 
@@ -220,8 +225,8 @@ def _axis_set(is_half: bool) -> NormalSet:
     return from_arrays("axes, z >= 0", axes.title, n[held], view[held], np.ones(held.sum(), bool), None)
 
 
-def _codec_name(row: Row) -> str:
-    """The name of a row's codec."""
+def _case_name(row: Row) -> str:
+    """The name of a row's case."""
     return f"{row['encoding']}/{row['storage']}"
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ....encodings.codecs.codec import codec_name
 from ....gbuffer.layouts.words import LayoutError
 from ....reports.charts import pictures
 from ....reports.page.codec_key import CodecKey
@@ -24,15 +25,27 @@ PLACES = (BEST, AGAINST, MORE_EXACT, MOST_EXACT, CHEAPER, FEWER_BITS)
 
 def write(folder: Path, chosen: Sequence[Case], rows: Sequence[Row], drawing: Pictures) -> None:
     """The images of every code that has a place, and of the exact normals."""
-    placed = {(row["storage"], row["encoding"]) for row in rows if set(places_of(row)) & set(PLACES)}
-    drawn = (one for one in chosen if (one.codec.storage.name, one.codec.encoding.name) in placed)
+    placed = {_key_of(row) for row in rows if set(places_of(row)) & set(PLACES)}
+    drawn = (one for one in chosen if _key_of_case(one) in placed)
     for case, maker in ((one, maker) for one in drawn if not one.is_beside for maker in one.makers):
         # A code that the device has no room for has no image.
         with suppress(LayoutError, *render.UNMEASURABLE):
             for power, (image, exact) in drawing.shown(case, maker).items():
                 scene = _scene_stem(maker.name, "" if power is None else f"{power:g}")
                 _write(folder / f"{scene}-reference.png", exact)
-                _write(folder / f"{scene}-{case.codec.encoding.name}-{case.codec.storage.name}-final.png", image)
+                _write(folder / _file_name(scene, _key_of_case(case)), image)
+
+
+def _key_of(row: Row) -> CodecKey:
+    return CodecKey(str(row["encoding"]), str(row["storage"]), str(row.get("rounding") or "nearest"))
+
+
+def _key_of_case(case: Case) -> CodecKey:
+    return CodecKey(case.codec.encoding.name, case.codec.storage.name, str(case.said["rounding"]))
+
+
+def _file_name(scene: str, key: CodecKey) -> str:
+    return f"{scene}-{codec_name(key.encoding, key.storage, key.rounding).replace('/', '-')}-final.png"
 
 
 def _scene_stem(name: str, power: str) -> str:
@@ -55,8 +68,7 @@ def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
     for scene, power in sorted(drawn, key=lambda key: (scenes.index(key[0]), -float(key[1] or 0))):
         stem = _scene_stem(scene, power)
         exact = there.get(f"{stem}-reference.png")
-        codecs = [CodecKey(str(row["encoding"]), str(row["storage"]), "nearest") for row in placed]
-        paths = {key: there.get(f"{stem}-{key.encoding}-{key.storage}-final.png") for key in codecs}
+        paths = {key: there.get(_file_name(stem, key)) for key in map(_key_of, placed)}
         known = [Pictured(key, key.label, key.label, partial(_pixels, path)) for key, path in paths.items() if path]
         if exact and known:
             where = f"{scene} at power {power}" if power else scene

@@ -20,6 +20,7 @@ from .answer import (
     MORE_EXACT,
     MOST_EXACT,
     PLAIN,
+    asked_of,
     beats,
     floor,
     images,
@@ -72,7 +73,7 @@ def sentences(group: Sequence[Row]) -> list[str]:
 def told(group: Sequence[Row]) -> list[str]:
     """The same without what does not qualify."""
     best = next((row for row in group if BEST in places_of(row)), None)
-    where = f"{group[0]['asked']}, {_on(group[0])}"
+    where = f"{asked_of(group[0])}, {_on(group[0])}"
     if best is None:
         return [f"{where}: no code qualifies{_constraints_text(group[0])}.", *_instead(group)]
     others = [*_not_held(best), *(_elsewhere_text(row, best) for row in _much_better(group, best))]
@@ -189,7 +190,9 @@ def _seen_sentences(row: Row) -> str:
 
 def _roughness_command(row: Row) -> str:
     """What measures from which roughness on a code carries reflections."""
-    return shlex.join(["normalbench", "roughness", "--encoding", row["encoding"], "--storage", row["storage"]])
+    words = ["normalbench", "roughness", "--encoding", row["encoding"], "--storage", row["storage"]]
+    rounding = row.get("rounding") or "nearest"
+    return shlex.join(words if rounding == "nearest" else [*words, "--rounding", rounding])
 
 
 def _length_text(value: float) -> str:

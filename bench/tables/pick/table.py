@@ -13,6 +13,7 @@ from ...ground.options.option import (
     Names,
     Option,
     Reading,
+    Roundings,
     Scenes,
     Seed,
     StorageNames,
@@ -44,6 +45,7 @@ class PickOptions(Reading, SourceOptions):
         str | None,
         Option("--bytes", "Bytes of a texel, comma-separated: all storages of that size, not --storage."),
     ] = None
+    rounding: Roundings = "nearest"
     encoding: Encodings = "all"
     against: Annotated[
         str | None,
@@ -113,6 +115,7 @@ class PickOutputs:
 COLUMNS = (
     Column("asked", "The storage that was asked for, or the number of bytes.", KEY, shown=False),
     shared.STORAGE,
+    Column("rounding", "How the storage rounds; an integer of a user's is as its encoder makes it.", KEY),
     shared.ENCODING,
     Column("normals", "The set of normals that was measured on.", KEY),
     Column("scene", "The scenes that were rendered.", KEY),

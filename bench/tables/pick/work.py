@@ -21,7 +21,7 @@ from ...ground.machine.devices import found_device, require_jax
 from ...ground.options.counts import check_seed, checked_count, in_range
 from ...ground.options.effect_names import effects_named, lacking, name_of, pipeline_with
 from ...ground.options.scene_names import powers_named, scene_makers_named
-from ...ground.options.storage_names import storages_named
+from ...ground.options.storage_names import roundings_named, storages_named
 from ...ground.output.errors import UsageError, by_reason, leave_out, tell
 from ...ground.output.writing import check_folder
 from ...subjects.codecs.names import as_declared, check_twin, codecs_named
@@ -31,7 +31,7 @@ from ..families_named import families_named
 from ..mix.table import USES
 from ..table import COMPILERS, GL, Measured, Row, Sheet, Step, Tick, Work
 from . import measure, pictures
-from .answer import AIMS, HOLDS, answered, groups, largest
+from .answer import AIMS, HOLDS, answered, asked_of, groups, largest
 from .sentences import left_out, told
 from .table import TABLE, PickOptions, PickOutputs
 
@@ -64,9 +64,9 @@ def questions(options: PickOptions) -> list[list[measure.Case]]:
     said = _question(options)
     asked = _asked(options)
     names = ",".join(_names(asked))
-    against = as_declared(codecs_named(options.against, names, "nearest")) if options.against else []
+    against = as_declared(codecs_named(options.against, names, options.rounding)) if options.against else []
     named = {codec.encoding.name for codec in against}
-    codecs = dict.fromkeys([*as_declared(codecs_named(options.encoding, names, "nearest")), *against])
+    codecs = dict.fromkeys([*as_declared(codecs_named(options.encoding, names, options.rounding)), *against])
     fit, misfits = _fitting(codecs)
     # Those of the catalogue are traced by tests.
     encodings = list(dict.fromkeys(codec.encoding for codec in codecs))
@@ -82,7 +82,7 @@ def questions(options: PickOptions) -> list[list[measure.Case]]:
     pipeline = _pipeline(effects, makers, setting)
     said |= {"effects": name_of(effects), "scene": ",".join(maker.name for maker in makers)}
     for codec in (one for one in fit if one.encoding.is_packed):
-        for name in (name for name, storages in asked.items() if not _is_held(codec, storages)):
+        for name in (name for name, storages in asked.items() if not _is_held(codec, storages, codec.rounding)):
             leave_out(
                 f"{codec.encoding.name} is an integer of {codec.storage.texel_bytes} bytes, not of those of {name}"
             )
@@ -97,11 +97,12 @@ def questions(options: PickOptions) -> list[list[measure.Case]]:
     made = [
         [
             case(codec, normals, about)
-            for codec, about in _compared(name, storages, fit, encodings)
+            for codec, about in _compared(name, storages, rounding, fit, encodings)
             if normals.serves(codec.encoding)
         ]
+        for rounding in roundings_named(options.rounding)
         for name, storages in asked.items()
-        if any(_is_held(codec, storages) for codec in fit)
+        if any(_is_held(codec, storages, rounding) for codec in fit)
         for normals in sets
     ]
     lacking = lacking_rays((codec.encoding, normals) for codec in fit for normals in sets)
@@ -140,25 +141,25 @@ def _names(asked: Mapping[str, Sequence[Storage]]) -> list[str]:
 
 
 def _compared(
-    name: str, storages: Sequence[Storage], fit: Sequence[Codec], encodings: Sequence[Encoding]
+    name: str, storages: Sequence[Storage], rounding: str, fit: Sequence[Codec], encodings: Sequence[Encoding]
 ) -> Iterator[tuple[Codec, Row]]:
     """The codecs of a question and what their rows say: those asked for, then those of other storages of as many bytes
     where one storage was asked for."""
     size, is_one = storages[0].texel_bytes, storages[0].name == name
-    about: Row = {"asked": name, "bytes": size, "beside": False, "packed": False}
+    about: Row = {"asked": name, "bytes": size, "rounding": rounding, "beside": False, "packed": False}
     for codec in fit:
-        if _is_held(codec, storages):
+        if _is_held(codec, storages, rounding):
             is_laid = is_one and codec.storage.name != name and not codec.encoding.is_packed
             yield codec, about | {"packed": is_laid}
     others = [one for one in STORAGES.values() if one.texel_bytes == size and one not in storages] if is_one else []
-    codecs = (Codec(encoding, other) for other in others for encoding in encodings if not encoding.is_packed)
+    codecs = (Codec(encoding, other, rounding) for other in others for encoding in encodings if not encoding.is_packed)
     yield from ((codec, about | {"beside": True}) for codec in codecs if codec.fits)
 
 
-def _is_held(codec: Codec, storages: Sequence[Storage]) -> bool:
-    """Whether a code is one of a question: in its storages, or an integer in a texel of as many bytes."""
+def _is_held(codec: Codec, storages: Sequence[Storage], rounding: str) -> bool:
+    """Whether a code is one of a question: in its storages and rounded so, or an integer of as many bytes."""
     is_integer = codec.encoding.is_packed and codec.storage.texel_bytes == storages[0].texel_bytes
-    return is_integer or codec.storage in storages
+    return is_integer or (codec.storage in storages and codec.rounding == rounding)
 
 
 def _pipeline(effects: Sequence[ChosenEffect], makers: Sequence[SceneMaker], setting: Setting) -> Pipeline:
@@ -200,7 +201,7 @@ def _fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:
             misfits.append((codec.encoding.name, codec.misfit))
         else:
             fit.append(codec)
-    said = by_reason(misfits)
+    said = by_reason(dict.fromkeys(misfits))
     if not fit:
         raise UsageError(said[0])
     return fit, said
@@ -222,7 +223,7 @@ def _steps(options: PickOptions, outputs: PickOutputs) -> list[Step]:
 
 
 def _name(chosen: Sequence[measure.Case]) -> str:
-    return f"{chosen[0].said['asked']} {chosen[0].normal_set.name}"
+    return f"{asked_of(dict(chosen[0].said))} {chosen[0].normal_set.name}"
 
 
 def _key(chosen: Sequence[measure.Case]) -> Row:
@@ -244,7 +245,8 @@ def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
         front = [_short(row) for row in group if row["front"] or row["place"]]
         title = f"{asked}, on {normals}: the codes that no other one beats in error, price and bits"
         said, aside = tuple(told(group)), tuple(left_out(group))
-        keys = {"storage": asked, "normals": normals, "scene": scene.split(",")[0]}
+        keys = {"storage": group[0]["asked"], "rounding": group[0]["rounding"], "normals": normals}
+        keys["scene"] = scene.split(",")[0]
         yield Sheet(title if front else "", front, TABLE.drops(front), said=said, aside=aside, keys=keys)
 
 

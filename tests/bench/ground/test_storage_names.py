@@ -5,8 +5,10 @@ import json
 import pytest
 
 from normalbench.bench.door.python.codecs import codec_of
-from normalbench.bench.ground.options.storage_names import storages_named
+from normalbench.bench.ground.options.option import WITH_NOISE, fields_of
+from normalbench.bench.ground.options.storage_names import roundings_named, storages_named
 from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.catalogue import (
     CURVE_ENCODINGS,
     ENCODINGS,
@@ -20,7 +22,7 @@ from normalbench.encodings.codecs.frame_codec import FrameCodec
 from normalbench.encodings.codecs.light_codec import LightCodec
 from normalbench.encodings.codecs.motion_codec import MotionCodec
 from normalbench.encodings.storages.rules import rule_of, storage_of
-from normalbench.encodings.storages.storage import MOTION_STORAGES, STORAGES
+from normalbench.encodings.storages.storage import DITHERED, MOTION_STORAGES, ROUNDINGS_AND_DITHERED, STORAGES
 
 
 @pytest.mark.parametrize(
@@ -124,3 +126,13 @@ def test_floats_are_as_many_as_a_code_of_any_kind_has_numbers():
     assert MotionCodec(MOTION_ENCODINGS["linear"], storage).storage.name == "rg16f"
     assert FrameCodec(FRAME_ENCODINGS["qtangent"], storage).storage == STORAGES["rgba16f"]
     assert LightCodec(LIGHT_ENCODINGS["plain"], storage).storage == STORAGES["rgba16f"]
+
+
+def test_who_is_refused_noise_is_told_which_tables_add_it():
+    """Those whose option names it; roughness has an option of its own for it."""
+    rounding = {name: fields_of(table.options).get("rounding") for name, table in TABLES.items()}
+    assert sorted(WITH_NOISE) == sorted(name for name, one in rounding.items() if one and DITHERED in one.option.help)
+    assert "dither" in fields_of(TABLES["roughness"].options)
+    assert roundings_named("nearest,dithered", ROUNDINGS_AND_DITHERED) == ["nearest", DITHERED]
+    with pytest.raises(UsageError, match=f"^--rounding dithered is for {', '.join(WITH_NOISE)}; roughness adds noise"):
+        roundings_named("nearest, dithered")

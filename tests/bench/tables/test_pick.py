@@ -226,6 +226,28 @@ def test_an_encoder_in_glsl_alone_is_compared_and_said_to_lose_half(run, tmp_pat
     assert status == 0 and "on hemisphere: take octahedral" in out and "flat: flat, 2.7 dB worse" in out, out
 
 
+@pytest.mark.usefixtures("gl", "radv", "rows_are_kept")
+def test_each_way_to_round_is_a_question(run, tmp_path):
+    """Cut off, errors are twice as large; a code that is rounded precisely is not cut off."""
+    words = ["--encoding", "octahedral,octahedral_precise", "--storage", "rg8", "--count", "4096", "--scene", "room"]
+    words += ["--power", "47", "--rounding", "nearest,truncate", "--aim", "worst", "--images", str(tmp_path)]
+    status, out, err = run("pick", *words, "--format", "json")
+    asked = [row for row in json.loads(out) if not row["beside"]]
+    found = {(row["encoding"], row["rounding"]): row for row in asked}
+    assert status == 0 and err.count("\n") == 1 and "octahedral_precise: it is rounded precisely, not otherwise" in err
+    assert len(asked) == len(found) == 3 and ("octahedral_precise", "truncate") not in found
+    nearest, cut = (found["octahedral", rounding] for rounding in ("nearest", "truncate"))
+    for figure in ("angle_mean_deg", "angle_sup_deg"):
+        assert cut[figure] / nearest[figure] == pytest.approx(2, rel=0.03), figure
+    assert nearest["image_db_room_47"] - cut["image_db_room_47"] == pytest.approx(6, abs=1)
+    groups_of = [group for group in groups(asked).values() if group[0]["rounding"] == "truncate"]
+    (said,) = (" ".join(sentences(group)) for group in groups_of)
+    assert said.startswith("rg8 rounded by truncate, on sphere: take octahedral.")
+    assert "roughness --encoding octahedral --storage rg8 --rounding truncate" in said
+    names = {path.name for path in tmp_path.iterdir()}
+    assert {f"pick-room-power47-octahedral-rg8{way}-final.png" for way in ("", "-truncate")} < names
+
+
 def test_where_nothing_qualifies_it_is_said_with_status_1(run):
     status, out, err = run("pick", "--encoding", "octahedral", "--storage", "rg8", "--most-instructions", "1")
     assert status == 1 and "no answer for rg8 on sphere" in err and "no code qualifies" not in err
@@ -245,6 +267,12 @@ def test_where_nothing_qualifies_it_is_said_with_status_1(run):
         (("--enough", "-1"), "--enough -1: 0 to 360 degrees"),
         (("--bytes", "3"), "unknown number of bytes '3'; known: all, 2, 4, 8, 16"),
         (("--encoding", "xyz", "--storage", "rg8"), "xyz: 3 components, but RG8 has 2 channels"),
+        (("--rounding", "up"), "unknown rounding 'up'; known: all, nearest, truncate, truncate_half"),
+        (("--rounding", "dithered"), "--rounding dithered is for quality, frames, vectors, curves, depth"),
+        (
+            ("--encoding", "octahedral", "--storage", "rg16f", "--rounding", "truncate_half"),
+            "octahedral: RG16F is of floats, and truncate_half is for fixed point",
+        ),
     ],
 )
 def test_what_cannot_be_asked_is_one_line(run, words, said):
