@@ -51,7 +51,7 @@ PAIRS = (
 # Encodings that are there with precise rounding as well: of the codes around, the one that decodes nearest.
 PRECISE = {f"{name}_precise": name for name in ("octahedral", "equal_area_octahedral")}
 NAMES = (*PAIRS, *PRECISE)
-LIGHT_NAMES = ("plain", "linear", "log", "rgbm", "nao32", "rgb9e5")
+LIGHT_NAMES = ("plain", "linear", "log", "rgbm", "nao32", "rgb9e5", "chroma_half", "hue_saturation")
 
 # A layout keeps the first depth that has the sign its normal needs, or has none, if it names no other.
 DEPTH_NAMES = ("linear", "linear_sign", "logarithmic", "window", "reversed_window")

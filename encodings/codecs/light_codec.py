@@ -11,6 +11,8 @@ from ..storages.storage import Storage
 from ..vec import Vec4
 from .light_encoding import LightEncoding
 
+COLOURS = 3
+
 
 @dataclass(frozen=True)
 class LightCodec:
@@ -30,7 +32,12 @@ class LightCodec:
     @property
     def _named(self) -> tuple[str, str]:
         """Name and title of the encoding in this format."""
-        return self.encoding.in_curve if self.storage.curved else (self.encoding.name, self.encoding.title)
+        if self.storage.curved:
+            return self.encoding.in_curve
+        if self.storage.name in self.encoding.storages:
+            return self.encoding.name, self.encoding.title
+        name = self.encoding.name
+        return f"{name}/{self.storage.name}", f"{name.partition(':')[0]} to {self.limit:g} in {self.storage.title}"
 
     @property
     def title(self) -> str:
@@ -41,9 +48,13 @@ class LightCodec:
     @property
     def misfit(self) -> str | None:
         """Why the storage cannot hold what the encoding makes; None where it can."""
-        if self.storage.name in self.encoding.storages:
+        encoding, storage = self.encoding, self.storage
+        if storage.name in encoding.storages:
             return None
-        return f"{self.encoding.name} is made for {', '.join(self.encoding.storages)}"
+        if encoding.any_bits != storage.kind:
+            more = f", and {encoding.any_bits} of any bits" if encoding.any_bits else ""
+            return f"{encoding.name} is made for {', '.join(encoding.storages)}{more}"
+        return None if storage.channels >= COLOURS else f"{storage.title}: light has {COLOURS} numbers or four"
 
     @property
     def bits(self) -> int:
@@ -58,7 +69,7 @@ class LightCodec:
     @property
     def bytes_per_pixel(self) -> int:
         """The bytes of one target. A code that is read while it is written has two copies."""
-        return self.bits // 8 * (2 if self.blend == "read" else 1)
+        return self.storage.texel_bytes * (2 if self.blend == "read" else 1)
 
     @property
     def has_alpha(self) -> bool:
@@ -72,8 +83,8 @@ class LightCodec:
 
     @property
     def blend(self) -> str:
-        """How light is added: one of light_encoding.BLENDS."""
-        return self.encoding.blend
+        """How light is added: one of light_encoding.BLENDS. Numbers across channels cannot be blended."""
+        return "read" if self.storage.is_packed else self.encoding.blend
 
     @property
     def no_light(self) -> float:

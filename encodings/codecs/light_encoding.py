@@ -38,6 +38,8 @@ class LightEncoding:
         is_plain: whether a texel is the light itself; a light buffer of it goes by the format's name.
         in_curve: its name and title in a format that keeps colours by the sRGB curve, where it is made for one.
         functions: what the names of its GLSL functions begin with, of a user's file; empty where that is the file's.
+        any_bits: "unorm" or "float", where it may lie in all storages of that kind that have three or four numbers;
+            empty where it is made for the named ones alone.
     """
 
     name: str
@@ -57,6 +59,7 @@ class LightEncoding:
     is_plain: bool = False
     in_curve: tuple[str, str] = ("", "")
     functions: str = ""
+    any_bits: str = ""
 
     @property
     def no_light(self) -> float:

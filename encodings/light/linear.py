@@ -60,4 +60,5 @@ ENCODING = LightEncoding(
     ulps_reason="a reciprocal and a product; exact for a range that is a power of two",
     constants={"LINEAR_RANGE": RANGE},
     ranged=ranged,
+    any_bits="unorm",
 )

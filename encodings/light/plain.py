@@ -31,4 +31,5 @@ ENCODING = LightEncoding(
     ulps=(0, 0),
     ulps_reason="nothing is computed",
     is_plain=True,
+    any_bits="float",
 )

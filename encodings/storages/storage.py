@@ -274,7 +274,12 @@ SRGB8_A8 = Storage("srgb8_a8", "sRGB8 A8", "unorm", (8, 8, 8, 8), 0x8C43, curved
 
 # What holds light.
 LIGHT_STORAGES: Mapping[str, Storage] = MappingProxyType(
-    {**{name: STORAGES[name] for name in ("rgba32f", "rgba16f", "r11g11b10f", "rgba8")}, "srgb8_a8": SRGB8_A8}
+    {
+        **{name: STORAGES[name] for name in ("rgba32f", "rgba16f", "r11g11b10f", "rgba8")},
+        "srgb8_a8": SRGB8_A8,
+        "rg8_6_2_8": _packed_storage("rg8_6_2_8", "6:2:8 in RG8", "unorm", 6, 2, 8),
+        "rgb16_8_8_8_16": Storage("rgb16_8_8_8_16", "8:8:8:16 in RGB16", "unorm", (8, 8, 8, 16), RGBA8, part=16),
+    }
 )
 
 # Every format that a render target may have; normals are measured in those above.

@@ -21,7 +21,7 @@ Texel = Storage | str
 
 
 def _light_texels(plan: Plan) -> tuple[Texel, ...]:
-    return (plan.light_buffer.storage,) * plan.light_targets
+    return (plan.light_buffer.storage.target,) * plan.light_targets
 
 
 def _next_light_texels(plan: Plan) -> tuple[Texel, ...]:

@@ -9,11 +9,16 @@ from ...encodings.catalogue import CURVE_ENCODINGS, LIGHT_ENCODINGS, MOTION_ENCO
 from ...encodings.codecs.curve_codec import CurveEncoding
 from ...encodings.codecs.light_encoding import LightEncoding
 from ...encodings.codecs.motion_codec import MotionEncoding
+from ...encodings.storages.storage import FORMATS
 
 COLOURS = ("albedo", "specular", "emission")
 SINGLE = ("roughness", "metalness", "reflectance", "occlusion")
-# What light is kept by in four numbers that mean nothing one by one.
-WHOLE = {name: encoding for name, encoding in LIGHT_ENCODINGS.items() if encoding.blend == "read"}
+# What light is kept by in the four numbers of a format that mean nothing one by one.
+WHOLE = {
+    name: encoding
+    for name, encoding in LIGHT_ENCODINGS.items()
+    if encoding.blend == "read" and FORMATS.keys() >= {*encoding.storages}
+}
 LIGHT = "emission"
 MOTION = "motion"
 

@@ -1,5 +1,6 @@
 """Light codes: what they hold, and that formats store as emulated."""
 
+import colorsys
 from pathlib import Path
 
 import jax
@@ -10,6 +11,7 @@ from parity.comparison import ULP, rows
 from parity.light import apart, given_texels, lights, planes
 
 from normalbench.bench.ground.options.light_names import light_buffers_named
+from normalbench.bench.ground.output.errors import UsageError
 from normalbench.encodings.catalogue import LIGHT_BUFFERS, LIGHT_ENCODINGS, LIGHT_NAMES
 from normalbench.encodings.codecs.light_codec import LightCodec
 from normalbench.encodings.codecs.light_encoding import BLENDS
@@ -126,6 +128,93 @@ def test_rgb9e5_stores_what_the_specification_says():
     mantissas = np.floor(clamped / 2.0 ** (exponent - 24)[:, None] + 0.5)
     got = rows(LIGHT_BUFFERS["rgb9e5"].decode(stored_texels("rgb9e5", light)))[:, :3]
     assert np.array_equal(got, (mantissas * 2.0 ** (exponent - 24)[:, None]).astype(np.float32))
+
+
+# Of Dagor's table of 256 colours, by their code.
+DAGORS = {
+    0: (1, 0.75, 0.75),
+    1: (1, 0.773810, 0.75),
+    11: (0.988095, 1, 0.75),
+    62: (1, 0.75, 0.773809),
+    63: (1, 1, 1),
+    64: (1, 0.5, 0.5),
+    96: (0.5, 0.976190, 1),
+    127: (1, 0.5, 0.5),
+    170: (0.25, 0.25, 1),
+    202: (1, 0.952381, 0),
+    255: (1, 0, 0),
+}
+
+
+def test_hues_and_saturations_are_those_of_dagors_table():
+    """At the largest light, 16; and each is stored as itself, but for the last hue, which is the first one's colour."""
+    code = np.array(list(DAGORS))
+    texels = np.stack([(code & 63) / 63, (code >> 6) / 3, np.ones(len(code)), 0 * code], axis=1).astype(np.float32)
+    light = rows(LIGHT_BUFFERS["hue_saturation"].decode(planes(texels)))
+    assert light[:, :3] / 16 == pytest.approx(np.array(list(DAGORS.values())), abs=2e-6)
+    again = np.rint(rows(stored_texels("hue_saturation", light))[:, :2] * [63, 3]) @ [1, 64]
+    is_last = ((code & 63) == 63) & (code > 63)
+    assert np.array_equal(again[~is_last], code[~is_last]) and (again[is_last] == code[is_last] - 63).all()
+
+
+def test_hue_and_saturation_are_colorsyss():
+    """In float64: what has less than 1/4 of saturation is white, and of others hue and saturation are the nearest."""
+    light = np.random.default_rng(0).uniform(0, 16, (2048, 4)).astype(np.float32)
+    exact = np.array([colorsys.rgb_to_hsv(*map(float, row[:3])) for row in light])
+    got = rows(stored_texels("hue_saturation", light))[:, :3]
+    white = exact[:, 1] < 0.25
+    assert white.any() and (got[white, :2] == [1, 0]).all()
+    turned = (got[~white, 0] - exact[~white, 0] + 0.5) % 1 - 0.5
+    assert abs(turned).max() < 0.5001 / 63
+    assert abs((3 * got[~white, 1] + 1) / 4 - exact[~white, 1]).max() < 0.5001 / 4
+    assert abs(got[:, 2] - np.sqrt(exact[:, 2] / 16)).max() < 0.5001 / 255
+
+
+def test_a_half_and_three_roots_are_remixs():
+    """Against its arithmetic in NumPy: the half of the largest, and roots of shares of it in eight bits."""
+    rng = np.random.default_rng(0)
+    light = np.exp2(rng.uniform(-14, 17, (4096, 1)) + rng.uniform(-9, 0, (4096, 4))).astype(np.float32)
+    clamped = np.minimum(light[:, :3], 65504).astype(np.float32)
+    half = clamped.max(axis=1).astype(np.float16)
+    shares = np.minimum(clamped / half.astype(np.float64)[:, None], 1)
+    got = rows(stored_texels("chroma_half", light))
+    assert np.array_equal(np.rint(got[:, 3] * 65535).astype(np.uint16), half.view(np.uint16))
+    assert abs(got[:, :3] - np.sqrt(shares)).max() < 0.5001 / 255
+    endless = planes(np.float32([[1, 1, 1, bits / 65535] for bits in (0x7C00, 0x7E00, 0xFFFF)]))
+    assert (rows(LIGHT_BUFFERS["chroma_half"].decode(endless))[:, :3] == 65504).all()
+
+
+def test_light_lies_in_any_bits_that_fit():
+    """Its name, and how it is added: what lies across channels is read."""
+    said = "ufloat:6:9,plain/float:8:7,linear/unorm:10:10:10,linear:4/unorm:10:10:10:2,linear/rgba16,plain/rgba16f"
+    made = light_buffers_named(said)
+    assert [(codec.name, codec.blend, codec.bits, codec.bytes_per_pixel) for codec in made] == [
+        ("ufloat_6_9", "read", 60, 16),
+        ("float_8_7", "read", 64, 16),
+        ("linear/rgba8_10_10_10", "read", 30, 8),
+        ("linear:4/rgb10a2", "add", 32, 4),
+        ("linear/rgba16", "add", 64, 8),
+        ("rgba16f", "add", 64, 8),
+    ]
+    assert [codec.limit for codec in made[2:5]] == [2, 4, 2] and not made[2].has_alpha
+    assert light_buffers_named("plain/rgba16f") == [LIGHT_BUFFERS["rgba16f"]]
+
+
+@pytest.mark.parametrize(
+    "name, said",
+    [
+        ("rgbm/unorm:9:9:9:5", "rgbm is made for rgba8"),
+        ("unorm:8:8:8", "plain is made for rgba32f, rgba16f, r11g11b10f, and float of any bits"),
+        ("linear/unorm:9:9", "light has 3 numbers or four"),
+        ("linear/ufloat:5:6", "linear is made for rgba8, srgb8_a8, and unorm of any bits"),
+        ("linear/unorm:33:1:1", "of 1 to 20 bits each"),
+        ("cubic/unorm:8:8:8", "a code is one of plain, linear"),
+    ],
+)
+def test_light_that_does_not_fit_is_a_line(name, said):
+    with pytest.raises(UsageError) as error:
+        light_buffers_named(name)
+    assert said in str(error.value) and "\n" not in str(error.value)
 
 
 def stored_texels(name: str, light: np.ndarray) -> Vec4:

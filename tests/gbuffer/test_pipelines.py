@@ -10,6 +10,8 @@ import pytest
 from drawing import BLINN_PHONG, EXACT, FP32, SIZE, apart, covered_by_glass, draw, drawn, scene_of
 from slowly import all_but
 
+from normalbench.bench.ground.options.effect_names import effects_named, pipeline_with
+from normalbench.bench.ground.options.light_names import light_buffers_named
 from normalbench.encodings.catalogue import LIGHT_BUFFERS
 from normalbench.gbuffer.frame.plan import Plan
 from normalbench.gbuffer.pipelines import PIPELINES
@@ -91,6 +93,20 @@ def test_inferred_lighting_leaves_no_surface_dark(gl):
 
 
 # Triangles
+
+
+@pytest.mark.parametrize("pipeline, effects", [("deferred", ""), ("hybrid", "lpv"), ("inferred", "")])
+def test_light_across_channels_is_drawn_as_it_is(gl, pipeline, effects):
+    """Floats of 20 bits, which are read, added to and written, show what floats of 32 bits show."""
+    chosen = pipeline_with(PIPELINES[pipeline], effects_named(effects) if effects else [], [])
+    shown = []
+    for light in light_buffers_named("rgba32f,ufloat:6:14"):
+        plan = Plan(SIZE, 1, FP32, light, min(2, max(chosen.light_targets)), True, 1.0)
+        with rendering(gl, chosen, scene_of("room"), plan) as made:
+            made.draw()
+            shown.append(made.image())
+    exact, found = shown
+    assert exact.max() > 0.5 and abs(found - exact).max() < 2.0**-12 * exact.max()
 
 
 def triangles_of(scene: Scene, wanted) -> int:

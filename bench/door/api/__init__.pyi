@@ -259,7 +259,7 @@ def render(
         encoding: Encodings or files to put into each layout, comma-separated, or all.
         storage: Storages of the codes, or all. Default: rgba8.
         rounding: Roundings, or all. Default: nearest.
-        light_buffer: Light buffers or files of yours, comma-separated, or all; `normalbench list` shows them.
+        light_buffer: Light buffers or files of yours, comma-separated, or all; `normalbench list` shows them. Any bits are one too: ufloat:6:9, linear/unorm:10:10:10.
         light_targets: 1, 2; comma-separated, or all.
         scene: Scenes or mesh files, comma-separated, or all; `normalbench list` shows them.
         power: Specular powers of all materials, comma-separated. Default: each material's own.
@@ -670,7 +670,7 @@ def lights(
 
     Args:
         experiment: equal, random, banding, chromaticity, resolve, image; or all.
-        light_buffer: Light buffers or files of yours, comma-separated, or all; `normalbench list` shows them.
+        light_buffer: Light buffers or files of yours, comma-separated, or all; `normalbench list` shows them. Any bits are one too: ufloat:6:9, linear/unorm:10:10:10.
         light_targets: 1, 2; comma-separated, or all.
         sums: equal: what the lights sum to; random: the least.
         counts: equal, random: numbers of lights.
@@ -885,7 +885,7 @@ def sweep(
         objects: Numbers of objects, comma-separated.
         shadow: on, off; comma-separated, or all.
         layout: Layouts: names or TOML files.
-        light_buffer: Light buffers or files of yours, comma-separated, or all; `normalbench list` shows them.
+        light_buffer: Light buffers or files of yours, comma-separated, or all; `normalbench list` shows them. Any bits are one too: ufloat:6:9, linear/unorm:10:10:10.
         light_targets: 1, 2; comma-separated, or all.
         size: WIDTHxHEIGHT of the image; auto: 640x480, or 320x240 on a software rasteriser.
         samples: Samples per pixel; the device may give more.

@@ -1,28 +1,54 @@
-"""Light buffers by name, over the range that a name may give."""
+"""Light buffers by name, over the range that a name may give, and in the storage that it may give."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
 
-from ....encodings.catalogue import LIGHT_BUFFERS
+from ....encodings.catalogue import LIGHT_BUFFERS, LIGHT_ENCODINGS
 from ....encodings.codecs.light_codec import LightCodec
+from ....encodings.storages.storage import FORMATS
 from ..choose import choose
 from ..output.errors import UsageError
+from .storage_names import RULE, storages_named
 
 LEAST_RANGE, MOST_LIGHT = 1e-3, 1e4
+PLAIN = "plain"
 
 
 def light_buffers_named(names: str) -> list[LightCodec]:
-    """The light codecs that comma-separated names stand for; `linear:1` and `linear:range=1` are over the range [0, 1].
+    """The light codecs that comma-separated names stand for; `linear:1` and `linear:range=1` are over [0, 1], and
+    `linear/unorm:10:10:10` is in other bits. Bits alone, as in `ufloat:6:9`, are those of light as it is.
 
     Raises:
-        UsageError: an unknown name, or a range that is none or that the encoding does not have.
+        UsageError: an unknown name, a range that is none or that the encoding does not have, or a storage that does not
+            hold the code.
     """
     words = dict.fromkeys(name.strip() for name in names.split(","))
-    ranged = {word: ranged_light_buffer(word) for word in words if ":" in word}
-    chosen = choose("light buffer", names, {**LIGHT_BUFFERS, **ranged})
+    said = {word: _said_codec(word) for word in words if ":" in word or "/" in word}
+    chosen = choose("light buffer", names, {**LIGHT_BUFFERS, **said})
     return list({codec.name: codec for codec in chosen}.values())
+
+
+def _said_codec(word: str) -> LightCodec:
+    """A code with its range or its storage, or both: `linear:1/unorm:10:10:10`."""
+    name, is_in, storage = (PLAIN, "/", word) if RULE.match(word) else word.partition("/")
+    codec = ranged_light_buffer(name) if ":" in name else LIGHT_BUFFERS.get(name) or _plain_codec(name, word)
+    if not is_in:
+        return codec
+    (chosen,) = storages_named(storage, FORMATS, "light storage")
+    made = replace(codec, storage=chosen)
+    if made.misfit:
+        raise UsageError(f"light buffer {word}: {made.misfit}")
+    return made
+
+
+def _plain_codec(name: str, word: str) -> LightCodec:
+    """Light as it is, which goes by its formats' names."""
+    if name != PLAIN:
+        known = [*LIGHT_ENCODINGS]
+        raise UsageError(f"light buffer {word}: a code is one of {', '.join(known)}, as in linear/unorm:10:10:10")
+    return next(codec for codec in LIGHT_BUFFERS.values() if codec.encoding.is_plain)
 
 
 def ranged_light_buffer(word: str) -> LightCodec:

@@ -69,7 +69,13 @@ Powers = Annotated[
     Option("--power", "Specular powers of all materials, comma-separated. Default: each material's own.", in_run=True),
 ]
 LightBuffers = Annotated[
-    str, Option("--light-buffer", f"Light buffers or files of yours, {Names}.", files=True, in_run=True)
+    str,
+    Option(
+        "--light-buffer",
+        f"Light buffers or files of yours, {Names}. Any bits are one too: ufloat:6:9, linear/unorm:10:10:10.",
+        files=True,
+        in_run=True,
+    ),
 ]
 Effects = Annotated[
     str | None, Option("--effects", "Effects in the image, all at once, with settings: gtao:size=half,lpv.")

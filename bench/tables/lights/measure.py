@@ -130,7 +130,8 @@ def resolve_rows(
                 yield _filled_row("resolve", encoding, device, **described, skipped=made.failed[encoding])
                 continue
             images: dict[str, tuple[Resolved, Resolved]] = {}
-            if has_light_twin(encoding):
+            # The hardware averages a target's channels, and not the numbers that lie across them.
+            if has_light_twin(encoding) and not encoding.storage.is_packed:
                 images["model"] = (made.model(encoding), single.model(encoding))
             images["gl"] = (made.device(encoding), single.device(encoding))
             for backend, (found, aliased) in images.items():

@@ -148,10 +148,11 @@ def steps_apart(storage: Storage, one: np.ndarray, other: np.ndarray) -> np.ndar
     if storage.kind == "unorm":
         return np.abs(steps_of(storage, one) - steps_of(storage, other))
     apart = []
-    for i, bits in enumerate(storage.bits):
+    for i in range(storage.channels):
         a, b = one[..., i].astype(np.float64), other[..., i].astype(np.float64)
-        exponent = np.floor(np.log2(np.maximum(np.abs(a), 2.0**-14)))
-        apart.append(np.abs(a - b) / np.exp2(exponent - {32: 23, 16: 10, 11: 6, 10: 5}[bits]))
+        form = storage.float_form(i)
+        exponent = np.floor(np.log2(np.maximum(np.abs(a), 2.0 ** (1 - form.one))))
+        apart.append(np.abs(a - b) / np.exp2(exponent - form.mantissa))
     return np.stack(apart, axis=-1)
 
 
@@ -159,7 +160,8 @@ def steps_of(storage: Storage, texels: np.ndarray) -> np.ndarray:
     """Texels of fixed point as the codes that they stand for, whole or not, of shape (..., channels)."""
     curved = [np.asarray(to_srgb(jnp.asarray(texels[..., i], jnp.float32))) for i in range(storage.curved)]
     straight = [texels[..., i] for i in range(storage.curved, storage.channels)]
-    return np.stack([*curved, *straight], axis=-1).astype(np.float64) * storage.scale(0)
+    scales = [storage.scale(channel) for channel in range(storage.channels)]
+    return np.stack([*curved, *straight], axis=-1).astype(np.float64) * scales
 
 
 def has_light_twin(codec: LightCodec) -> bool:

@@ -13,6 +13,7 @@ from ....encodings.shared import chromaticity
 from ....encodings.storages.storage import STORAGES, Storage
 from ...gl.device import ADD, MULTIPLY, Device, bind, read_pixels
 from ...gl.handles import Texture, VertexArray
+from ..codec_passes import storage_defines
 from ..harness import Passes, Textures, check_functions, exact
 
 # How the light buffer's code blends; one that is read is overwritten.
@@ -30,7 +31,8 @@ def light_defines(codec: LightCodec) -> dict[str, object]:
     return {
         "LIGHT_ENCODE": f"{encoding.prefix}_encode",
         "LIGHT_DECODE": f"{encoding.prefix}_decode",
-        "LIGHT_READS": int(encoding.blend == "read"),
+        "LIGHT_READS": int(codec.blend == "read"),
+        **_packing_defines(codec.storage),
         "LIGHT_CHANNELS": codec.storage.channels,
         **vec.CONSTANTS,
         **chromaticity.CONSTANTS,
@@ -38,9 +40,18 @@ def light_defines(codec: LightCodec) -> dict[str, object]:
     }
 
 
+def _packing_defines(storage: Storage) -> dict[str, object]:
+    """How numbers lie across channels, where they do: from 0 on, as the encoding made them."""
+    if not storage.is_packed:
+        return {"LIGHT_PACKED": 0}
+    laid = storage_defines(storage, ["nearest"] * storage.channels, True)
+    return {**laid, "STORAGE_BIASED": 0, "LIGHT_PACKED": 1}
+
+
 @dataclass(frozen=True)
 class Sum:
-    """What a light buffer holds: `light`, and the `texels` it is the code of; float32 arrays of shape (width, 4)."""
+    """What a light buffer holds: `light`, and the `texels` it is the code of, as the encoding made them; float32 arrays
+    of shape (width, 4)."""
 
     light: np.ndarray
     texels: np.ndarray
@@ -56,7 +67,7 @@ class LightPasses(Passes):
     def __init__(self, device: Device, codec: LightCodec):
         self._codec = codec
         shaders, names = ("add_light.frag", "decode_light.frag"), {"LIGHT_ENCODING": codec.glsl}
-        super().__init__(device, shaders, light_defines(codec), names, {"texels": codec.storage})
+        super().__init__(device, shaders, light_defines(codec), names, {"texels": codec.storage.target})
 
     def accumulate(self, lights: np.ndarray) -> Sum:
         """Lights, float32 of shape (count, width, 4), added one by one in their order; each column is a pixel.
@@ -71,7 +82,7 @@ class LightPasses(Passes):
         width, count = sources["lights"].size
         device, none = self._device, self._codec.no_light
         copies = 2 if self._codec.blend == "read" else 1
-        textures = [device.owned(stack, device.target((width, 1), self._codec.storage)) for _ in range(copies)]
+        textures = [device.owned(stack, device.target((width, 1), self._codec.storage.target)) for _ in range(copies)]
         targets = [device.owned(stack, device.framebuffer([texture])) for texture in textures]
         for target in targets:
             target.clear(none, none, none, none)
@@ -113,7 +124,7 @@ def resolved(device: Device, codec: LightCodec, colours: Texture, samples: int) 
         def passed(shader: str) -> VertexArray:
             return device.owned(stack, device.fragment_pass(shader, defines, names))
 
-        kept, texels = target(codec.storage, samples), target(codec.storage)
+        kept, texels = target(codec.storage.target, samples), target(codec.storage.target)
         device.render(passed("encode_samples.frag"), [kept], colours=colours)
         device.resolve(kept, texels)
         results = [target(STORAGES["rgba32f"]) for _ in range(3)]
@@ -145,6 +156,6 @@ def exact_light(device: Device, codec: LightCodec, lights, given) -> tuple[np.nd
     Returns:
         texels and decoded light, float32 arrays of shape (count, 4).
     """
-    defines, names = light_defines(codec), {"LIGHT_ENCODING": codec.glsl}
+    defines, names = light_defines(codec) | {"LIGHT_PACKED": 0}, {"LIGHT_ENCODING": codec.glsl}
     texels, decoded = exact(device, "light_parity.comp", defines, names, [lights, given], 2)
     return texels, decoded

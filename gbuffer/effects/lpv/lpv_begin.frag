@@ -9,7 +9,7 @@ layout(location = 3) out vec4 light[3];
 
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy) + CELLS * ivec2(slice % CELLS, slice / CELLS);
-    wave[0] = light[0] = to_texel(texelFetch(lpv_injected_red, at, 0));
-    wave[1] = light[1] = to_texel(texelFetch(lpv_injected_green, at, 0));
-    wave[2] = light[2] = to_texel(texelFetch(lpv_injected_blue, at, 0));
+    wave[0] = light[0] = packed_wave(texelFetch(lpv_injected_red, at, 0));
+    wave[1] = light[1] = packed_wave(texelFetch(lpv_injected_green, at, 0));
+    wave[2] = light[2] = packed_wave(texelFetch(lpv_injected_blue, at, 0));
 }

@@ -16,8 +16,8 @@ vec3 intensity(vec3 place, vec4 basis, int cascade) {
         ivec3 right = ivec3(i & 1, i >> 1 & 1, i >> 2);
         ivec3 at = clamp(ivec3(corner) + right, ivec3(0), ivec3(CELLS - 1)) + ivec3(0, 0, CELLS * cascade);
         vec3 part = mix(1.0 - share, share, vec3(right));
-        mat3x4 there = mat3x4(from_texel(texelFetch(lpv_light_red, at, 0)), from_texel(texelFetch(lpv_light_green, at, 0)),
-                              from_texel(texelFetch(lpv_light_blue, at, 0)));
+        mat3x4 there = mat3x4(wave_of(texelFetch(lpv_light_red, at, 0)), wave_of(texelFetch(lpv_light_green, at, 0)),
+                              wave_of(texelFetch(lpv_light_blue, at, 0)));
         sum += part.x * part.y * part.z * (basis * there);
     }
     return sum;

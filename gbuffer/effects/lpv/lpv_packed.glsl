@@ -2,7 +2,7 @@
 #include "vec.glsl"
 
 #if PACKS
-vec4 to_texel(vec4 c) {
+vec4 packed_wave(vec4 c) {
     const float half_levels = float(PACKED_LEVELS / 2);
     float largest = max(max(abs(c.x), abs(c.y)), max(abs(c.z), abs(c.w)));
     // x = clamp(floor(log2(max |c|)) + 1 + B, 0, E - 1)
@@ -14,7 +14,7 @@ vec4 to_texel(vec4 c) {
     return unpackUnorm4x8(u.x + n * (u.y + n * (u.z + n * (u.w + n * uint(x)))));
 }
 
-vec4 from_texel(vec4 texel) {
+vec4 wave_of(vec4 texel) {
     uint word = packUnorm4x8(texel), n = uint(PACKED_LEVELS);
     uvec4 u = uvec4(word, word / n, word / (n * n), word / (n * n * n)) % n;
     // c = (m - M) 2^(x - B) / M
@@ -22,6 +22,6 @@ vec4 from_texel(vec4 texel) {
     return (vec4(u) - half_levels) * (power_of_two(x - float(PACKED_BIAS)) / half_levels);
 }
 #else
-vec4 to_texel(vec4 c) { return c; }
-vec4 from_texel(vec4 texel) { return texel; }
+vec4 packed_wave(vec4 c) { return c; }
+vec4 wave_of(vec4 texel) { return texel; }
 #endif

@@ -52,9 +52,9 @@ void main() {
         ivec3 from = cell - axes[i];
         if (any(lessThan(from, ivec3(0))) || any(greaterThanEqual(from, ivec3(CELLS)))) continue;
         vec3 main_way = vec3(axes[i]);
-        mat3x4 there = mat3x4(from_texel(texelFetch(lpv_wave_red_before, from + down, 0)),
-                              from_texel(texelFetch(lpv_wave_green_before, from + down, 0)),
-                              from_texel(texelFetch(lpv_wave_blue_before, from + down, 0)));
+        mat3x4 there = mat3x4(wave_of(texelFetch(lpv_wave_red_before, from + down, 0)),
+                              wave_of(texelFetch(lpv_wave_green_before, from + down, 0)),
+                              wave_of(texelFetch(lpv_wave_blue_before, from + down, 0)));
 #if BLOCKS
         vec4 blockers = at_face(-axes[i]);
 #endif
@@ -69,9 +69,9 @@ void main() {
             sum += outerProduct(cosine_lobe(n), PER_FLUX * flux);
         }
     }
-    wave = vec4[3](to_texel(sum[0]), to_texel(sum[1]), to_texel(sum[2]));
+    wave = vec4[3](packed_wave(sum[0]), packed_wave(sum[1]), packed_wave(sum[2]));
     ivec3 own = cell + down;
-    light[0] = to_texel(from_texel(texelFetch(lpv_light_red_before, own, 0)) + sum[0]);
-    light[1] = to_texel(from_texel(texelFetch(lpv_light_green_before, own, 0)) + sum[1]);
-    light[2] = to_texel(from_texel(texelFetch(lpv_light_blue_before, own, 0)) + sum[2]);
+    light[0] = packed_wave(wave_of(texelFetch(lpv_light_red_before, own, 0)) + sum[0]);
+    light[1] = packed_wave(wave_of(texelFetch(lpv_light_green_before, own, 0)) + sum[1]);
+    light[2] = packed_wave(wave_of(texelFetch(lpv_light_blue_before, own, 0)) + sum[2]);
 }

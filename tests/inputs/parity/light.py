@@ -6,6 +6,7 @@ from functools import cache
 import jax
 import numpy as np
 
+from normalbench.bench.ground.options.light_names import light_buffers_named
 from normalbench.bench.tables.lights.sums import steps_apart
 from normalbench.encodings.catalogue import LIGHT_BUFFERS
 from normalbench.encodings.codecs.light_buffer import Blending, accumulate
@@ -42,10 +43,12 @@ def given_texels(encoding, texels: np.ndarray) -> np.ndarray:
     """Texels to decode, as the format gives them back: any bytes, or floats that were stored."""
     if encoding.storage.kind == "float":
         return texels
-    codes = np.random.default_rng(1).integers(0, 256, texels.shape)
-    corners = np.array(list(itertools.product((0, 1, 128, 255), repeat=4)))
+    channels = range(encoding.storage.channels)
+    scales = np.array([encoding.storage.scale(channel) for channel in channels] + [1] * (4 - len(channels)))
+    codes = np.random.default_rng(1).integers(0, scales + 1, texels.shape)
+    corners = np.array(list(itertools.product(*((0, 1, scale // 2 + 1, scale) for scale in scales))))
     codes[: len(corners)] = corners
-    return codes.astype(np.float32) * np.float32(1 / 255)
+    return codes.astype(np.float32) * (1 / scales).astype(np.float32)
 
 
 @cache
@@ -105,7 +108,8 @@ def stored(gl, codec: LightCodec, _: bool) -> list[Comparison]:
     rng, count = np.random.default_rng(0), 2**14
     light = rng.uniform(0, 1, (count, 1)) * rng.uniform(0, 1, (count, 4)) * min(codec.limit, 64)
     light = light.astype(np.float32)
-    rounding = gl.native_rounding(codec.storage)
+    # What lies across channels is rounded by the shader.
+    rounding = "nearest" if codec.storage.is_packed else gl.native_rounding(codec.storage)
     blending = Blending(rounding if rounding == "truncate" else "nearest")
     alone = Vec4(*(c[None] for c in planes(light)))
     by_jax = rows(jax.jit(lambda lights: accumulate(codec, lights, 1, blending))(alone))
@@ -120,6 +124,6 @@ PARITY = Parity(
     compared,
     cases=lambda encoding: [codec for codec in LIGHT_BUFFERS.values() if codec.encoding is encoding],
     guarded=guarded,
-    codecs=list(LIGHT_BUFFERS.values()),
+    codecs=[*LIGHT_BUFFERS.values(), *light_buffers_named("ufloat:6:9,linear/unorm:10:10:10,linear:3/unorm:9:9:9:5")],
     stored=stored,
 )
