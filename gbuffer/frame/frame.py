@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ...encodings.storages.storage import ROUNDINGS, Storage
+from ...encodings.storages.storage import ROUNDINGS, Storage, rounds_to
 from ..codecs.codec_passes import encoding_defines
 from ..codecs.depth.depth_passes import depth_defines
 from ..codecs.light.light_passes import light_defines
@@ -151,7 +151,7 @@ class Frame:
             "LIGHT_TARGETS": plan.light_targets,
             **self._light_defines(),
             "SHADOWS": int(plan.shadows),
-            "DITHERED": int(plan.dither is not None),
+            "DITHERED": int(plan.noise is not None),
         }
 
     def _light_defines(self) -> dict[str, object]:
@@ -186,7 +186,7 @@ class Frame:
         return {"dfg": sums, "environment_fine": fine, "environment_coarse": coarse}
 
     def _dither_tables(self) -> dict[str, Any]:
-        noise = self.plan.dither
+        noise = self.plan.noise
         return {"dither": self.device.owned(self.stack, self.device.upload(noise.added))} if noise else {}
 
     def program(self, vertex: str | Path, fragment: str | Path, **defines: object) -> Program:
@@ -250,7 +250,7 @@ def shader_roundings(device: Device, layout: Layout) -> tuple[int, ...]:
     """For each target 0 where the device rounds as asked, else one more than how `storage.glsl` counts the way."""
     homes = {word.target for word in layout.words if word.component.startswith("normal.")}
     return tuple(
-        _shader_rounding(device, target.storage, layout.rounding if at in homes else "nearest")
+        _shader_rounding(device, target.storage, rounds_to(layout.rounding) if at in homes else "nearest")
         for at, target in enumerate(layout.targets)
     )
 

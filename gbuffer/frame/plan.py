@@ -26,6 +26,7 @@ class Plan:
         least_roughness: that lights see; what lies around is mirrored down to 0.
         scale: of the G-buffer's and light buffer's size to the image's, for pipelines that have the choice.
         apart: whether G-buffer and light buffer have that scale, and one sample a pixel; the pipeline says so.
+        dither: the noise that is added to the normal's code; None for what its layout says.
     """
 
     size: tuple[int, int]
@@ -39,6 +40,12 @@ class Plan:
     antialiased: bool = True
     least_roughness: float = LEAST_ROUGHNESS
     dither: Dither | None = None
+
+    @property
+    def noise(self) -> Dither | None:
+        """What is added to the numbers of the normal's code before they are rounded; None for nothing."""
+        codec = self.layout.codec
+        return codec.dither(0) if self.dither is None and codec.is_dithered else self.dither
 
     @property
     def surface_scale(self) -> float:

@@ -18,7 +18,7 @@ from ...encodings.codecs.depth_codec import DepthCodec, DepthEncoding
 from ...encodings.codecs.encoding import Encoding
 from ...encodings.codecs.files import called, file_toml
 from ...encodings.codecs.variants import MARK, settings_in, variant
-from ...encodings.storages.storage import BITS_32, ROUNDINGS, TARGET_FORMATS, Storage
+from ...encodings.storages.storage import BITS_32, DITHERED, ROUNDINGS_AND_DITHERED, TARGET_FORMATS, Storage
 from .kept import COLOURS, LIGHT, MOTION, Kept
 from .words import (
     FREE,
@@ -55,7 +55,8 @@ class Layout:
         targets: in the order of their attachment.
         encoding: of the normal. In the world's axes a code for a half keeps its own: its y is the world's.
         space: "view" or "world", what the normal's axes are.
-        rounding: "nearest" or "truncate", how the normal's own format rounds.
+        rounding: how the normal's own format rounds, one of ROUNDINGS; or DITHERED, where noise of a step that stands
+            still is added to the numbers of its code before.
         packing: how words with bits round, a key of PACKINGS.
         depth: the encoding of the depth; None for the first of the catalogue that suits the normal.
         engine, year: which engine or SDK it is of, and when its source was written or read; empty and 0 where it is
@@ -93,11 +94,20 @@ class Layout:
             if found.count(component) > 1:
                 raise LayoutError(f"layout {self.name}: {component} lies in two places")
         self._check_normal_words(found)
+        if self.rounding == DITHERED and (why := self._undithered):
+            raise LayoutError(f"layout {self.name}: its normal is not dithered: {why}")
         self._check_colours()
         if self.depth_encoding.signed != self.has_signed_depth:
             known = ", ".join(depth.name for depth in self._suitable_depths)
             said = f"{self.depth_encoding.name} does not suit {self.encoding.name}, whose depth is {known}"
             raise LayoutError(f"layout {self.name}: {said}")
+
+    @property
+    def _undithered(self) -> str | None:
+        """Why no noise is added to the normal's code; None where it can be."""
+        if any(word.bits for word in self.words if word.component.startswith("normal.")):
+            return "noise is for numbers that have a channel each"
+        return self.codec.undithered
 
     def _check_normal_words(self, found: Collection[str]) -> None:
         """Raises LayoutError where the words of the normal are not those that its encoding needs."""
@@ -156,7 +166,7 @@ class Layout:
         return self.depth or self._suitable_depths[0]
 
     def _check_names(self) -> None:
-        for field, names in (("space", SPACES), ("rounding", ROUNDINGS), ("packing", PACKINGS)):
+        for field, names in (("space", SPACES), ("rounding", ROUNDINGS_AND_DITHERED), ("packing", PACKINGS)):
             _check_known(self.name, field, getattr(self, field), names)
         if self.light:
             _check_known(self.name, "light", self.light, LIGHT_BUFFERS)
@@ -276,6 +286,8 @@ class Layout:
         storage, components = codec.storage, "xyz"[: codec.encoding.components]
         if storage.only_measured:
             raise LayoutError(f"layout {self.name}: {storage.title}: a layout does not keep {storage.only_measured}")
+        if storage.is_packed and codec.is_dithered:
+            raise LayoutError(f"layout {self.name}: {storage.title}: words across channels are drawn without noise")
         is_signed = storage.is_packed and storage.kind == "snorm"
         if is_signed and codec.rounding != "nearest":
             raise LayoutError(f"layout {self.name}: {storage.title}: signed words of a layout are rounded to nearest")

@@ -108,6 +108,8 @@ def test_a_sign_in_the_depth_is_a_bit_of_the_normal():
         ([("rg16f", "normal.x normal.y")], {"space": "tangent"}, "unknown space 'tangent'; known: view, world"),
         ([("rg16f", "normal.x normal.y")], {"rounding": "up"}, "unknown rounding 'up'"),
         ([("rg16f", "normal.x normal.y")], {"packing": "up"}, "unknown packing 'up'"),
+        ([("rg16f", "normal.x normal.y")], {"rounding": "dithered"}, "the steps of floats are not even"),
+        ([("rgba8", "normal.x:12 normal.y:12 -")], {"rounding": "dithered"}, "numbers that have a channel each"),
         (
             [("rg16f", "normal.x normal.y"), ("r32f", "depth")],
             {"depth": DEPTH_ENCODINGS["linear_sign"]},
@@ -124,6 +126,23 @@ def test_a_layout_that_clashes_is_one_line(targets, more, said):
     with pytest.raises(LayoutError) as caught:
         layout(*(Target(*target) for target in targets), **more)
     assert said in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_noise_that_a_layout_asks_for_is_its_codes(gl):
+    """What is kept is what a plan with that noise keeps, and the same codes nearby: none is off by more than a step."""
+    codec = Codec(ENCODINGS["xyz"], STORAGES["rgb10a2"], "dithered")
+    noisy, plain = (LAYOUTS["fp32"].with_codec(replace(codec, rounding=way)) for way in ("dithered", "nearest"))
+    found = []
+    for asked in (plan(noisy), plan(plain, dither=codec.dither(0)), plan(plain)):
+        with rendering(gl, PIPELINES["prepass"], ROOM, asked) as made:
+            made.draw()
+            found.append(made.gbuffer()[1][..., :3])
+    by_layout, by_plan, without = found
+    assert noisy.rounding == "dithered" and np.array_equal(by_layout, by_plan)
+    moved = abs(by_layout - without).max(axis=-1)
+    assert (moved > 0).mean() > 0.3 and moved.max() < 1.01 * codec.storage.step(0)
+    with pytest.raises(LayoutError, match="words across channels are drawn without noise"):
+        LAYOUTS["fp32"].with_codec(replace(codec, storage=STORAGES["rgba8_11_11_10"]))
 
 
 @pytest.mark.parametrize(

@@ -258,7 +258,7 @@ def render(
         layout: Layouts: names or TOML files.
         encoding: Encodings or files to put into each layout, comma-separated, or all.
         storage: Storages of the codes, or all. Default: rgba8.
-        rounding: Roundings, or all. Default: nearest.
+        rounding: nearest, truncate, truncate_half, dithered; or all. Default: nearest.
         light_buffer: Light buffers or files of yours, comma-separated, or all; `normalbench list` shows them. Any bits are one too: ufloat:6:9, linear/unorm:10:10:10.
         light_targets: 1, 2; comma-separated, or all.
         scene: Scenes or mesh files, comma-separated, or all; `normalbench list` shows them.
@@ -534,7 +534,7 @@ def effects(
         pipeline: Pipelines, comma-separated, or all; `normalbench list` shows them.
         encoding: Encodings or files, each in an exact layout; comma-separated, or all.
         storage: Storages of the codes, comma-separated, or all; `normalbench list` shows them.
-        rounding: Roundings: nearest, truncate, truncate_half; or all.
+        rounding: nearest, truncate, truncate_half, dithered; comma-separated, or all.
         depth: Depth codes as CODE/STORAGE, each in an exact layout, or none. Default: linear/packed16,window/depth24,window/depth32f.
         layout: Layouts: names or TOML files.
         scene: Scenes or mesh files. Default: what shows the effect.

@@ -51,7 +51,7 @@ Roundings = Annotated[
     str, Option("--rounding", "nearest, truncate, truncate_half; comma-separated, or all.", in_run=True)
 ]
 # The tables that add noise, and their option.
-WITH_NOISE = ("quality", "frames", "vectors", "curves", "depth")
+WITH_NOISE = ("quality", "frames", "vectors", "curves", "depth", "render", "effects")
 RoundingsAndDithered = Annotated[
     str, Option("--rounding", "nearest, truncate, truncate_half, dithered; comma-separated, or all.", in_run=True)
 ]

@@ -45,7 +45,7 @@ def storages_named(names: str, known: Mapping[str, Storage] = STORAGES, what: st
 def roundings_named(names: str, known: Collection[str] = ROUNDINGS) -> list[str]:
     """Ways to round by their comma-separated names. Raises UsageError for one that is not among the known."""
     if DITHERED not in known and DITHERED in map(str.strip, names.split(",")):
-        raise UsageError(f"--rounding {DITHERED} is for {', '.join(WITH_NOISE)}; roughness adds noise by --dither")
+        raise UsageError(f"--rounding {DITHERED} is for {', '.join(WITH_NOISE)}; roughness has --dither")
     return choose("rounding", names, {name: name for name in known})
 
 

@@ -2,10 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
-from ...ground.options.option import Images, Layouts, Lights, Names, Objects, Option, Pipelines, Repeats, Seed, Size
+from ...ground.options.option import (
+    Images,
+    Layouts,
+    Lights,
+    Names,
+    Objects,
+    Option,
+    Pipelines,
+    Repeats,
+    RoundingsAndDithered,
+    Seed,
+    Size,
+)
 from ...shaders.languages.source_options import SourceOptions
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
@@ -34,10 +46,7 @@ class EffectsOptions(SourceOptions):
         Option("--encoding", "Encodings or files, each in an exact layout; comma-separated, or all.", True, True),
     ] = None
     storage: Annotated[str, Option("--storage", f"Storages of the codes, {Names}.", in_run=True)] = "rgba8"
-    rounding: Annotated[
-        str,
-        Option("--rounding", "Roundings: nearest, truncate, truncate_half; or all.", in_run=True),
-    ] = "nearest"
+    rounding: RoundingsAndDithered = "nearest"
     depth: Annotated[
         str | None,
         Option("--depth", f"Depth codes as CODE/STORAGE, each in an exact layout, or none. Default: {DEPTHS}."),
@@ -74,7 +83,7 @@ COLUMNS = (
     Column("layout", "Which bits of which targets hold what.", KEY, drops=11),
     shared.ENCODING,
     shared.STORAGE,
-    Column("rounding", "How the storage rounds.", KEY, drops=4),
+    replace(shared.ROUNDING_OR_DITHERED, drops=4),
     Column("depth", "The depth code in an exact layout; empty: 32-bit floats, or the layout's own.", KEY),
     Column("normal_bits", "Bits of the normal's code.", drops=9),
     Column(

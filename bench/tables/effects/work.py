@@ -8,6 +8,7 @@ from dataclasses import replace
 from ....encodings.catalogue import DEPTH_ENCODINGS, LIGHT_BUFFERS
 from ....encodings.codecs.depth_codec import DepthCodec
 from ....encodings.storages.depth_storage import DEPTH_STORAGES
+from ....encodings.storages.storage import ROUNDINGS_AND_DITHERED
 from ....gbuffer.effects.effect import ChosenEffect
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device
@@ -60,7 +61,9 @@ def contents(options: EffectsOptions) -> list[tuple[Layout, str | None]]:
 
 
 def _with_normals(options: EffectsOptions, complaints: list[str]) -> list[tuple[Layout, str | None]]:
-    codecs = codecs_named(options.encoding or "octahedral", options.storage, options.rounding)
+    codecs = codecs_named(
+        options.encoding or "octahedral", options.storage, options.rounding, known_roundings=ROUNDINGS_AND_DITHERED
+    )
     return [(layout, None) for layout in with_codecs([LAYOUTS["fp32"]], codecs, complaints)]
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 from ...ground.options.option import (
@@ -52,7 +52,7 @@ class RenderOptions(SourceOptions):
     ] = None
     rounding: Annotated[
         str | None,
-        Option("--rounding", "Roundings, or all. Default: nearest.", in_run=True),
+        Option("--rounding", "nearest, truncate, truncate_half, dithered; or all. Default: nearest.", in_run=True),
     ] = None
     light_buffer: LightBuffers = "rgba32f"
     light_targets: LightTargets = "2"
@@ -113,7 +113,7 @@ COLUMNS = (
     Column("layout", "Which bits of which targets hold what.", KEY),
     shared.ENCODING,
     shared.STORAGE,
-    Column("rounding", "How the storage rounds.", KEY, drops=4),
+    replace(shared.ROUNDING_OR_DITHERED, drops=4),
     Column("normal_bits", "Bits of the normal's code.", drops=9),
     Column("light_buffer", "The code that light is added up in.", KEY),
     shared.LIGHT_TARGETS,

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
+from ....encodings.storages.storage import ROUNDINGS_AND_DITHERED
 from ....gbuffer.display import MAX_EXPOSURE, TONE_MAPPINGS
 from ....gbuffer.environment.prefilter import key_of
 from ....gbuffer.frame.plan import Plan
@@ -56,6 +57,7 @@ def layouts(options: RenderOptions) -> list[Layout]:
         "all" if options.encoding is None else options.encoding,
         "rgba8" if options.storage is None else options.storage,
         "nearest" if options.rounding is None else options.rounding,
+        known_roundings=ROUNDINGS_AND_DITHERED,
     )
     complaints: list[str] = []
     return what_is_left(with_codecs(chosen, codecs, complaints), complaints)

@@ -134,5 +134,7 @@ def test_who_is_refused_noise_is_told_which_tables_add_it():
     assert sorted(WITH_NOISE) == sorted(name for name, one in rounding.items() if one and DITHERED in one.option.help)
     assert "dither" in fields_of(TABLES["roughness"].options)
     assert roundings_named("nearest,dithered", ROUNDINGS_AND_DITHERED) == ["nearest", DITHERED]
-    with pytest.raises(UsageError, match=f"^--rounding dithered is for {', '.join(WITH_NOISE)}; roughness adds noise"):
+    with pytest.raises(
+        UsageError, match=f"^--rounding dithered is for {', '.join(WITH_NOISE)}; roughness has --dither$"
+    ):
         roundings_named("nearest, dithered")
