@@ -40,6 +40,7 @@ class Column:
         option: the option without which it is not measured.
         shown: whether tables for people have it.
         is_histogram: whether its values are bins, `from:count` and spaces between; CSV leaves it out.
+        before: of a column that tells rows apart, what it was in all rows of versions that did not have it.
     """
 
     name: str
@@ -51,6 +52,7 @@ class Column:
     option: str = ""
     shown: bool = True
     is_histogram: bool = False
+    before: str | None = None
 
     @property
     def definition(self) -> str:

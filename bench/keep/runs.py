@@ -59,7 +59,7 @@ class Done:
             if not table:
                 continue
             found.setdefault(table.name, [])
-            for row in step["rows"]:
+            for row in map(table.as_now, step["rows"]):
                 identity = _identity(table, row)
                 last[table.name, identity] = at
                 made.append((at, table.name, identity, row))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from .table import Column, Role
 
 ENCODING = Column("encoding", "How a normal becomes a few numbers.", Role.KEY)
@@ -10,6 +12,8 @@ ROUNDING = Column("rounding", "How the storage rounds.", Role.KEY)
 ROUNDING_OR_DITHERED = Column(
     "rounding", "How the numbers are rounded; dithered adds blue noise of a step before the nearest.", Role.KEY
 )
+# Of tables that rounded to the nearest alone before they had the column.
+ROUNDING_NOW_SAID = replace(ROUNDING_OR_DITHERED, before="nearest")
 BACKEND = Column(
     "backend", "jax emulates the storage; glsl encodes in a shader into the real target and decodes from it.", Role.KEY
 )

@@ -75,7 +75,7 @@ class DepthOutputs:
 COLUMNS = (
     Column("depth", "How a distance becomes a number.", KEY),
     Column("storage", "The format that the number is stored in.", KEY),
-    shared.ROUNDING_OR_DITHERED,
+    shared.ROUNDING_NOW_SAID,
     Column("bits", "Bits of the stored depth.", drops=4),
     Column(
         "rebuilt",

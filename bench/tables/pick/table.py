@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 from ...ground.options.option import (
@@ -115,7 +115,9 @@ class PickOutputs:
 COLUMNS = (
     Column("asked", "The storage that was asked for, or the number of bytes.", KEY, shown=False),
     shared.STORAGE,
-    Column("rounding", "How the storage rounds; an integer of a user's is as its encoder makes it.", KEY),
+    replace(
+        shared.ROUNDING_NOW_SAID, says="How the storage rounds; an integer of a user's is as its encoder makes it."
+    ),
     shared.ENCODING,
     Column("normals", "The set of normals that was measured on.", KEY),
     Column("scene", "The scenes that were rendered.", KEY),

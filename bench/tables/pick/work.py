@@ -231,7 +231,9 @@ def _key(chosen: Sequence[measure.Case]) -> Row:
     key: Row = {"codecs": [case.codec.name for case in chosen], "powers": list(one.powers)}
     key |= {"count": one.normal_set.count, "seed": one.normal_set.seed}
     against = [case.codec.name for case in chosen if case.said["against"]]
-    return key | dict(one.said) | {"against": against}
+    # Runs that knew no other rounding have said nothing of it.
+    said = {name: value for name, value in one.said.items() if (name, value) != ("rounding", "nearest")}
+    return key | said | {"against": against}
 
 
 def _measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:

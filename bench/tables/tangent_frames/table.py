@@ -46,7 +46,7 @@ def _angle_columns(what: str, says: str, *drops: int) -> tuple[Column, ...]:
 COLUMNS = (
     Column("encoding", "How a tangent frame becomes a few numbers.", KEY),
     shared.STORAGE,
-    shared.ROUNDING_OR_DITHERED,
+    shared.ROUNDING_NOW_SAID,
     Column("frame_set", "The set of tangent frames that was measured on.", KEY),
     shared.BACKEND,
     shared.BITS,

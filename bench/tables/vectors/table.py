@@ -33,7 +33,7 @@ class VectorsOptions(SourceOptions):
 COLUMNS = (
     Column("encoding", "How a motion vector becomes two numbers.", KEY),
     shared.STORAGE,
-    shared.ROUNDING_OR_DITHERED,
+    shared.ROUNDING_NOW_SAID,
     shared.BACKEND,
     Column(
         "range",

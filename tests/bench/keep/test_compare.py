@@ -80,6 +80,16 @@ def test_steps_that_one_run_lacks_are_named():
     assert change["verdict"] == "gone" and compared(run_of(b), run_of(a, b))[0]["verdict"] == ""
 
 
+def test_rows_of_versions_that_rounded_in_one_way_alone_are_those_of_the_nearest():
+    """The column came later: a run without it is compared with one that has it, and with none that rounds otherwise."""
+    old, nearest, cut = (
+        Done(MACHINE, [{"table": "depth", "key": {}, "rows": [{"depth": "linear", "error_max": 1.0} | more]}])
+        for more in ({}, {"rounding": "nearest"}, {"rounding": "truncate"})
+    )
+    assert old.tables["depth"] == nearest.tables["depth"] and compared(old, nearest) == []
+    assert {change["change"] for change in compared(old, cut)} == {"only before", "only after"}
+
+
 def picked(**figures) -> Done:
     row = {"storage": "rg8", "encoding": "stereographic", "angle_sup_deg": None, "skipped": None}
     return Done(MACHINE, [{"table": "pick", "key": {}, "rows": [row | figures]}])
