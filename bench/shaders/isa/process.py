@@ -60,13 +60,16 @@ def child(
             text=True,
             env=environment(driver.path, variables),
         ) as process:
+            lines: queue.Queue[str | None] = queue.Queue()
+            reading = threading.Thread(target=_read, args=(process.stdout, lines), daemon=True)
+            reading.start()
             try:
-                lines: queue.Queue[str | None] = queue.Queue()
-                threading.Thread(target=_read, args=(process.stdout, lines), daemon=True).start()
                 heard = _Heard(lines, driver.stop)
                 yield heard.following, lambda: heard.why(process, errors)
             finally:
                 process.kill()
+                # Its end is read before the stream is closed, also by a thread that a busy machine starts late.
+                reading.join(SECONDS)
 
 
 class _Heard:

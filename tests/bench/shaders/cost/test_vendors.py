@@ -2,6 +2,10 @@
 own. Figures of one vendor stand in the vendor's file."""
 
 import json
+import sys
+import threading
+import time
+from pathlib import Path
 
 import pytest
 from vendors import INTEL, NVIDIA, TERASCALE, VENDORS, every_or_some
@@ -77,3 +81,24 @@ def test_a_compiler_that_fails_costs_its_own_rows(request, run, monkeypatch, ven
     (lost,) = [row for row in json.loads(out) if row["skipped"]]
     assert status == 0 and lost["family"] == family and reason in lost["skipped"] and reason in err
     assert sum(row["family"] == "navi21" for row in json.loads(out)) == 6 * len(vendor.stages)
+
+
+def test_a_reader_that_starts_late_meets_no_closed_stream(monkeypatch):
+    """As on a busy machine: the child is left at once, and its thread has only then begun to read."""
+    script = "print('{}', flush=True); input()"
+    monkeypatch.setattr(isa_process, "CHILD", [sys.executable, "-c", script])
+    read, errors, ended = isa_process._read, [], threading.Event()
+
+    def late(stream, lines):
+        time.sleep(0.3)
+        try:
+            read(stream, lines)
+        except ValueError as error:
+            errors.append(error)
+        ended.set()
+
+    monkeypatch.setattr(isa_process, "_read", late)
+    driver = isa_process.Driver(Path("none.json"), threading.Event())
+    with isa_process.child({}, driver, {}):
+        pass
+    assert ended.wait(10) and not errors, errors
