@@ -9,6 +9,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import cached_property
 
+import jax
 import numpy as np
 
 from ....encodings.catalogue import ENCODINGS, LIGHT_BUFFERS
@@ -22,6 +23,7 @@ from ....gbuffer.render import Rendering, rendering
 from ....gbuffer.scenes.catalogue import SceneMaker
 from ....gbuffer.scenes.setting import Setting
 from ...ground.output import cache
+from ...ground.output.sources import sources
 from ...measures.metrics.images import flip
 from .attributes import Code, Surfaces
 
@@ -42,7 +44,7 @@ EXACT = Layout(
 MIRROR, GLOSSY, ROUGH, EMISSIVE = CLASSES = ("mirror", "glossy", "rough", "emissive")
 UP_TO = {MIRROR: 0.2, GLOSSY: 0.5, ROUGH: np.inf}
 # A class of fewer pixels is not judged: a few edges would decide.
-LEAST_PIXELS = 100
+LEAST_PIXELS = 256
 # Of FLIP over the pixels.
 PERCENTILE = 99.0
 FRAME = "frame"
@@ -96,8 +98,8 @@ class Exact:
 
     @cached_property
     def key(self) -> str:
-        """What tells it from every other exact image: what it is computed from, and what it shows."""
-        made = hashlib.sha256()
+        """What tells it from every other exact image: what computes it and from what, and what it shows."""
+        made = hashlib.sha256(f"{sources()} {jax.__version__} {self._device.renderer}".encode())
         for one in (*self._textures, self.shown):
             made.update(np.ascontiguousarray(one).tobytes())
         return made.hexdigest()
