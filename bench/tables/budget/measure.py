@@ -117,7 +117,11 @@ class Judged:
 
     def _solved(self, rules: Rules) -> Solution | None:
         q = self._question
-        return solved(Problem(self.attributes, self._errors, self.classes, q.bins, rules))
+        # What nobody sees has its usual bits where there is room for them, and its floor where there is not.
+        for held in (self.attributes, q.attributes):
+            if found := solved(Problem(held, self._errors, self.classes, q.bins, rules)):
+                return found
+        return None
 
     def fewest(self) -> Rules:
         """The rules with the fewest bytes whose layout keeps the threshold; with the most where none does."""
@@ -155,7 +159,7 @@ class Judged:
         """What the least is that can be, for a limit that cannot."""
         for size in range(rules.bytes + 1, 129):
             if self._solved(replace(rules, bytes=size)):
-                bits = sum(min(code.total_bits for code in one.codes) for one in self.attributes)
+                bits = sum(min(code.total_bits for code in one.codes) for one in self._question.attributes)
                 return f"{rules.bytes} bytes cannot hold this: its least bits are {bits}, and {size} bytes is the least"
         return "no targets hold this by these rules, whatever their bytes"
 
