@@ -15,11 +15,12 @@ from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.layouts.words import LayoutError
 from ....gbuffer.pipelines import PIPELINES
 from ....gbuffer.render import check
+from ...ground.output.errors import UsageError
 from ...measures.metrics.totals import psnr_db
 from . import changes
 from .attributes import Attribute, usual
 from .bins import SHARED, Bin, webgpu_cost
-from .rates import FRAME, PIPELINE, Exact, Stage, rates
+from .rates import FRAME, LEAST_PIXELS, PIPELINE, Exact, Stage, rates
 from .solve import Placed, Problem, Rules, Solution, solved
 from .table import TABLE
 from .written import layout_of
@@ -102,6 +103,9 @@ class Judged:
                 for code, found in rates(judge, attribute.codes, tick).items():
                     key = (attribute.name, code)
                     self._errors.setdefault(key, {}).update({_class_of(judge, n): e for n, e in found.items()})
+        if not self.classes:
+            asked = ", ".join(question.judging)
+            raise UsageError(f"--size: no class of surfaces ({asked}) has {LEAST_PIXELS} pixels in {question.scenes}")
         self.attributes = [usual(one) if one.is_seen and not self._shows(one) else one for one in question.attributes]
         self.unseen = [one.name for one in question.attributes if not (one.is_seen and self._shows(one))]
 
@@ -148,10 +152,10 @@ class Judged:
     def _next(self, rules: Rules, found: Solution) -> Row:
         """How many bytes more bring something, and what; empty where a few bring nothing."""
         now = psnr_db(found.worst_of(self.classes))
-        for size in MORE:
+        for size in MORE if now < SEEN_DB else ():
             more = self._solved(replace(rules, bytes=rules.bytes + size))
             gain = psnr_db(more.worst_of(self.classes)) - now if more else 0.0
-            if gain >= WORTH_DB and now < SEEN_DB:
+            if gain >= WORTH_DB:
                 return {"next_bytes": size, "next_db": gain}
         return {}
 
