@@ -37,6 +37,8 @@ from normalbench.gbuffer.scenes.catalogue import SCENES
 from normalbench.gbuffer.scenes.setting import Setting
 
 EVERY = sorted(LIGHT_BUFFERS)
+# Hue in 6 bits and saturation in 2.
+COARSE = "hue_saturation"
 (LINEAR_1,) = light_buffers_named("linear:1")
 LIGHT_PIPELINES = [name for name, pipeline in PIPELINES.items() if pipeline.has_gbuffer]
 
@@ -124,9 +126,10 @@ def test_the_bound_is_half_a_code_a_blend():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", [name for name in EVERY if name not in ("linear", "rgba32f")])
+@pytest.mark.parametrize("name", [name for name in EVERY if name not in ("linear", "rgba32f", COARSE)])
 def test_dim_lights_first_lose_less(name):
-    """A step is smallest where there is little light yet; in linear fixed point it is the same everywhere."""
+    """A step is smallest where there is little light yet; in linear fixed point it is the same everywhere, and a hue of 6
+    bits is off by the same share."""
     rms = {row["order"]: row["model_rms"] for row in random_lights(by_model(name), 1.0, [64], 0)}
     assert rms["dimmest first"] < rms["as drawn"] <= rms["brightest first"] * 1.05, rms
 
@@ -224,7 +227,9 @@ def test_every_code_is_the_light_buffer_of_every_pipeline(gl, pipeline, samples)
             image = frame(gl, pipeline, plan(encoding.name, targets, samples))
             assert np.isfinite(image).all(), f"{encoding.name}x{targets}"
             psnr = -10 * np.log10(np.mean((displayed(image) - reference) ** 2) + 1e-30)
-            assert psnr > 40, f"{pipeline}, {encoding.name}x{targets}, {samples} samples: {psnr:.1f} dB"
+            # Saturation in four steps is for what a surface gives off.
+            least = 28 if encoding.encoding.name == COARSE else 40
+            assert psnr > least, f"{pipeline}, {encoding.name}x{targets}, {samples} samples: {psnr:.1f} dB"
 
 
 @pytest.fixture(scope="module")

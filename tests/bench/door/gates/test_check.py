@@ -334,7 +334,9 @@ def test_a_gate_on_a_distance_judges_no_other(run, tmp_path):
     asked = 'table = "depth"\ndepth = "linear"\nstorage = "r32f"\nbackend = "jax"\ncount = 16\ndistance = "10"\n'
     path.write_text(f'[[gate]]\n{asked}error_max = "at most 1"\n')
     rows = json.loads(run("check", str(path), "--format", "json")[1])
-    assert [row["row"].split() for row in rows] == [["linear", "r32f", "eye_ray", "jax", "0.1", "1000.0", "10.0"]]
+    assert [row["row"].split() for row in rows] == [
+        ["linear", "r32f", "nearest", "eye_ray", "jax", "0.1", "1000.0", "10.0"]
+    ]
 
 
 @pytest.mark.usefixtures("radv")
