@@ -128,8 +128,8 @@ def test_the_bound_is_half_a_code_a_blend():
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in EVERY if name not in ("linear", "rgba32f", COARSE)])
 def test_dim_lights_first_lose_less(name):
-    """A step is smallest where there is little light yet; in linear fixed point it is the same everywhere, and a hue of 6
-    bits is off by the same share."""
+    """A step is smallest where there is little light yet; in linear fixed point it is the same everywhere, and a hue of
+    6 bits is off by the same share."""
     rms = {row["order"]: row["model_rms"] for row in random_lights(by_model(name), 1.0, [64], 0)}
     assert rms["dimmest first"] < rms["as drawn"] <= rms["brightest first"] * 1.05, rms
 
@@ -270,7 +270,8 @@ def test_resolving_codes_costs_what_the_model_says(gl, resolves, name):
     assert found["aliased_psnr_db"] < 45, "antialiasing changed the picture"
     with Adder(encoding, gl) as adder:
         as_model = ROUNDINGS.get(adder.rounding.name)
-    if as_model and as_model.rounding == "nearest":
+    # Of numbers that lie across channels the hardware averages the channels, which the model does not.
+    if as_model and as_model.rounding == "nearest" and not encoding.storage.is_packed:
         for figure in ("code_psnr_db", "light_psnr_db"):
             assert abs(found[figure] - model[figure]) < 0.1, (figure, found, model)
 
