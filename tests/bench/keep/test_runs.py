@@ -294,7 +294,7 @@ def test_every_table_of_a_run_has_steps_and_no_two_share_a_key(tmp_path):
 
 def test_an_unknown_table_is_one_line(run, tmp_path):
     status, out, err = run("run", "--tables", "colours", "-o", str(tmp_path / "run"))
-    assert (status, out) == (2, "") and "unknown table 'colours'; known: all, pick, quality" in err
+    assert (status, out) == (2, "") and "unknown table 'colours'; known: all, pick, budget, quality" in err
     assert not (tmp_path / "run").exists()
 
 
