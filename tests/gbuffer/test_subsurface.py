@@ -304,6 +304,10 @@ def exact_light(gl):
 BLURRED = (0.01, 0.0001)
 
 
+# Saturation in four steps is for what a surface gives off.
+COARSE = {"hue_saturation": 24}
+
+
 @pytest.mark.parametrize("light", [name for name in LIGHT_BUFFERS if name != "rgba32f"])
 def test_light_is_read_in_every_code(gl, light, exact_light):
     """What a code does to scattered light is at most what it does to light as it is, and 0.1 dB; 30 dB at least over
@@ -311,7 +315,8 @@ def test_light_is_read_in_every_code(gl, light, exact_light):
     plan, found = plan_of(light=light), []
     for width, exact in zip(BLURRED, exact_light, strict=True):
         found.append(psnr(scattered(gl, scene_of("head"), plan=plan, width=width)[..., :3] - exact, exact.max()))
-    assert found[0] >= max(found[1] - 0.1, 30), f"{found[0]:.1f} dB, and {found[1]:.1f} dB unscattered"
+    least = COARSE.get(light, 30)
+    assert found[0] >= max(found[1] - 0.1, least), f"{found[0]:.1f} dB, and {found[1]:.1f} dB unscattered"
 
 
 # What it costs

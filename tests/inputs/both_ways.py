@@ -13,6 +13,7 @@ from matplotlib import pyplot
 from matplotlib.collections import FillBetweenPolyCollection, LineCollection, PathCollection
 from matplotlib.patches import Rectangle
 
+from normalbench.bench.tables.registry import TABLES
 from normalbench.reports.charts import draw, vega
 from normalbench.reports.charts.chart import Chart, Kind, Scale
 
@@ -119,7 +120,10 @@ def rows_of_tables() -> dict[str, list[dict]]:
     The sweep's were measured at one number of objects, and multiplied for others.
     """
     kept = json.loads((Path(__file__).parent / "charted_rows.json").read_text())
-    return {name: [dict(zip(t["columns"], row, strict=True)) for row in t["rows"]] for name, t in kept.items()}
+    return {
+        name: [TABLES[name].as_now(dict(zip(t["columns"], row, strict=True))) for row in t["rows"]]
+        for name, t in kept.items()
+    }
 
 
 def same(file: Shown, page: Shown) -> None:
