@@ -30,7 +30,8 @@ from ..shaders.code.verify import Agreement, agreement
 from ..shaders.languages.source_options import in_names
 from ..subjects.codecs.kinds.codecs import codecs_of_kind, kinds_named
 from ..subjects.codecs.names import codecs_named, fitting
-from .code_figures import figures, head, rounding_of
+from .code_figures import DIFFERS, NOT_RUN, VERIFIED, figures, head, rounding_of
+from .gbuffer_command import gbuffer_command, is_of_layouts
 
 Row = dict[str, Any]
 SHIPPED = "rgba8,rg8,rgb10a2,rgb8_12_12,rg16,rg16f"
@@ -38,7 +39,6 @@ LONGEST = 60
 # Codes whose numbers may be cut off.
 ROUNDED = (NORMAL, MOTION, CURVE, FRAME)
 ROUNDED_WORDS = "normals, motion, curves and tangent frames"
-VERIFIED, DIFFERS, NOT_RUN = "verified", "differs", "not run"
 # What no compiler of its own runs here, and what is run in its place, the first that can be.
 WITNESSED, WITNESSES = ("msl",), ("c", "glsl")
 
@@ -52,6 +52,8 @@ def code_command(options: CodeOptions, format: str, output: Path | None) -> int:
     _check_prefix(options.prefix)
     options = replace(options, **in_names(asdict(options)))
     languages = choose("language", options.to, {name: name for name in LANGUAGES})
+    if is_of_layouts(options):
+        return gbuffer_command(options, languages, format, output)
     codecs = _codecs(options)
     if options.prefix and len(codecs) > 1 and not options.check:
         raise UsageError(f"--prefix {options.prefix}: names of {len(codecs)} codecs would collide; name one codec")

@@ -18,6 +18,8 @@ from ..tables.quality import measure as quality
 
 # Figures that differ by less are the same.
 SAME = 1e-3
+# What is said of a file that was run, or could not be.
+VERIFIED, DIFFERS, NOT_RUN = "verified", "differs", "not run"
 STAGE, FAMILY, FAMILY_TITLE = "fragment", "navi21", "AMD RDNA 2 (navi21, RADV)"
 
 

@@ -80,7 +80,12 @@ def targets_of(text: str) -> tuple[Target, ...]:
 
 
 def placed(layout: str, index: int, target: Target) -> Iterator[Word]:
-    """Where each component of a target lies, the free and the unused ones left out.
+    """Where each component of a target lies, the free and the unused ones left out; see `all_placed`."""
+    return (word for word in all_placed(layout, index, target) if word.component != OTHER)
+
+
+def all_placed(layout: str, index: int, target: Target) -> Iterator[Word]:
+    """Where each component of a target lies and what engines keep besides, the free ones left out.
 
     Args:
         layout: its name, for messages.
@@ -107,7 +112,8 @@ def placed(layout: str, index: int, target: Target) -> Iterator[Word]:
             raise LayoutError(f"{place}: {text}: the first three channels of {storage.title} hold colours")
         if channel < storage.curved and kept:
             raise LayoutError(f"{place}: {text}: {storage.title} keeps colours by a curve of its own")
-        if name not in (FREE, OTHER):
+        bits = taken if storage.is_integer else bits
+        if name != FREE:
             yield Word(name, index, bit if bits else channel, bits, sign, kept)
         bit += taken
 

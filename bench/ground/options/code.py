@@ -12,13 +12,15 @@ from .option import Names, Option, Sources
 class CodeOptions(Sources):
     """Which codecs, in which languages."""
 
-    codec: Annotated[str, Option("CODEC", f"Encodings or files, {Names}.", files=True)] = "octahedral"
+    codec: Annotated[str, Option("CODEC", f"Encodings or files, {Names}; layouts with --of layout.", files=True)] = (
+        "octahedral"
+    )
     of: Annotated[
         str,
         Option(
             "--of",
             "What the codes are of: normal, frame (tangent frames and quaternions), motion, curve (roughness and the "
-            "like), light or depth. Default: what the names say.",
+            "like), light or depth; or layout: packing and unpacking a whole G-buffer. Default: what the names say.",
         ),
     ] = ""
     storage: Annotated[

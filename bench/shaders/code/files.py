@@ -46,23 +46,29 @@ class Code:
 
     def text(self, head: Iterable[str]) -> str:
         """The file, under a comment of these paragraphs."""
-        mark = LANGUAGES[self.language].mark
-        wrapped = (textwrap.wrap(said, WIDTH, subsequent_indent="  ", break_on_hyphens=False) or [""] for said in head)
-        comment = "".join(f"{mark} {line}".rstrip() + "\n" for lines in wrapped for line in lines)
-        return f"{comment}\n{self._guarded_text}"
-
-    @property
-    def _guarded_text(self) -> str:
-        """The text, which languages with a preprocessor take once however often it is included."""
-        if not LANGUAGES[self.language].has_preprocessor:
-            return self.body
-        guard = f"{identifier(self.prefix).upper()}_INCLUDED"
-        return f"#ifndef {guard}\n#define {guard}\n\n{self.body}\n#endif\n"
+        return commented(self.body, self.language, self.prefix, head)
 
     def files(self, head: Iterable[str]) -> dict[str, bytes]:
         """All its files, by name."""
         beside = table_files(self.interface.tables, self.language, self.prefix)
         return {self.name: self.text(head).encode(), **beside}
+
+
+def commented(body: str, language: str, prefix: str, head: Iterable[str]) -> str:
+    """The text of a file under a comment of these paragraphs; one that is indented stays as it is. Languages with a
+    preprocessor take the text once, however often it is included."""
+    mark = LANGUAGES[language].mark
+    comment = "".join(f"{mark} {line}".rstrip() + "\n" for said in head for line in _lines(said))
+    if not LANGUAGES[language].has_preprocessor:
+        return f"{comment}\n{body}"
+    guard = f"{identifier(prefix).upper()}_INCLUDED"
+    return f"{comment}\n#ifndef {guard}\n#define {guard}\n\n{body}\n#endif\n"
+
+
+def _lines(said: str) -> list[str]:
+    if said.startswith("  "):
+        return [said]
+    return textwrap.wrap(said, WIDTH, subsequent_indent="  ", break_on_hyphens=False) or [""]
 
 
 def file_name(codec: Any, language: str) -> str:

@@ -9,6 +9,12 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+/* How many numbers a row has, given and made. */
+#ifndef RUN_GIVEN
+#define RUN_GIVEN 12
+#define RUN_MADE 24
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -58,12 +64,12 @@ int main(int words, char **word) {
         run_set_table(at, (float *)read_all(name, (size_t)16 * size[0] * size[1]), size[0], size[1]);
     }
 #endif
-    float *given = (float *)read_all("given.bin", count * 12 * sizeof *given);
-    float *made = (float *)calloc(count * 24 + 1, sizeof *made);
+    float *given = (float *)read_all("given.bin", count * RUN_GIVEN * sizeof *given);
+    float *made = (float *)calloc(count * RUN_MADE + 1, sizeof *made);
     uint32_t *packed = (uint32_t *)calloc(count * 4 + 1, sizeof *packed);
     if (!made || !packed) return 3;
     run_six(count, given, made, packed);
-    write_all("made.bin", made, count * 24 * sizeof *made);
+    write_all("made.bin", made, count * RUN_MADE * sizeof *made);
     write_all("words.bin", packed, count * 4 * sizeof *packed);
     free(given), free(made), free(packed);
     return 0;

@@ -1,0 +1,138 @@
+"""What `code --of layout` does: writes the code that packs and unpacks a whole G-buffer, and verifies it."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from ...gbuffer.gl.device import NoDeviceError
+from ...gbuffer.gl.shader import ShaderError
+from ...gbuffer.layouts.layout import Layout
+from ..ground.options.code import CodeOptions
+from ..ground.output.errors import MissingError, UsageError, tell
+from ..ground.output.progress import progress
+from ..ground.output.writing import check_folder, check_is_folder, check_writable, say, whole_file, write
+from ..shaders.code.run import runner
+from ..shaders.code.whole.emit import GBufferCode, gbuffer_code
+from ..shaders.code.whole.head import head
+from ..shaders.code.whole.run import NOT_RUN as NEVER_RUN
+from ..shaders.code.whole.verify import agreement
+from ..subjects.codecs.layout_names import layouts_named
+from .code_figures import DIFFERS, NOT_RUN, VERIFIED
+
+Row = dict[str, Any]
+LAYOUT, ENDING = "layout", ".toml"
+# What is run in place of a language that is not.
+WITNESSES = ("c", "glsl")
+
+
+def is_of_layouts(options: CodeOptions) -> bool:
+    """Whether layouts are named: by `--of layout`, or as files."""
+    words = [word.strip() for word in options.codec.split(",")]
+    return options.of == LAYOUT or (not options.of and all(word.endswith(ENDING) for word in words))
+
+
+def gbuffer_command(options: CodeOptions, languages: Sequence[str], format: str, output: Path | None) -> int:
+    """Write the files, or with `check` the table of what was verified how. Exit status: 1 where code differs.
+
+    Raises:
+        UsageError: a name is not known, a layout is not written, or something cannot be.
+    """
+    if options.storage:
+        raise UsageError("--storage: a layout says its formats itself")
+    layouts = layouts_named(options.codec)
+    made = [gbuffer_code(layout, language, options.prefix) for layout in layouts for language in languages]
+    if options.check:
+        return _check(made, format, output)
+    check_is_folder(output, "code writes into")
+    if output:
+        check_folder(output)
+    elif len(made) > 1:
+        raise UsageError("several files are written into a folder: name one with -o")
+    return max(_write_layout(layout, made, options, output) for layout in layouts)
+
+
+def _write_layout(layout: Layout, made: Sequence[GBufferCode], options: CodeOptions, output: Path | None) -> int:
+    """The files of a layout; 1 where one differs, and then none is written: all are made from one tree."""
+    rows = [(code, verified(code)) for code in made if code.layout is layout]
+    if not any(row["verdict"] == VERIFIED for _, row in rows):
+        rows += _witnesses(layout, options.prefix)
+    wrong = [row for _, row in rows if row["verdict"] == DIFFERS]
+    for row in wrong:
+        tell(f"{layout.name} in {row['language']}: {row['says']}; {layout.name} is not written")
+    for code, row in rows if not wrong else ():
+        if code.language in {one.language for one in made}:
+            _save(code, head(code, _command(code, options), row["says"]), output)
+    return int(bool(wrong))
+
+
+def _witnesses(layout: Layout, prefix: str) -> list[tuple[GBufferCode, Row]]:
+    """A language of the same tree that can be run here, where none of those asked for can."""
+    rows = ((code, verified(code)) for code in (gbuffer_code(layout, name, prefix) for name in WITNESSES))
+    return [next(((code, row) for code, row in rows if row["verdict"] != NOT_RUN))]
+
+
+def _command(code: GBufferCode, options: CodeOptions) -> str:
+    words = [word.strip() for word in options.codec.split(",")]
+    files = [word for word in words if word.endswith(ENDING) and Path(word).stem == code.layout.name]
+    named = [Path(files[0]).name] if files else [code.layout.name, "--of", LAYOUT]
+    prefix = ["--prefix", options.prefix] if options.prefix else []
+    return shlex.join(["normalbench", "code", *named, "--to", code.language, *prefix])
+
+
+def _save(code: GBufferCode, said: Sequence[str], output: Path | None) -> None:
+    if output is None:
+        say(code.text(said))
+        return
+    with whole_file(output / code.name) as partial:
+        partial.write_text(code.text(said), encoding="utf-8")
+    tell(f"{output / code.name}")
+
+
+def verified(code: GBufferCode) -> Row:
+    """A row: how a file's results compare with the renderer's, by running it."""
+    row: Row = {"layout": code.layout.name, "bytes_per_pixel": code.layout.bytes_per_pixel, "language": code.language}
+    if code.language in NEVER_RUN:
+        return row | {"verdict": NOT_RUN, "says": f"not run here: nothing runs layouts in {code.language}"}
+    try:
+        found = agreement(code)
+        how = runner(code.language).how()
+    except (MissingError, NoDeviceError) as error:
+        return row | {"verdict": NOT_RUN, "says": f"not run here: {error}"}
+    except ShaderError as error:
+        return row | {"verdict": DIFFERS, "says": f"it does not run: {error}"}
+    figures = {"values": found.count, "differing": found.differing, "steps": found.steps, "run_by": how}
+    verdict = VERIFIED if found.holds else DIFFERS
+    return row | {"verdict": verdict, **figures, "says": f"{found.says}; run by {how}"}
+
+
+def _check(made: Sequence[GBufferCode], format: str, output: Path | None) -> int:
+    if output:
+        check_writable(output)
+    rows: list[Row] = []
+    with progress(len(made)) as tick:
+        for code in made:
+            rows.append(verified(code))
+            tick(f"{code.layout.name} in {code.language}")
+    for row in rows:
+        if row["verdict"] != VERIFIED:
+            tell(f"{row['layout']} in {row['language']}: {row['says']}")
+    write(_by_layout(rows) if format in ("table", "markdown") else rows, format, output, ())
+    return int(any(row["verdict"] == DIFFERS for row in rows))
+
+
+def _by_layout(rows: Sequence[Row]) -> list[Row]:
+    """A row for each layout, with a column for each language: how many surfaces have other targets."""
+    found: dict[str, Row] = {}
+    for row in rows:
+        about = {name: row[name] for name in ("layout", "bytes_per_pixel")}
+        found.setdefault(row["layout"], about)[row["language"]] = _said(row)
+    return list(found.values())
+
+
+def _said(row: Row) -> str:
+    if row["verdict"] != VERIFIED:
+        return row["verdict"]
+    return f"{row['differing']} of {row['values']}" if row["differing"] else "equal"

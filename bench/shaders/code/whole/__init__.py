@@ -1,0 +1,1 @@
+"""Code that packs and unpacks a whole G-buffer: what `code --of layout` writes, runs and compares."""

@@ -1,0 +1,58 @@
+"""Words in bits of a target's channels, as text: where their parts are shifted to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from .....gbuffer.layouts.words import Word
+
+
+@dataclass(frozen=True)
+class Part:
+    """The part of a word in a channel. `shift` is by how much the word's integer is shifted to the left there; less
+    than 0 to the right. Bits above the channel are cut where `is_cut`, and `is_masked` where others lie above it."""
+
+    word: Word
+    shift: int
+    is_cut: bool
+    is_masked: bool
+
+
+def parts_of(words: Sequence[Word], channel: int, size: int) -> Iterator[Part]:
+    """The parts of words in a channel of so many bits; bits count from the first channel's highest."""
+    begin, end = size * channel, size * (channel + 1)
+    for word in words:
+        last = word.first + word.bits
+        if word.bits and word.first < end and last > begin:
+            yield Part(word, end - last, word.first < begin and size < 32, word.first > begin)
+
+
+def packed_texts(parts: Sequence[tuple[Part, str]], size: int) -> list[str]:
+    """What a channel's integer is joined of, of the names of its words' integers."""
+    return [_put_text(part, name, size, len(parts) > 1) for part, name in parts]
+
+
+def _put_text(part: Part, name: str, size: int, is_one_of_many: bool) -> str:
+    text = _shifted(name, part.shift)
+    if part.is_cut:
+        text = f"({text}) & {2**size - 1}u" if part.shift else f"{text} & {2**size - 1}u"
+    return f"({text})" if is_one_of_many and text != name else text
+
+
+def taken_text(parts: Sequence[tuple[Part, str]], bits: int) -> str:
+    """A word's integer, of the texts of the channels that its parts lie in."""
+    return " | ".join(_take_text(part, name, bits, len(parts) > 1) for part, name in parts)
+
+
+def _take_text(part: Part, name: str, bits: int, is_one_of_many: bool) -> str:
+    text = _shifted(name, -part.shift)
+    if part.is_masked:
+        text = f"({text}) & {2**bits - 1}u" if part.shift else f"{text} & {2**bits - 1}u"
+    return f"({text})" if is_one_of_many and text != name else text
+
+
+def _shifted(name: str, shift: int) -> str:
+    if shift == 0:
+        return name
+    return f"{name} << {shift}" if shift > 0 else f"{name} >> {-shift}"

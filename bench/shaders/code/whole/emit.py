@@ -1,0 +1,111 @@
+"""The code of a whole layout in a language."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
+
+from .....gbuffer.codecs.codec_passes import encoding_defines
+from .....gbuffer.defines.layouts import curve_defines, curve_files
+from .....gbuffer.gl.shader import Source
+from .....gbuffer.layouts.layout import Layout
+from ....ground.output.errors import UsageError
+from ...translator.changes import given_back
+from ...translator.glsl_parser import read_glsl
+from ...translator.reduce import reduced
+from ...translator.tree import Call, Program, TranslationError, inside
+from ..emit import LANGUAGES
+from ..files import commented
+from .fold import folded
+from .surface import Contents
+from .text import Texts
+
+ROOT = Path(__file__).with_name("gbuffer.glsl")
+TEMPLATE = Path(__file__).with_name("gbuffer.glsl.j2")
+# What every name begins with, where nobody says otherwise.
+PREFIX = "gbuffer"
+ROOTS = {"pack_gbuffer": "pack", "unpack_gbuffer": "unpack"}
+# What functions of curves are called here, by what their names end with.
+SHORT = {"encode_curve": "to", "decode_curve": "from", "encode_motion": "to", "decode_motion": "from"}
+
+
+@dataclass(frozen=True, eq=False)
+class GBufferCode:
+    """The code of a layout in one language, without its head.
+
+    Attributes:
+        layout, language: what it is of; `language` is a key of LANGUAGES.
+        prefix: what its names begin with.
+        body: its text.
+        texts: its structures.
+    """
+
+    layout: Layout
+    language: str
+    prefix: str
+    body: str
+    texts: Texts
+
+    @property
+    def name(self) -> str:
+        """Of the file."""
+        return self.layout.name + LANGUAGES[self.language].ending
+
+    def text(self, head: Iterable[str]) -> str:
+        """The file, under a comment of these paragraphs."""
+        return commented(self.body, self.language, self.prefix, head)
+
+
+@cache
+def _template() -> Template:
+    loader = FileSystemLoader(TEMPLATE.parent)
+    made = Environment(loader=loader, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    return made.get_template(TEMPLATE.name)
+
+
+def gbuffer_code(layout: Layout, language: str, prefix: str = "") -> GBufferCode:
+    """The code of a layout in a language.
+
+    Raises:
+        UsageError: the layout holds what is not written, or has what cannot be translated; one line.
+        ShaderError: its GLSL cannot be read.
+    """
+    texts = Texts(Contents(layout))
+    try:
+        program = _program(texts, prefix or PREFIX)
+        body = LANGUAGES[language].writer(prefix or PREFIX, {}).program(program)
+    except TranslationError as error:
+        raise UsageError(f"layout {layout.name}: {error}") from error
+    return GBufferCode(layout, language, prefix or PREFIX, folded(body, LANGUAGES[language].mark), texts)
+
+
+def _program(texts: Texts, prefix: str) -> Program:
+    """The two functions of a layout as a tree. Raises ShaderError, TranslationError."""
+    layout = texts.contents.layout
+    defines = {**encoding_defines(layout.codec.encoding), **curve_defines(layout)}
+    files = {"ENCODING": layout.codec.encoding.glsl, "CURVES": curve_files(layout)}
+    source = Source(ROOT, defines, files)
+    functions = _template().render(texts.context)
+    for name in ("CODE", "ENCODE", "DECODE"):
+        functions = re.sub(rf"\b{name}\b", str(defines[name]), functions)
+    program = given_back(reduced(read_glsl(f"{source.text}\n{functions}"), ROOTS, prefix, layout.encoding.prefix))
+    _shorten(program, prefix)
+    return program
+
+
+def _shorten(program: Program, prefix: str) -> None:
+    """Call functions of curves by short names: PREFIX_to_square_root."""
+    names = {}
+    for function in program.functions:
+        found = re.fullmatch(rf"{prefix}_(\w+)_({'|'.join(SHORT)})", function.name)
+        if found:
+            names[function.name] = f"{prefix}_{SHORT[found[2]]}_{found[1]}"
+    for function in program.functions:
+        for call in (node for node in inside(function.body) if isinstance(node, Call) and node.is_own):
+            call.name = names.get(call.name, call.name)
+        function.name = names.get(function.name, function.name)

@@ -1,0 +1,35 @@
+"""The numbers of the two structures one by one, as rows of 32-bit words: what the programs around a file copy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from ...translator.tree import scalar_of, size_of
+from .text import Texts
+
+
+@dataclass(frozen=True)
+class Leaf:
+    """A number of a structure: where it is, `target_0.x`, and whether it is a whole number."""
+
+    path: str
+    is_whole: bool
+
+
+def surface_leaves(texts: Texts) -> list[Leaf]:
+    """The numbers of a surface."""
+    return _leaves((field.name, field.kind) for field in texts.contents.fields)
+
+
+def target_leaves(texts: Texts) -> list[Leaf]:
+    """The numbers of the targets."""
+    return _leaves((target.name, target.kind) for target in texts.targets)
+
+
+def _leaves(named: Iterable[tuple[str, str]]) -> list[Leaf]:
+    found = []
+    for name, kind in named:
+        paths = [f"{name}.{axis}" for axis in "xyzw"[: size_of(kind)]] if size_of(kind) > 1 else [name]
+        found += [Leaf(path, scalar_of(kind) == "uint") for path in paths]
+    return found

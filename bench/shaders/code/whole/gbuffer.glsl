@@ -1,0 +1,7 @@
+#version 430
+// What the code of a whole layout is made from: the encoding of the normal, and the curves and codes of the rest. The two
+// functions, which gbuffer.glsl.j2 makes, follow.
+#include "vec.glsl"
+#include ENCODING
+#include "turned.glsl"
+#include CURVES

@@ -1,0 +1,106 @@
+"""A number of a layout as it is written to a channel or to bits, and back: what `words.glsl` does, for one word."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .....gbuffer.codecs.codec_passes import levels_of, storage_kind
+from .....gbuffer.layouts.layout import Layout
+from .....gbuffer.layouts.words import OTHER, PACKINGS, SIGNED, Word
+from .surface import WHOLE_NUMBERS
+
+# Floats of 32 bits have all whole numbers up to this many bits and a half.
+SURE_BITS = 22
+UNORM, SNORM, HALF, SMALL = range(4)
+
+
+@dataclass(frozen=True)
+class Number:
+    """A word of a layout, as text of GLSL."""
+
+    layout: Layout
+    word: Word
+
+    @property
+    def _storage(self):
+        return self.layout.targets[self.word.target].storage
+
+    @property
+    def _is_normal(self) -> bool:
+        return self.word.component.startswith("normal.")
+
+    @property
+    def _is_unit(self) -> bool:
+        """Whether texels hold a number of the normal in [0, 1], whatever their format."""
+        return self._is_normal and self.layout.encoding.is_unit
+
+    @property
+    def _is_signed(self) -> bool:
+        return self.word.component.startswith("motion.") or (self._is_normal and not self.layout.encoding.is_unit)
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether it is a whole number of the surface."""
+        return self.word.component in (*WHOLE_NUMBERS, OTHER)
+
+    @property
+    def _is_packed_as_said(self) -> bool:
+        """Whether the layout's packing is for it."""
+        return self._is_normal and levels_of(self.layout.encoding)["xyz".index(self.word.component[-1])] == 0
+
+    @property
+    def _is_around_zero(self) -> bool:
+        is_signed = self._is_packed_as_said and self.layout.packing == SIGNED
+        return self.word.component.startswith("motion.") or is_signed
+
+    @property
+    def _scale(self) -> int:
+        return 2**self.word.bits - 1 if self.word.bits else self._storage.scale(self.word.first)
+
+    @property
+    def _unit_in(self) -> str:
+        return "{x} * 0.5 + 0.5" if self._is_signed or self._is_unit else "{x}"
+
+    @property
+    def _unit_out(self) -> str:
+        return "{x} * 2.0 - 1.0" if self._is_signed or self._is_unit else "{x}"
+
+    def bits_text(self, x: str) -> str:
+        """The unsigned integer of a number."""
+        scale = self._scale
+        if self.is_whole:
+            return f"{x} & {scale}u"
+        if self._is_around_zero:
+            one = f"{scale // 2}.0"
+            held = f"{x} * 0.5 + 0.5" if self._is_unit else x
+            return f"uint(roundEven(clamp({held}, -1.0, 1.0) * {one}) + {one})"
+        widen, bias = PACKINGS[self.layout.packing] if self._is_packed_as_said else PACKINGS["nearest"]
+        part = f"clamp({self._unit_in.format(x=x)}, 0.0, 1.0)"
+        whole = f"floor({part} * {scale + widen}{f' + {bias}' if bias else ''})"
+        return f"uint({whole if self.word.bits <= SURE_BITS else f'min({whole}, {scale}.0)'})"
+
+    def bits_value(self, integer: str) -> str:
+        """The number of an unsigned integer, a name."""
+        if self.is_whole:
+            return integer
+        if self._is_around_zero:
+            one = f"{self._scale // 2}.0"
+            value = f"(float({integer}) - {one}) * (1.0 / {one})"
+            return f"{value} * 2.0 - 1.0" if self._is_unit else value
+        return self._unit_out.format(x=f"float({integer}) / {self._scale}.0")
+
+    def channel_text(self, x: str, is_float: bool = False) -> str:
+        """What is written to a channel of its own, which the format converts."""
+        kind = storage_kind(self._storage)
+        if self.is_whole and not is_float:
+            return f"float({x} & {self._scale}u) / {self._scale}.0" if kind in (UNORM, SNORM) else f"float({x})"
+        is_halved = self._is_unit or (self._is_signed and kind in (UNORM, SMALL))
+        return f"{x} * 0.5 + 0.5" if is_halved else x
+
+    def channel_value(self, x: str, is_float: bool = False) -> str:
+        """The number of what a channel of its own reads."""
+        kind = storage_kind(self._storage)
+        if self.is_whole and not is_float:
+            return f"uint({x} * {self._scale}.0 + 0.5)" if kind in (UNORM, SNORM) else f"uint({x} + 0.5)"
+        is_halved = self._is_unit or (self._is_signed and kind in (UNORM, SMALL))
+        return f"{x} * 2.0 - 1.0" if is_halved else x

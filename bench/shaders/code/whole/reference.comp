@@ -1,0 +1,66 @@
+#version 430
+// What the renderer makes of a surface's numbers and of texels: `gbuffer.glsl` without a camera. A row is a normal, the
+// NUMBERS numbers, and TARGETS texels; what is made of it is TARGETS texels, a normal, and numbers.
+#include "code.glsl"
+#include "words.glsl"
+#include CURVES
+
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer Given { uint given[]; };
+layout(std430, binding = 1) writeonly buffer Made { uint made[]; };
+
+uint texel_word(vec4 texels[TARGETS], int target, int channel) {
+#if HAS_WORDS
+    if (target_integer[target] != 0) return target_words[target][channel];
+#endif
+    return floatBitsToUint(texels[target][channel]);
+}
+
+void write_texels(uint from, uint to) {
+    const float scales[] = NORMAL_SCALE;
+    vec3 n = vec3(uintBitsToFloat(given[from]), uintBitsToFloat(given[from + 1u]), uintBitsToFloat(given[from + 2u]));
+    float numbers[NUMBERS];
+    for (int i = 0; i < NUMBERS; ++i) numbers[i] = uintBitsToFloat(given[from + 3u + uint(i)]);
+    vec4 code = widen(encoded(direction_or_forward(n), vec3(0.0), scales, NORMAL_BIASED != 0));
+    for (int i = 0; i < DEPTH; ++i) numbers[i] = code[i];
+    vec3 emission = vec3(numbers[EMISSION], numbers[EMISSION + 1], numbers[EMISSION + 2]);
+    TO_CURVES
+#if EMISSION_CODED
+    vec4 light = EMISSION_ENCODE(light_or_none(vec4(emission, 0.0)));
+    for (int i = 0; i < 4; ++i) numbers[EMISSION + i] = light[i];
+#endif
+    vec4 texels[TARGETS] = to_texels(numbers);
+    for (int t = 0; t < TARGETS; ++t)
+        for (int c = 0; c < 4; ++c) made[to + uint(t * 4 + c)] = texel_word(texels, t, c);
+}
+
+void read_texels(uint from, uint to) {
+    vec4 texels[TARGETS];
+    for (int t = 0; t < TARGETS; ++t)
+        for (int c = 0; c < 4; ++c) {
+            uint word = given[from + uint(t * 4 + c)];
+            texels[t][c] = uintBitsToFloat(word);
+#if HAS_WORDS
+            target_words[t][c] = word;
+#endif
+        }
+    float numbers[NUMBERS];
+    for (int i = 0; i < NUMBERS; ++i) numbers[i] = 0.0;
+    from_texels(texels, numbers);
+    FROM_CURVES
+#if EMISSION_CODED
+    vec4 light = EMISSION_DECODE(vec4(numbers[EMISSION], numbers[EMISSION + 1], numbers[EMISSION + 2], numbers[EMISSION + 3]));
+    for (int i = 0; i < 3; ++i) numbers[EMISSION + i] = light[i];
+#endif
+    vec4 code = vec4(numbers[0], numbers[1], numbers[2], 0.0);
+    vec3 n = DECODE(CODE(code), vec3(0.0));
+    for (int i = 0; i < 3; ++i) made[to + uint(i)] = floatBitsToUint(n[i]);
+    for (int i = 0; i < NUMBERS; ++i) made[to + 3u + uint(i)] = floatBitsToUint(numbers[i]);
+}
+
+void main() {
+    uint row = uint(3 + NUMBERS + 4 * TARGETS), i = gl_GlobalInvocationID.x;
+    if (i >= uint(given.length()) / row) return;
+    write_texels(i * row, i * row);
+    read_texels(i * row + uint(3 + NUMBERS), i * row + uint(4 * TARGETS));
+}

@@ -1,0 +1,124 @@
+"""What of a surface a layout holds, as the fields of a structure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+from .....encodings.catalogue import MOTION_ENCODINGS
+from .....encodings.codecs.light_encoding import LightEncoding
+from .....gbuffer.layouts.kept import COLOURS, MOTION, Kept
+from .....gbuffer.layouts.layout import Layout
+from .....gbuffer.layouts.words import COMPONENTS, OTHER, Word, all_placed
+from ....ground.output.errors import UsageError
+
+# The types of fields of several numbers.
+NUMBERS = {**dict.fromkeys(COLOURS, ("vec3", "rgb")), MOTION: ("vec2", "xy")}
+WHOLE_NUMBERS = ("kind", "instance")
+
+
+@dataclass(frozen=True)
+class Field:
+    """A field of the surface.
+
+    Attributes:
+        name: in the structure.
+        kind: its type in GLSL.
+        components: the layout's components that its numbers are, in order.
+        words: where these lie, for an `other` one word; empty for the normal, whose code lies there.
+        kept: the curve or the code that its numbers are kept by, or None.
+    """
+
+    name: str
+    kind: str
+    components: tuple[str, ...]
+    words: tuple[Word, ...] = ()
+    kept: Kept | None = None
+
+
+@dataclass(frozen=True)
+class Contents:
+    """What a layout holds.
+
+    Raises:
+        UsageError: it holds what is not written: a depth, a sign on a quantity, and others; one line.
+    """
+
+    layout: Layout
+
+    def __post_init__(self) -> None:
+        if why := _unwritten(self.layout):
+            raise UsageError(f"layout {self.layout.name}: no code is written for {why}")
+
+    @cached_property
+    def words(self) -> tuple[Word, ...]:
+        """Every word, those of `other` among them, in the order of the targets."""
+        name, targets = self.layout.name, self.layout.targets
+        return tuple(word for at, target in enumerate(targets) for word in all_placed(name, at, target))
+
+    @cached_property
+    def fields(self) -> tuple[Field, ...]:
+        """The fields: the normal first, then those of the material, then the others."""
+        return (Field("normal", "vec3", ()), *self._material_fields(), *self._other_fields())
+
+    def _material_fields(self) -> Iterator[Field]:
+        found = {word.component: word for word in self.words if word.component != OTHER}
+        for first in dict.fromkeys(one.partition(".")[0] for one in COMPONENTS):
+            kind, numbers = NUMBERS.get(first, ("uint" if first in WHOLE_NUMBERS else "float", ""))
+            parts = tuple(f"{first}.{number}" for number in numbers) or (first,)
+            if first == "normal" or parts[0] not in found:
+                continue
+            words = tuple(found[part] for part in parts)
+            yield Field(self._name(first), kind, parts, words, words[0].kept)
+
+    def _name(self, component: str) -> str:
+        """What a component is called: with a metalness the colour is that of the material, not of what it scatters."""
+        if component == "albedo" and "metalness" in self.layout.components:
+            return "base_colour"
+        # Of metal/rough materials a roughness lies where others have a power.
+        return {"power": "roughness", "specular": "f0"}.get(component, component)
+
+    def _other_fields(self) -> Iterator[Field]:
+        others = [word for word in self.words if word.component == OTHER]
+        for number, word in enumerate(others, 1):
+            storage = self.layout.targets[word.target].storage
+            is_whole = word.bits or (storage.kind == "unorm" and word.first >= storage.curved)
+            name = f"other_{number}"
+            yield Field(name, "uint" if is_whole else "float", (name,), (word,))
+
+
+def _unwritten(layout: Layout) -> str:
+    """What of a layout is not written, in words; empty where all is."""
+    encoding, components = layout.encoding, layout.components - {"power"}
+    if "depth" in components or layout.has_signed_depth:
+        return "a depth in a target; normalbench code --of depth writes its code"
+    if layout.carrier:
+        return f"a sign that {layout.carrier.component} carries"
+    if layout.rounding != "nearest" or encoding.is_precise:
+        return f"a normal that is rounded by the shader ({encoding.name}, {layout.rounding})"
+    if encoding.tables():
+        return f"the look-up table of {encoding.name}"
+    if encoding.domain == "view":
+        return f"{encoding.name}, which needs the place of each pixel"
+    if {"power", "roughness"} <= {word.component for word in layout.words}:
+        return "a power and a roughness in one layout"
+    for name, (_, numbers) in NUMBERS.items():
+        there = [f"{name}.{number}" in components for number in numbers]
+        if any(there) and not all(there):
+            return f"a part of {name} without the rest"
+    return _unwritten_other(layout)
+
+
+def _unwritten_other(layout: Layout) -> str:
+    for at, target in enumerate(layout.targets):
+        bytes_or_whole = target.storage.is_integer or set(target.storage.bits) == {8}
+        for word in all_placed(layout.name, at, target):
+            if word.component == OTHER and word.bits and not bytes_or_whole:
+                return f"other:{word.bits} within {target.format}; bits lie in channels of 8 bits or of integers"
+    return ""
+
+
+def code_is_whole(kept: Kept | None) -> bool:
+    """Whether the numbers of a field are one code: a light's, or a motion's."""
+    return kept is not None and (isinstance(kept.encoding, LightEncoding) or kept.encoding in MOTION_ENCODINGS.values())

@@ -1,0 +1,226 @@
+"""The two functions of a layout as text of GLSL: lines of `gbuffer.glsl.j2`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from .....encodings.codecs.light_encoding import LightEncoding
+from .....gbuffer.gl.shader import glsl_value
+from .....gbuffer.layouts.layout import Layout
+from .....gbuffer.layouts.words import Word
+from .bits import packed_texts, parts_of, taken_text
+from .numbers import Number
+from .surface import Contents, Field, code_is_whole
+
+AXES = "xyzw"
+# What stands for 1 in a byte.
+BYTE = "255.0"
+# How many parts of an integer are joined in a line, and the longest text that stands in the line of its target.
+JOINED, SHORT = 3, 12
+
+
+@dataclass(frozen=True)
+class TargetText:
+    """A target of the structure: its name and its type in GLSL."""
+
+    name: str
+    kind: str
+
+
+@dataclass(frozen=True)
+class Texts:
+    """The lines of a layout's functions."""
+
+    contents: Contents
+
+    @property
+    def _layout(self) -> Layout:
+        return self.contents.layout
+
+    @property
+    def context(self) -> dict[str, Any]:
+        """What the template is given."""
+        return {
+            "fields": self.contents.fields,
+            "targets": self.targets,
+            "packing": list(self._packing()),
+            "unpacking": list(self._unpacking()),
+        }
+
+    @property
+    def targets(self) -> list[TargetText]:
+        """The targets: four numbers, or as many whole numbers as the format has."""
+        kinds = {1: "uint", 2: "uvec2", 4: "uvec4"}
+        storages = [target.storage for target in self._layout.targets]
+        return [
+            TargetText(f"target_{at}", kinds[storage.channels] if storage.is_integer else "vec4")
+            for at, storage in enumerate(storages)
+        ]
+
+    # A surface to its targets.
+
+    def _packing(self) -> Iterator[str]:
+        names = {f"normal.{axis}": f"normal.{axis}" for axis in "xyz"}
+        for field in self.contents.fields[1:]:
+            yield from self._coded(field, names)
+        for at, target in enumerate(self.targets):
+            yield from self._packed_target(at, target, names)
+
+    def _coded(self, field: Field, names: dict[str, str]) -> Iterator[str]:
+        """Lines that put a field on its curve; each component's text is added to `names`."""
+        parts = [f"s.{field.name}"]
+        if field.kind.startswith("vec"):
+            parts = [f"s.{field.name}.{axis}" for axis in AXES[: len(field.components)]]
+        if field.kept is None:
+            names |= dict(zip(field.components, parts, strict=True))
+        elif code_is_whole(field.kept):
+            yield self._whole_code(field)
+            components = _components_of(field)
+            names |= {one: f"{field.name}.{AXES[at]}" for at, one in enumerate(components)}
+        else:
+            encoding, limit = field.kept.encoding, glsl_value(field.kept.range)
+            for component, part in zip(field.components, parts, strict=True):
+                names[component] = _local(component)
+                yield f"float {_local(component)} = {encoding.name}_encode_curve({part}, {limit});"
+
+    def _whole_code(self, field: Field) -> str:
+        assert field.kept
+        encoding = field.kept.encoding
+        if isinstance(encoding, LightEncoding):
+            return f"vec4 {field.name} = {encoding.prefix}_encode(light_or_none(vec4(s.{field.name}, 0.0)));"
+        motion = f"{encoding.prefix}_encode_motion(s.{field.name}, {glsl_value(field.kept.range)})"
+        return f"vec2 {field.name} = {motion};"
+
+    def _packed_target(self, at: int, target: TargetText, names: dict[str, str]) -> Iterator[str]:
+        storage = self._layout.targets[at].storage
+        words = [word for word in self.contents.words if word.target == at]
+        for word in (word for word in words if word.bits):
+            text = names.get(word.component) or f"s.{self._other_name(word)}"
+            yield f"uint {self._integer_name(word)} = {Number(self._layout, word).bits_text(text)};"
+        channels = []
+        for channel in range(storage.channels):
+            lines, text = self._channel(words, at, channel, names)
+            yield from lines
+            channels.append(text)
+        if not storage.is_integer:
+            channels += ["0.0"] * (4 - len(channels))
+        yield f"{target.kind} {target.name} = {_listed(target.kind, channels)};"
+
+    def _channel(self, words: list[Word], at: int, channel: int, names: dict[str, str]) -> tuple[list[str], str]:
+        """Lines before a target, and what they make of a channel."""
+        name = f"channel_{at}_{AXES[channel]}"
+        own = next((word for word in words if not word.bits and word.first == channel), None)
+        if own:
+            text = names.get(own.component) or f"s.{self._other_name(own)}"
+            made = Number(self._layout, own).channel_text(text, self._is_float(own))
+            return ([], made) if len(made) <= SHORT else ([f"float {name} = {made};"], name)
+        storage = self._layout.targets[at].storage
+        size = storage.bits[channel]
+        joined = packed_texts([(p, self._integer_name(p.word)) for p in parts_of(words, channel, size)], size)
+        if not joined:
+            return [], "0u" if storage.is_integer else "0.0"
+        lines = [f"uint {name} = {' | '.join(joined[:JOINED])};"]
+        for more in range(JOINED, len(joined), JOINED):
+            lines.append(f"{name} |= {' | '.join(joined[more : more + JOINED])};")
+        return lines, name if storage.is_integer else f"float({name}) / {BYTE}"
+
+    # And back.
+
+    def _unpacking(self) -> Iterator[str]:
+        names: dict[Word, str] = {}
+        for at in range(len(self.targets)):
+            yield from self._taken_words(at, names)
+        yield from self._normal_lines(names)
+        for field in self.contents.fields[1:]:
+            yield from self._field_lines(field, names)
+
+    def _taken_words(self, at: int, names: dict[Word, str]) -> Iterator[str]:
+        """Lines that take integers out of a target; each word's number is added to `names`."""
+        storage = self._layout.targets[at].storage
+        words = [word for word in self.contents.words if word.target == at]
+        held = {}
+        for channel in range(storage.channels):
+            found = list(parts_of(words, channel, storage.bits[channel]))
+            text = f"t.target_{at}" + (f".{AXES[channel]}" if storage.channels > 1 or not storage.is_integer else "")
+            if found and not storage.is_integer:
+                yield f"uint byte_{at}_{channel} = uint({text} * {BYTE} + 0.5);"
+                text = f"byte_{at}_{channel}"
+            for part in found:
+                held.setdefault(part.word, []).append((part, text))
+        for word in words:
+            number = Number(self._layout, word)
+            if word.bits:
+                yield f"uint {self._integer_name(word)} = {taken_text(held[word], word.bits)};"
+                names[word] = number.bits_value(self._integer_name(word))
+            else:
+                names[word] = number.channel_value(f"t.target_{at}.{AXES[word.first]}", self._is_float(word))
+
+    def _normal_lines(self, names: dict[Word, str]) -> Iterator[str]:
+        found = {word.component: names[word] for word in names if word.component.startswith("normal.")}
+        axes = "xyz"[: self._layout.encoding.components]
+        for axis in axes:
+            yield f"float code_{axis} = {found[f'normal.{axis}']};"
+        code = ", ".join(f"code_{axis}" for axis in axes)
+        yield f"vec3 normal = DECODE(CODE({code}), vec3(0.0));"
+
+    def _field_lines(self, field: Field, names: dict[Word, str]) -> Iterator[str]:
+        if not field.kept and len(field.words) == 1:
+            yield f"{field.kind} {field.name} = {names[field.words[0]]};"
+            return
+        if len(field.words) == 1:
+            yield f"float {field.name} = {self._decoded(field, names[field.words[0]])};"
+            return
+        parts = []
+        for word in self._words_of(field):
+            parts.append(_local(word.component))
+            yield f"float {parts[-1]} = {self._decoded(field, names[word])};"
+        yield f"{field.kind} {field.name} = {self._joined(field, parts)};"
+
+    def _decoded(self, field: Field, text: str) -> str:
+        """A number as its curve takes it back."""
+        if field.kept is None or code_is_whole(field.kept):
+            return text
+        return f"{field.kept.encoding.name}_decode_curve({text}, {glsl_value(field.kept.range)})"
+
+    def _joined(self, field: Field, parts: list[str]) -> str:
+        listed = ", ".join(parts)
+        if not field.kept or not code_is_whole(field.kept):
+            return _listed(field.kind, parts)
+        encoding = field.kept.encoding
+        if isinstance(encoding, LightEncoding):
+            return f"{encoding.prefix}_decode(vec4({listed})).xyz"
+        return f"{encoding.prefix}_decode_motion(vec2({listed}), {glsl_value(field.kept.range)})"
+
+    # Names.
+
+    def _words_of(self, field: Field) -> list[Word]:
+        """The words of a field: of a code of light one more than the field has numbers."""
+        found = {word.component: word for word in self.contents.words}
+        return [found[component] for component in _components_of(field)]
+
+    def _other_name(self, word: Word) -> str:
+        return next(field.name for field in self.contents.fields if field.words == (word,))
+
+    def _is_float(self, word: Word) -> bool:
+        return any(field.words == (word,) and field.kind == "float" for field in self.contents.fields)
+
+    def _integer_name(self, word: Word) -> str:
+        names = (field.name for field in self.contents.fields if field.words == (word,))
+        name = next(names, _local(word.component))
+        return f"{name}_bits"
+
+
+def _components_of(field: Field) -> tuple[str, ...]:
+    """The components that the codes of a field lie in."""
+    is_light = field.kept is not None and isinstance(field.kept.encoding, LightEncoding)
+    return (*field.components, f"{field.name}.a") if is_light else field.components
+
+
+def _local(component: str) -> str:
+    return component.replace(".", "_")
+
+
+def _listed(kind: str, parts: list[str]) -> str:
+    return parts[0] if len(parts) == 1 else f"{kind}({', '.join(parts)})"

@@ -1,0 +1,257 @@
+"""Whether a layout's code gives what the renderer's own GLSL gives: both run on the same surfaces, and are compared."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+
+from .....encodings.storages.rounding import store_texel, to_srgb
+from .....encodings.storages.storage import Storage
+from .....gbuffer.codecs.codec_passes import encoding_defines
+from .....gbuffer.codecs.depth.depth_passes import depth_defines
+from .....gbuffer.defines.layouts import curve_defines, curve_files, layout_defines
+from .....gbuffer.defines.materials import CONSTANTS
+from .....gbuffer.gl.shader import Source
+from .....gbuffer.layouts.layout import Layout
+from .....gbuffer.layouts.words import COMPONENTS, OTHER, Word
+from ..run import opengl
+from ..verify import DECODED, MOST_SHARE
+from .bits import parts_of
+from .emit import GBufferCode
+from .fields import target_leaves
+from .run import BLOCK, dispatched, run
+from .surface import Contents
+from .surfaces import surfaces
+
+REFERENCE = Path(__file__).with_name("reference.comp")
+COUNT = 2**16
+# Of the depth that no layout here holds.
+DEPTH_RANGE = "vec2(0.1, 1000.0)"
+CHANNELS, NORMAL = 4, 3
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """How a file's results differ from the renderer's.
+
+    Attributes:
+        count: of surfaces.
+        differing: surfaces of which some bit of some target is another one.
+        steps: by how many steps a number differs at most there.
+        unpacked: numbers of surfaces that come back otherwise: whole ones that are others, and the rest by more than
+            DECODED of what they are, or of 1.
+        decoded: by how much a number that comes back differs at most, as a share of that.
+    """
+
+    count: int
+    differing: int
+    steps: int
+    unpacked: int
+    decoded: float
+
+    @property
+    def holds(self) -> bool:
+        """Whether it is the renderer's but for ties."""
+        return self.differing <= MOST_SHARE * self.count and self.steps <= 1 and not self.unpacked
+
+    @property
+    def says(self) -> str:
+        """The agreement in words."""
+        packed = f"the targets of all {self.count} surfaces are the renderer's, bit for bit"
+        if self.differing:
+            packed = f"the targets of {self.differing} of {self.count} surfaces differ, by {self.steps} step at most"
+        back = f"{self.unpacked} numbers come back otherwise" if self.unpacked else "what is unpacked is as well"
+        return f"{packed}; {back}" + (f" within {self.decoded:.1g}" if self.decoded else "")
+
+
+def agreement(code: GBufferCode, count: int = COUNT, seed: int = 0) -> Agreement:
+    """How a file's functions compare with the renderer's, on random surfaces.
+
+    Raises:
+        MissingError: what runs the language is not installed.
+        ShaderError: it does not compile or run.
+        NoDeviceError: there is no GL device.
+    """
+    contents = code.texts.contents
+    given = surfaces(contents, count, seed)
+    expected = Expected(contents, given)
+    ran = run(code, np.concatenate([given, expected.read(code)], axis=1))
+    width = len(target_leaves(code.texts))
+    return _compared(expected, _stored(contents.layout, _texels(code, ran[:, :width])), ran[:, width:])
+
+
+class Expected:
+    """What the renderer's GLSL makes of surfaces.
+
+    Attributes:
+        stored: uint32 of shape (count, targets, 4): what targets hold, as texels of whole numbers or floats by bits.
+        surfaces: uint32 of shape (count, numbers), what comes back of that.
+    """
+
+    def __init__(self, contents: Contents, given: np.ndarray):
+        self.contents, self._given = contents, given
+        layout = contents.layout
+        self._program = opengl.compiled(_reference_text(layout), str)
+        rows = np.zeros((len(given), NORMAL + len(COMPONENTS) + CHANNELS * len(layout.targets)), np.uint32)
+        rows[:, : NORMAL + len(COMPONENTS)] = self._numbers()
+        made = self._made(rows)[:, : CHANNELS * len(layout.targets)]
+        self.stored = _stored(layout, made.reshape(len(given), -1, CHANNELS))
+        self._add_others()
+        rows[:, NORMAL + len(COMPONENTS) :] = self.stored.reshape(len(given), -1)
+        self.surfaces = self._surfaces(self._made(rows)[:, CHANNELS * len(layout.targets) :])
+        self._program.release()
+
+    def _made(self, rows: np.ndarray) -> np.ndarray:
+        parts = [rows[at : at + BLOCK] for at in range(0, len(rows), BLOCK)]
+        return np.concatenate([dispatched(self._program, part, rows.shape[1]) for part in parts])
+
+    def _columns(self) -> dict[str, int]:
+        """Where each component's number lies in the rows of surfaces."""
+        found, at = {}, NORMAL
+        for field in self.contents.fields[1:]:
+            for component in field.components:
+                found[component] = at
+                at += 1
+        return found
+
+    def _numbers(self) -> np.ndarray:
+        """The normal and the numbers that the renderer is given: whole ones as floats."""
+        found = np.zeros((len(self._given), NORMAL + len(COMPONENTS)), np.float32)
+        found[:, :NORMAL] = self._given[:, :NORMAL].view(np.float32)
+        kinds = {one: field.kind for field in self.contents.fields for one in field.components}
+        for component, at in self._columns().items():
+            if component in COMPONENTS:
+                column = np.ascontiguousarray(self._given[:, at])
+                number = column.astype(np.float32) if kinds[component] == "uint" else column.view(np.float32)
+                found[:, NORMAL + COMPONENTS.index(component)] = number
+        return found.view(np.uint32)
+
+    def _add_others(self) -> None:
+        """What the renderer does not keep, put where the layout has it."""
+        columns = self._columns()
+        for field in self.contents.fields:
+            if field.words and field.words[0].component == OTHER:
+                value = np.ascontiguousarray(self._given[:, columns[field.name]])
+                _put(self.contents.layout, field.words[0], value, field.kind == "float", self.stored)
+
+    def _surfaces(self, made: np.ndarray) -> np.ndarray:
+        """Surfaces of a normal and the renderer's numbers; others as they were given, floats as the format has them."""
+        found = self._given.copy()
+        for field in self.contents.fields:
+            if field.kind == "float" and field.words[0].component == OTHER:
+                word = field.words[0]
+                found[:, self._columns()[field.name]] = self.stored[:, word.target, word.first]
+        found[:, :NORMAL] = made[:, :NORMAL]
+        kinds = {one: field.kind for field in self.contents.fields for one in field.components}
+        for component, at in self._columns().items():
+            if component in COMPONENTS:
+                number = np.ascontiguousarray(made[:, NORMAL + COMPONENTS.index(component)])
+                is_whole = kinds[component] == "uint"
+                found[:, at] = (number.view(np.float32) + 0.5).astype(np.uint32) if is_whole else number
+        return found
+
+    def read(self, code: GBufferCode) -> np.ndarray:
+        """What targets read, in the order of the structure: uint32 of shape (count, numbers)."""
+        places = (leaf.path.removeprefix("target_").partition(".") for leaf in target_leaves(code.texts))
+        return np.stack([self.stored[:, int(at), "xyzw".index(axis or "x")] for at, _, axis in places], axis=1)
+
+
+def _reference_text(layout: Layout) -> str:
+    encoding, depth = layout.codec.encoding, layout.depth_encoding
+    defines: dict[str, object] = {**CONSTANTS, **depth_defines(depth), **encoding_defines(encoding)}
+    defines |= {**layout_defines(layout, (0,) * len(layout.targets), True), **curve_defines(layout)}
+    files: dict[str, Any] = {"ENCODING": encoding.glsl, "DEPTH_ENCODING": depth.glsl, "CURVES": curve_files(layout)}
+    return Source(REFERENCE, defines | {"DEPTH_RANGE": DEPTH_RANGE}, files).text
+
+
+def _texels(code: GBufferCode, packed: np.ndarray) -> np.ndarray:
+    """What a file writes to targets, as the renderer has it: uint32 of shape (count, targets, 4)."""
+    found = np.zeros((len(packed), len(code.texts.targets), CHANNELS), np.uint32)
+    for column, leaf in enumerate(target_leaves(code.texts)):
+        at, _, axis = leaf.path.removeprefix("target_").partition(".")
+        found[:, int(at), "xyzw".index(axis or "x")] = packed[:, column]
+    return found
+
+
+def _stored(layout: Layout, texels: np.ndarray) -> np.ndarray:
+    """Texels as targets hold them and give them back: what the formats' own conversion makes of them."""
+    found = np.zeros_like(texels)
+    for at, target in enumerate(layout.targets):
+        for channel in range(target.storage.channels):
+            word = np.ascontiguousarray(texels[:, at, channel])
+            if not target.storage.is_integer:
+                number = store_texel(jnp.asarray(word.view(np.float32)), target.storage, channel)
+                word = np.asarray(number, np.float32).view(np.uint32)
+            found[:, at, channel] = word
+    return found
+
+
+def _put(layout: Layout, word: Word, value: np.ndarray, is_float: bool, stored: np.ndarray) -> None:
+    """Put a whole number, or a float by its bits, where a word lies."""
+    storage = layout.targets[word.target].storage
+    if not word.bits:
+        texel = value.view(np.float32) if is_float else _unit(value, storage, word.first)
+        number = np.asarray(store_texel(jnp.asarray(texel), storage, word.first), np.float32)
+        stored[:, word.target, word.first] = number.view(np.uint32)
+        return
+    for channel, size in enumerate(storage.bits):
+        for part in parts_of([word], channel, size):
+            moved = value << np.uint32(part.shift) if part.shift >= 0 else value >> np.uint32(-part.shift)
+            moved &= np.uint32(2**size - 1)
+            if storage.is_integer:
+                stored[:, word.target, channel] |= moved
+            else:
+                held = np.rint(np.ascontiguousarray(stored[:, word.target, channel]).view(np.float32) * 255.0)
+                texel = ((held.astype(np.uint32) | moved) * np.float32(1 / 255)).astype(np.float32)
+                stored[:, word.target, channel] = texel.view(np.uint32)
+
+
+def _unit(value: np.ndarray, storage: Storage, channel: int) -> np.ndarray:
+    return (value / storage.scale(channel)).astype(np.float32)
+
+
+def _compared(expected: Expected, stored: np.ndarray, back: np.ndarray) -> Agreement:
+    layout = expected.contents.layout
+    steps = max(
+        (
+            int(np.abs(_steps(layout, word, stored) - _steps(layout, word, expected.stored)).max(initial=0))
+            for word in expected.contents.words
+        ),
+        default=0,
+    )
+    is_float = np.array([f.kind != "uint" for f in expected.contents.fields for _ in f.components or "xyz"])
+    mine, theirs = (np.ascontiguousarray(rows[:, is_float]).view(np.float32) for rows in (back, expected.surfaces))
+    off = np.abs(mine - theirs) / np.maximum(np.abs(theirs), 1.0)
+    wrong = int((back[:, ~is_float] != expected.surfaces[:, ~is_float]).sum()) + int((~(off <= DECODED)).sum())
+    differing = int((stored != expected.stored).any(axis=(1, 2)).sum())
+    return Agreement(len(stored), differing, steps, wrong, float(off.max(initial=0.0)))
+
+
+def _float_steps(number: np.ndarray, bits: int) -> np.ndarray:
+    """Floats of so many bits as integers in their order. Those without a sign are halves that end in 0."""
+    held = number.astype(np.float16).view(np.int16) if bits < 32 else number.view(np.int32)
+    magnitude = held.astype(np.int64) & np.iinfo(held.dtype).max
+    return np.where(held < 0, -magnitude, magnitude) >> max(0, 15 - bits)
+
+
+def _steps(layout: Layout, word: Word, stored: np.ndarray) -> np.ndarray:
+    """The integers that a word's number is kept as, int64 of shape (count,): how many steps two are apart."""
+    storage, texels = layout.targets[word.target].storage, stored[:, word.target]
+    if not word.bits:
+        number = np.ascontiguousarray(texels[:, word.first]).view(np.float32)
+        if storage.kind == "float":
+            return _float_steps(number, storage.bits[word.first])
+        curved = np.asarray(to_srgb(jnp.asarray(number))) if word.first < storage.curved else number
+        return np.rint(curved.astype(np.float64) * storage.scale(word.first)).astype(np.int64)
+    found = np.zeros(len(texels), np.uint32)
+    for channel, size in enumerate(storage.bits):
+        held = np.ascontiguousarray(texels[:, channel])
+        held = held if storage.is_integer else np.rint(held.view(np.float32) * 255.0).astype(np.uint32)
+        for part in parts_of([word], channel, size):
+            moved = held >> np.uint32(part.shift) if part.shift >= 0 else held << np.uint32(-part.shift)
+            found |= moved & np.uint32(2**word.bits - 1)
+    return found.astype(np.int64)

@@ -1,0 +1,260 @@
+"""Code of whole layouts: it packs and unpacks what the renderer's own GLSL does."""
+
+import json
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from languages import require_runner
+
+from normalbench.bench.door import gbuffer_command
+from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.shaders.code.emit import LANGUAGES
+from normalbench.bench.shaders.code.whole.bits import packed_texts, parts_of, taken_text
+from normalbench.bench.shaders.code.whole.emit import gbuffer_code
+from normalbench.bench.shaders.code.whole.fold import WIDTH, folded
+from normalbench.bench.shaders.code.whole.head import table
+from normalbench.bench.shaders.code.whole.run import RUNS
+from normalbench.bench.shaders.code.whole.surface import Contents
+from normalbench.bench.shaders.code.whole.verify import agreement
+from normalbench.bench.subjects.codecs.layout_names import layouts_named
+from normalbench.gbuffer.layouts.presets import LAYOUTS
+from normalbench.gbuffer.layouts.words import Word
+
+pytestmark = pytest.mark.usefixtures("gl")
+# As `budget --layouts` writes them, into whole numbers.
+WORDS = """
+title = "16 bytes"
+encoding = "octahedral"
+space = "world"
+
+[[targets]]
+format = "rg32_uint"
+holds = "normal.x:12 normal.y:12 square_root(roughness):8 metalness:5 square_root(albedo.r):7 \
+square_root(albedo.g):7 square_root(albedo.b):6 linear:0.08(reflectance):4 other:3"
+
+[[targets]]
+format = "r32_uint"
+holds = "sqrt(motion.x):14 sqrt(motion.y):14 other:4"
+
+[[targets]]
+format = "rgba8"
+holds = "occlusion other kind:4 other:12"
+"""
+SIGNED = """
+encoding = "xyz_renormalised"
+packing = "signed"
+
+[[targets]]
+format = "r32_uint"
+holds = "normal.x:10 normal.y:11 normal.z:10 other:1"
+
+[[targets]]
+format = "rgba16_uint"
+holds = "albedo:9 roughness:12 metalness:11 instance:8 other:6"
+
+[[targets]]
+format = "r11g11b10f"
+holds = "emission"
+
+[[targets]]
+format = "rg16_snorm"
+holds = "motion.x motion.y"
+"""
+PRESETS = ("unreal4", "bevy", "unity_hdrp")
+FAST, FEW, MANY = ("c", "python"), 2**12, 10**6
+# Of the layouts of MANY surfaces: those whose curves have powers, which languages round otherwise, have ties.
+TIES = {"unreal4": 1e-4, "bevy": 1e-4, "unity_hdrp": 1e-4, "words": 0.0, "signed": 0.0}
+
+
+@pytest.fixture
+def layouts(tmp_path) -> dict:
+    """Five layouts by name: presets, and two files."""
+    for name, text in (("words", WORDS), ("signed", SIGNED)):
+        (tmp_path / f"{name}.toml").write_text(text)
+    named = layouts_named(f"{tmp_path / 'words.toml'},{tmp_path / 'signed.toml'}")
+    return {layout.name: layout for layout in (*named, *(LAYOUTS[name] for name in PRESETS))}
+
+
+def in_languages(names, fast) -> list:
+    every = [(name, language) for name in names for language in RUNS]
+    return [pytest.param(*one, marks=[] if one[1] in fast else [pytest.mark.slow]) for one in every]
+
+
+@pytest.mark.parametrize("name, language", in_languages(TIES, FAST))
+def test_it_packs_and_unpacks_as_the_renderer_does(name, language, layouts):
+    """Bits of every target, and every number that comes back, of surfaces with the ends of each range and beyond."""
+    require_runner(language)
+    found = agreement(gbuffer_code(layouts[name], language), FEW)
+    assert found.holds, found.says
+    assert found.differing <= max(TIES[name] * FEW, 2 * (TIES[name] > 0)), found.says
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("language", FAST)
+@pytest.mark.parametrize("name", TIES)
+def test_a_million_surfaces_are_packed_as_the_renderer_packs_them(name, language, layouts):
+    """None differs where no curve has a power; else a few do, by a step where they lie next to a tie."""
+    require_runner(language)
+    found = agreement(gbuffer_code(layouts[name], language), MANY, seed=1)
+    assert found.holds, found.says
+    assert found.differing <= TIES[name] * MANY, found.says
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", LAYOUTS)
+def test_every_preset_is_written_or_says_why_not(name):
+    """In C, in lines that fit; what is not written is one line."""
+    require_runner("c")
+    try:
+        code = gbuffer_code(LAYOUTS[name], "c")
+    except UsageError as error:
+        assert str(error).startswith(f"layout {name}: no code is written for "), error
+        return
+    assert (found := agreement(code, FEW)).holds, found.says
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_lines_and_names_are_short(language, layouts):
+    """Lines have 99 letters at most, but for what the language's own helpers have; names 24."""
+    for layout in layouts.values():
+        body = gbuffer_code(layout, language).body
+        own = body[body.index("gbuffer_targets") :]
+        assert max(map(len, own.splitlines())) <= WIDTH, max(own.splitlines(), key=len)
+        assert all(len(name) <= 24 for name in re.findall(r"\bgbuffer_(?:to|from|pack|unpack)\w*", body))
+
+
+@pytest.mark.parametrize(
+    "old, new",
+    [
+        ("normal_x_bits << 20", "normal_x_bits << 19"),
+        ("* 8191.0f) + 8191.0f", "* 8191.0f) + 8190.0f"),
+        ("(kind_bits << 4)", "(kind_bits << 3)"),
+        ("/ 31.0f", "/ 32.0f"),
+        (">> 27", ">> 26"),
+    ],
+)
+def test_a_fault_is_noticed(old, new, layouts):
+    require_runner("c")
+    code = gbuffer_code(layouts["words"], "c")
+    assert old in code.body, code.body
+    assert not agreement(replace(code, body=code.body.replace(old, new)), FEW).holds
+
+
+def test_a_width_in_the_file_changes_both_functions(tmp_path):
+    """Roughness of 8 bits becomes one of 7 with a bit beside it: the code changes, and still agrees."""
+    require_runner("python")
+    bodies = []
+    for name, text in (("eight", WORDS), ("seven", WORDS.replace("(roughness):8", "(roughness):7 other:1"))):
+        (tmp_path / f"{name}.toml").write_text(text)
+        (layout,) = layouts_named(str(tmp_path / f"{name}.toml"))
+        code = gbuffer_code(layout, "python")
+        assert (found := agreement(code, FEW)).differing == 0, found.says
+        bodies.append(code.body)
+    for function in ("def gbuffer_pack", "def gbuffer_unpack"):
+        parts = [body.partition(function)[2].partition("\ndef ")[0] for body in bodies]
+        assert "255.0" in parts[0] and "127.0" in parts[1] and parts[0] != parts[1]
+
+
+def test_words_that_cross_channels_come_back():
+    """Integers across channels of 8 and of 16 bits: what is put is what is taken, and nothing else is touched."""
+    words = [Word("a", 0, 0, 11), Word("b", 0, 11, 10), Word("c", 0, 21, 11)]
+    given = {"a": 0b10110011101, "b": 0b1100101011, "c": 0b01110001101}
+    for size in (8, 16, 32):
+        held, read = {}, {word: [] for word in words}
+        for channel in range(32 // size):
+            parts = list(parts_of(words, channel, size))
+            text = " | ".join(packed_texts([(part, part.word.component) for part in parts], size))
+            held[f"t{channel}"] = eval(text.replace("u", ""), dict(given)) & 2**size - 1
+            for part in parts:
+                read[part.word].append((part, f"t{channel}"))
+        for word in words:
+            taken = eval(taken_text(read[word], word.bits).replace("u", ""), dict(held))
+            assert taken == given[word.component], (size, word)
+        whole = sum(held[f"t{channel}"] << 32 - size * (channel + 1) for channel in range(32 // size))
+        assert whole == given["a"] << 21 | given["b"] << 11 | given["c"]
+
+
+@pytest.mark.parametrize(
+    "name, why",
+    [
+        ("nrd", "a sign that roughness carries"),
+        ("r3d", "a depth in a target"),
+        ("cryengine3", "the look-up table of best_fit"),
+        ("wicked_truncated", "a normal that is rounded by the shader"),
+    ],
+)
+def test_what_is_not_written_is_one_line(name, why):
+    with pytest.raises(UsageError, match=f"^layout {name}: no code is written for {why}"):
+        Contents(LAYOUTS[name])
+
+
+def test_the_table_says_where_each_field_lies(layouts):
+    lines = [re.split(r"\s{2,}", line.strip()) for line in table(Contents(layouts["words"]))]
+    assert lines[0] == ["target", "format", "bits", "lies in", "field", "code"]
+    assert ["target_0", "rg32_uint", "8", "x 0-7", "roughness", "square_root"] in lines
+    assert ["target_2", "rgba8", "12", "z 0-3, w 0-7", "other_4", "as it is"] in lines
+    lines = table(Contents(layouts["unreal4"]))
+    assert any("base_colour.x" in line and "sRGB, by the format" in line for line in lines)
+
+
+@pytest.mark.parametrize("mark, begin", [("//", "int x = "), ("#", "x = ")])
+def test_folded_lines_are_the_same_code(mark, begin):
+    """Nothing but white space is added; Python's lines are broken within brackets alone."""
+    inside = " + ".join(f"f({at}, {at + 1})" for at in range(40))
+    line = f"    {begin}g({inside}, {inside})"
+    found = folded(line + "\n", mark)
+    assert max(map(len, found.splitlines())) <= WIDTH
+    assert "".join(found.split()) == "".join(line.split())
+    plain = f"{begin}{' + '.join(['abcdef'] * 30)}"
+    assert (len(folded(plain, mark).splitlines()) == 1) == (mark == "#")
+
+
+def test_the_command_writes_files_and_checks_them(run, tmp_path, monkeypatch):
+    """A file of the name of the layout, which says what made it and how it compares; `--check` writes a table."""
+    require_runner("c")
+    (tmp_path / "mine.toml").write_text(WORDS)
+    monkeypatch.chdir(tmp_path)
+    status, _, _ = run("code", "mine.toml", "--to", "c,python,msl", "-o", "made")
+    assert status == 0
+    assert {path.name for path in Path("made").iterdir()} == {"mine.h", "mine.py", "mine.metal"}
+    text = Path("made/mine.h").read_text()
+    assert "normalbench code mine.toml --to c" in text and "the renderer's, bit for bit" in text
+    assert "not run here" in Path("made/mine.metal").read_text()
+    status, out, _ = run("code", "unreal4", "--of", "layout", "--check", "--to", "c", "--format", "json")
+    (row,) = json.loads(out)
+    assert status == 0 and row["verdict"] == "verified"
+    status, _, err = run("code", "mine.toml", "--storage", "rg8")
+    assert status != 0 and "a layout says its formats itself" in err
+
+
+def test_a_file_that_differs_is_not_written(run, tmp_path, monkeypatch):
+    """All languages are made from one tree: where one is wrong none is written, and the exit status is 1."""
+    require_runner("c")
+    (tmp_path / "mine.toml").write_text(WORDS)
+    monkeypatch.chdir(tmp_path)
+    own = gbuffer_command.gbuffer_code
+
+    def wrong(layout, language, prefix):
+        code = own(layout, language, prefix)
+        return replace(code, body=code.body.replace("* 8191.0", "* 8190.0"))
+
+    monkeypatch.setattr(gbuffer_command, "gbuffer_code", wrong)
+    status, _, err = run("code", "mine.toml", "--to", "msl", "-o", "made")
+    assert status == 1 and "is not written" in err
+    assert not Path("made").exists()
+
+
+def test_python_takes_arrays_of_any_shape(layouts, tmp_path):
+    """A surface of one pixel's numbers gives one pixel's targets."""
+    (tmp_path / "mine.py").write_text(gbuffer_code(layouts["words"], "python").body)
+    made: dict = {}
+    exec(compile((tmp_path / "mine.py").read_text(), "mine.py", "exec"), made)
+    surface = made["gbuffer_surface"]([0, 0, 1], [1, 1, 1], 1, 1, 0.08, 1, 5, [0, 0], 1, 2, 3, 4)
+    targets = made["gbuffer_pack"](surface)
+    back = made["gbuffer_unpack"](targets)
+    assert targets.target_0.shape == (2,) and int(back.kind) == 5 and int(back.other_4) == 4
+    np.testing.assert_array_equal(back.motion, [0.0, 0.0])
+    np.testing.assert_allclose(back.normal, [0.0, 0.0, 1.0], atol=2e-3)
