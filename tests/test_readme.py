@@ -23,7 +23,7 @@ from contributing import a_copy_of_the_rooms, normalbench_in
 from manual import PAGES, README, ROOT
 from written import as_document, packed, planes_of, png_bytes, some_normals, write_exr
 
-from normalbench.bench.door import code_command, examine, run, table_command
+from normalbench.bench.door import code_command, examine, gbuffer_command, run, table_command
 from normalbench.bench.door.cli import app as cli
 from normalbench.bench.keep import machine
 from normalbench.bench.run import measuring
@@ -119,6 +119,7 @@ TAKEN = "test_readme.py::test_every_long_command_is_taken_as_written"
 BEGINNINGS = (
     (measuring.Here, "measure"),
     (code_command, "agreement"),
+    (gbuffer_command, "agreement"),
     (report, "read_to_show"),
     (examine, "examined"),
     (machine, "examine"),

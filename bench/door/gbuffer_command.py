@@ -69,9 +69,9 @@ def _write_layout(layout: Layout, made: Sequence[GBufferCode], options: CodeOpti
 
 
 def _witnesses(layout: Layout, prefix: str) -> list[tuple[GBufferCode, Row]]:
-    """A language of the same tree that can be run here, where none of those asked for can."""
+    """A language of the same tree that can be run here, where none of those asked for can; none where none can."""
     rows = ((code, verified(code)) for code in (gbuffer_code(layout, name, prefix) for name in WITNESSES))
-    return [next(((code, row) for code, row in rows if row["verdict"] != NOT_RUN))]
+    return [pair for pair in rows if pair[1]["verdict"] != NOT_RUN][:1]
 
 
 def _command(code: GBufferCode, options: CodeOptions) -> str:

@@ -23,8 +23,8 @@ from .fields import surface_leaves, target_leaves
 
 HERE = Path(__file__).parent
 GROUP = 64
-# Rows that are run at once: it bounds the memory of a run.
-BLOCK = 2**17
+# Rows that are run at once: it bounds a run's memory, and the files that C and Python may write.
+BLOCK = 2**15
 MAIN = "run_main"
 
 
