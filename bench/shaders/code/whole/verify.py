@@ -63,9 +63,11 @@ class Agreement:
         """The agreement in words."""
         packed = f"the targets of all {self.count} surfaces are the renderer's, bit for bit"
         if self.differing:
-            packed = f"the targets of {self.differing} of {self.count} surfaces differ, by {self.steps} step at most"
-        back = f"{self.unpacked} numbers come back otherwise" if self.unpacked else "what is unpacked is as well"
-        return f"{packed}; {back}" + (f" within {self.decoded:.1g}" if self.decoded else "")
+            steps = f"{self.steps} step{'s' * (self.steps != 1)}"
+            packed = f"the targets of {self.differing} of {self.count} surfaces differ, by {steps} at most"
+        near = f" within {self.decoded:.1g}" if self.decoded else ""
+        back = f"{self.unpacked} numbers come back otherwise" if self.unpacked else f"surfaces come back equal{near}"
+        return f"{packed}; {back}"
 
 
 def agreement(code: GBufferCode, count: int = COUNT, seed: int = 0) -> Agreement:
