@@ -36,7 +36,7 @@ SIGNED = "signed"
 PACKINGS = {"nearest": (0.0, 0.5), "truncate": (0.0, 0.0), "truncate_half": (0.5, 0.0), SIGNED: (0.0, 0.5)}
 MAX_PACKED_BITS = 24
 # A Deferred ID tells four kinds apart, an instance is 1 to 255.
-LEAST_BITS = {"kind": 2, "instance": 8}
+LEAST_BITS = {"kind": 2, "instance": 8, "motion.x": 2, "motion.y": 2}
 # How far from 0 a carried sign keeps its number, in steps: NRD.hlsli has 1.5 / 512 of 10 bits.
 SIGN_STEPS = 1.5
 WORD = re.compile(

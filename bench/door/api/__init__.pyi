@@ -115,7 +115,7 @@ def budget(
     light: Names = ...,
     threshold: float | None = ...,
     blend: Names | None = ...,
-    read_alone: Names = ...,
+    read_alone: Names | None = ...,
     classes: Names = ...,
     overdraw: float = ...,
     readers: float = ...,
@@ -135,13 +135,13 @@ def budget(
         hold: What is stored: normal, basecolor, roughness, metalness, specular, occlusion, tangent; motion in a target of its own, or motion:packed; id:BITS, flags:BITS, shadow:BITS, custom:BITS, other:BITS; emission, or emission:light where the light buffer has it.
         targets: The most render targets that there may be.
         formats: Formats that targets may have, comma-separated, or all.
-        fields: Whether numbers may share a channel, as bits.
-        integers: Whether they may do so in integer targets.
+        fields: Allow several numbers to share a channel as bit fields.
+        integers: Allow integer targets.
         limit: webgpu: its 32 bytes a sample and its formats; tile:BYTES: a GPU's bytes a pixel in tiles.
         light: Format of the light buffer, which is drawn with the G-buffer: it counts for --limit.
         threshold: The fewest bytes whose FLIP (99th percentile) is at most this, in place of --bytes.
         blend: What decals blend into, such as basecolor,roughness,normal.
-        read_alone: What a pass reads from one target, as reflections and denoisers do; or none.
+        read_alone: What a pass reads from one target, or none. Default: normal,roughness without --blend.
         classes: Classes of surfaces that judge: mirror, glossy, rough, emissive; or all.
         overdraw: How often a pixel is written.
         readers: How many passes read all of the G-buffer.

@@ -36,8 +36,10 @@ def _said_codec(word: str) -> LightCodec:
     codec = ranged_light_buffer(name) if ":" in name else LIGHT_BUFFERS.get(name) or _plain_codec(name, word)
     if not is_in:
         return codec
-    (chosen,) = storages_named(storage, FORMATS, "light storage")
-    made = replace(codec, storage=chosen)
+    chosen = storages_named(storage, FORMATS, "light storage")
+    if len(chosen) > 1:
+        raise UsageError(f"light buffer {word}: one storage, not {len(chosen)}")
+    made = replace(codec, storage=chosen[0])
     if made.misfit:
         raise UsageError(f"light buffer {word}: {made.misfit}")
     return made

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
-from ....encodings.storages.storage import TARGET_FORMATS
 from .attributes import FLOAT, RGB9E5, SRGB, UNORM, Code
 
 Channel = tuple[str, int]
@@ -25,6 +24,7 @@ class Bin:
         copies: how many there may be.
         blends: whether decals blend into it; its last channel is then their factor and holds nothing.
         fuss: what an engineer would rather do without: 0 for plain channels.
+        shares: whether codes share its bytes bit by bit.
     """
 
     name: str
@@ -35,6 +35,7 @@ class Bin:
     copies: int = 2
     blends: bool = False
     fuss: float = 0.0
+    shares: bool = False
 
     def need(self, code: Code) -> Mapping[Channel, float] | None:
         """What a code takes of its channels, or of its bits; None where it cannot lie here."""
@@ -51,11 +52,6 @@ class Bin:
             fits = code.total_bits <= 8 * self.channels.get((UNORM, 8), 0)
             return {SHARED: code.total_bits / 8} if fits else None
         return self._need_of_exact(code) if code.is_exact else None
-
-    @property
-    def shares(self) -> bool:
-        """Whether it has bytes that codes share bit by bit."""
-        return not self.blends and {bits for _, bits in self.channels} == {8}
 
     def channels_of(self, code: Code) -> list[Channel]:
         """The kind of channel that each number of a code lies in, in a target of channels."""
@@ -88,7 +84,8 @@ SMALL, INTEGER = 2.0, 1.5
 def _plain(name: str, size: int, copies: int = 2, **channels: int) -> Bin:
     kinds = {"u": UNORM, "s": SRGB, "f": FLOAT}
     held = {(kinds[key[0]], int(key[1:])): count for key, count in channels.items()}
-    return Bin(name, name, size, held, 0, copies, fuss=SMALL * (size < 4))
+    shares = {bits for _, bits in held} == {8}
+    return Bin(name, name, size, held, 0, copies, fuss=SMALL * (size < 4), shares=shares)
 
 
 _PLAIN = (
@@ -105,7 +102,8 @@ _PLAIN = (
 )
 _WHOLE = (
     Bin("rgb9e5", "rgba8", 4, {(RGB9E5, 32): 1}, copies=1),
-    Bin("r11g11b10f", "r11g11b10f", 4, {(FLOAT, 11): 2, (FLOAT, 10): 1}, copies=1),
+    # Of 6 bits of mantissa where RGB9E5 has 9.
+    Bin("r11g11b10f", "r11g11b10f", 4, {(FLOAT, 11): 2, (FLOAT, 10): 1}, copies=1, fuss=1.0),
 )
 # Whole numbers, whose bits codes share in any sizes.
 _FIELDS = tuple(
@@ -128,7 +126,7 @@ LAST = {
 def _blended(one: Bin) -> Bin:
     channels = {channel: count - (channel == LAST[one.format]) for channel, count in one.channels.items()}
     kept = {channel: count for channel, count in channels.items() if count}
-    return replace(one, name=f"{one.name}_blended", channels=kept, blends=True)
+    return replace(one, name=f"{one.name}_blended", channels=kept, blends=True, shares=False)
 
 
 # What a render target of each format costs of WebGPU's 32 bytes a sample, and to how many bytes it is aligned (WebGPU,
@@ -146,11 +144,6 @@ WEBGPU: Mapping[str, tuple[int, int]] = MappingProxyType(
     }
 )
 WEBGPU_BYTES = 32
-
-
-def is_integer(one: Bin) -> bool:
-    """Whether a target is of whole numbers."""
-    return TARGET_FORMATS[one.format].is_integer
 
 
 def webgpu_cost(formats: Sequence[str]) -> int | None:

@@ -50,7 +50,9 @@ def alone(layout: Layout, attribute: str) -> Layout:
         held.append(Target("rgba32f", "albedo -"))
     others = [FREE if name == attribute else COMPONENTS[name][0] for name in NUMBERS]
     held.append(Target("rgba32f", " ".join(others)))
-    changes = {} if is_normal else {"encoding": ENCODINGS["xyz"], "space": "world", "depth": None}
+    changes = (
+        {} if is_normal else {"encoding": ENCODINGS["xyz"], "space": "world", "depth": None, "rounding": "nearest"}
+    )
     return replace(layout, name=f"{layout.name}_{attribute}", targets=tuple(held), light="", **changes)
 
 

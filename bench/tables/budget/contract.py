@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from types import MappingProxyType
 
 from ...ground.output.errors import UsageError
-from .attributes import EMISSION, MOTION, PACKED_MOTION, SEEN, Attribute, exact_bits
+from .attributes import EMISSION, MOST_PART, MOTION, PACKED_MOTION, SEEN, Attribute, exact_bits
 
 # Attributes that are so many bits, which come back as they are; with the word that a layout has for them.
 EXACT: Mapping[str, tuple[str, str]] = MappingProxyType(
@@ -54,9 +53,9 @@ def _attribute(word: str) -> Attribute | None:
     if not size.isdigit() or not 1 <= int(size) <= MOST_BITS:
         raise UsageError(f"--hold {word}: {name} takes 1 to {MOST_BITS} bits, such as {name}:4")
     title, layout_word = EXACT[name]
-    if layout_word == "kind" and int(size) < 2:
-        raise UsageError(f"--hold {word}: a model of shading takes 2 bits or more")
-    return replace(exact_bits(name, title, layout_word, int(size)))
+    if layout_word == "kind" and not 2 <= int(size) <= MOST_PART:
+        raise UsageError(f"--hold {word}: a model of shading takes 2 to {MOST_PART} bits")
+    return exact_bits(name, title, layout_word, int(size))
 
 
 def names_held(option: str, words: str | None, held: Sequence[str]) -> list[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -19,9 +19,10 @@ from ...ground.output.errors import UsageError
 from ...measures.metrics.totals import psnr_db
 from . import changes
 from .attributes import Attribute, usual
-from .bins import SHARED, Bin, webgpu_cost
+from .bins import Bin, webgpu_cost
 from .rates import FRAME, LEAST_PIXELS, PIPELINE, Exact, Stage, rates
-from .solve import Placed, Problem, Rules, Solution, solved
+from .solve import EXACT as NOTHING
+from .solve import Placed, Problem, Rules, Solution, fewest_bytes, solved
 from .table import TABLE
 from .written import layout_of
 
@@ -82,8 +83,10 @@ def measure(device: Device, question: Question, tick: Tick) -> list[Row]:
     with ExitStack() as stack:
         judges = [Exact(device, stack, stage) for stage in question.stages]
         judged = Judged(question, judges, tick)
-        asked = question.rules if question.threshold is None else [judged.fewest()]
-        rows = [row for rules in asked for row in judged.proposals(rules)]
+        if question.threshold is None:
+            rows = [row for rules in question.rules for row in judged.proposals(rules)]
+        else:
+            rows = list(judged.fewest())
         for layout in judged.others(device):
             is_mine = layout in question.against
             row = judged.row_of(MINE if is_mine else ENGINE, layout)
@@ -111,7 +114,8 @@ class Judged:
 
     def _shows(self, attribute: Attribute) -> bool:
         """Whether a scene shows what the codes of an attribute lose."""
-        return any(e for (name, _), found in self._errors.items() if name == attribute.name for e in found.values())
+        mine = (found for (name, _), found in self._errors.items() if name == attribute.name)
+        return any(e > NOTHING for found in mine for e in found.values())
 
     @property
     def classes(self) -> list[str]:
@@ -127,17 +131,26 @@ class Judged:
                 return found
         return None
 
-    def fewest(self) -> Rules:
-        """The rules with the fewest bytes whose layout keeps the threshold; with the most where none does."""
+    def fewest(self) -> Iterator[Row]:
+        """The row of the fewest bytes whose layout keeps the threshold; one without figures where none does."""
         q, (low, high) = self._question, self._question.search
-        assert q.threshold is not None
+        first, last = q.rules[0], high
         while low < high:
             middle = (low + high) // 2
-            found = self._solved(replace(q.rules[0], bytes=middle))
-            seen = found and [judge.of_layout(layout_of(f"budget_{middle}", found)).flip for judge in self._judges]
-            keeps = bool(seen) and all(one is not None and one <= q.threshold for one in seen or ())
-            low, high = (low, middle) if keeps else (middle + 1, high)
-        return replace(q.rules[0], bytes=low)
+            low, high = (low, middle) if self._keeps(replace(first, bytes=middle)) else (middle + 1, high)
+        if low == last and not self._keeps(replace(first, bytes=last)):
+            said = f"no layout of up to {last} bytes has FLIP of {q.threshold:g}"
+            yield self._empty(PROPOSAL, f"{last} bytes") | {"limit": last, "skipped": said}
+            return
+        yield from self.proposals(replace(first, bytes=low))
+
+    def _keeps(self, rules: Rules) -> bool:
+        """Whether the layout of a limit keeps the threshold in every scene."""
+        found, threshold = self._solved(rules), self._question.threshold
+        if found is None or threshold is None:
+            return False
+        flips = [judge.of_layout(layout_of(f"budget_{rules.bytes}", found)).flip for judge in self._judges]
+        return all(one is not None and one <= threshold for one in flips)
 
     def proposals(self, rules: Rules) -> Iterator[Row]:
         """The row of a limit; one without figures where nothing keeps to the rules."""
@@ -161,11 +174,13 @@ class Judged:
 
     def _why(self, rules: Rules) -> str:
         """What the least is that can be, for a limit that cannot."""
-        for size in range(rules.bytes + 1, 129):
-            if self._solved(replace(rules, bytes=size)):
-                bits = sum(min(code.total_bits for code in one.codes) for one in self._question.attributes)
-                return f"{rules.bytes} bytes cannot hold this: its least bits are {bits}, and {size} bytes is the least"
-        return "no targets hold this by these rules, whatever their bytes"
+        q = self._question
+        least = fewest_bytes(Problem(q.attributes, self._errors, self.classes, q.bins, rules))
+        if least is None:
+            return "no targets hold this by these rules, whatever their bytes"
+        bits = sum(min(code.total_bits for code in one.codes) for one in q.attributes)
+        few = f"{rules.bytes} bytes are too few"
+        return f"{few}: the attributes need {bits} bits, and the smallest layout has {least} bytes"
 
     def _predicted(self, found: Solution) -> Row:
         worst = max(self.classes, key=lambda name: found.errors.get(name, 0.0))
@@ -188,7 +203,7 @@ class Judged:
         row = self._empty(kind, layout.name) | {
             "targets": "; ".join(f"{target.format}: {target.holds}" for target in layout.targets),
             "bytes_per_pixel": layout.bytes_per_pixel,
-            "contract_bytes": math.ceil(layout.bytes_per_pixel + self._beside(layout)),
+            "contract_bytes": self._contract_bytes(layout),
             "webgpu_bytes": webgpu_cost([target.format for target in layout.targets]),
             "in_tile": self._in_tile(layout),
             "holds": layout.reflects_by or None,
@@ -220,15 +235,22 @@ class Judged:
         more = [word.bits or storage.bits[word.first] for word, storage in storages if "emission" in word.component]
         return sum(lacks) / 8 - (0 if "emission" in held else sum(more) / 8)
 
-    def changes(self, layout: Layout) -> str | None:
-        """What would bring a layout most, in as many bytes; None where it keeps materials by other attributes."""
-        found = self._solved(replace(self._question.rules[0], bytes=layout.bytes_per_pixel))
-        if found is None or layout.reflects_by == DIFFUSE_F0 or "metalness" not in layout.components:
-            return None
-        try:
-            mine = {name: self._errors_alone(layout, name) for name in changes.COMPONENTS}
-        except UNMEASURABLE:
-            return None
+    def _contract_bytes(self, layout: Layout) -> int:
+        return math.ceil(layout.bytes_per_pixel + self._beside(layout))
+
+    def changes(self, layout: Layout) -> str:
+        """What would bring a layout most, in the bytes that it has with what it lacks; or why that is not said."""
+        if layout.reflects_by == DIFFUSE_F0 or "metalness" not in layout.components:
+            return "it keeps no metalness: its materials are other quantities than these codes are for"
+        size = self._contract_bytes(layout)
+        found = self._solved(replace(self._question.rules[0], bytes=size))
+        if found is None:
+            return f"no proposal holds --hold in {size} bytes"
+        whole, mine = changes.completed(layout), {}
+        for name in changes.COMPONENTS:
+            # A number that carries a sign of the normal does not stand alone.
+            with suppress(*UNMEASURABLE):
+                mine[name] = self._errors_alone(whole, name)
         return changes.said(mine, found, lambda name, code: self._errors.get((name, code), {}), self.classes)
 
     def _errors_alone(self, layout: Layout, attribute: str) -> dict[str, float]:
@@ -262,7 +284,8 @@ class Judged:
         plan = self._judges[0].stage.plan
         for layout in LAYOUTS.values() if self._question.engines else ():
             # Diffuse colour and F0 are other quantities than these codes are for.
-            if layout.is_whole and layout.reflects_by not in ("", DIFFUSE_F0):
+            is_named = layout in self._question.against
+            if layout.is_whole and not is_named and layout.reflects_by not in ("", DIFFUSE_F0):
                 try:
                     check(device, PIPELINES[PIPELINE], plan(layout), True)
                 except LayoutError:
@@ -271,8 +294,8 @@ class Judged:
 
 
 def _mixes(one: Placed) -> bool:
-    """Whether decals can blend into a code where it lies."""
-    return one.code.blends and not one.bin.fields and SHARED not in (one.bin.need(one.code) or {})
+    """Whether a code lies in a target that decals blend into."""
+    return one.bin.blends
 
 
 def _key(one: Any) -> tuple[str, str]:

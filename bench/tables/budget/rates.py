@@ -8,11 +8,12 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import cached_property
+from importlib.util import find_spec
 
 import jax
 import numpy as np
 
-from ....encodings.catalogue import ENCODINGS, LIGHT_BUFFERS
+from ....encodings.catalogue import ENCODINGS, LIGHT_BUFFERS, is_in_catalogue
 from ....gbuffer.display import Display, measured_exposure
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device
@@ -116,7 +117,8 @@ class Exact:
 
     def of_layout(self, layout: Layout) -> Seen:
         """What a layout makes of the image, drawn by it. Raises ShaderError, FormatError and LayoutError."""
-        key = cache.key_of("budget layout", self.key, layout.summary)
+        is_known = is_in_catalogue(layout.encoding)
+        key = cache.key_of("budget layout", self.key, layout.summary, str(_has_flip())) if is_known else ""
         found = cache.kept(key, lambda: self._drawn(layout))
         return Seen(found["errors"], found["flip"])
 
@@ -128,10 +130,9 @@ class Exact:
         return {"errors": self.errors(shown), "flip": self._flip(shown)}
 
     def _flip(self, shown: np.ndarray) -> float | None:
-        try:
-            apart = flip(shown, self.shown)
-        except ImportError:
+        if not _has_flip():
             return None
+        apart = flip(shown, self.shown)
         return float(np.percentile(apart[self.covered], PERCENTILE))
 
     def _texels(self, given: Surfaces) -> Sequence[np.ndarray]:
@@ -150,6 +151,10 @@ class Seen:
 
     errors: Mapping[str, float]
     flip: float | None
+
+
+def _has_flip() -> bool:
+    return find_spec("flip_evaluator") is not None
 
 
 Rates = Mapping[str, Mapping[str, float]]

@@ -12,8 +12,6 @@ INVISIBLE, ACCEPTABLE = 0.05, 0.1
 WORDS = {"basecolor": "base colour", "square_root": "by its root", "linear": "", "id": "model"}
 # Shares of an error that a sentence names.
 NAMED = 3
-# What a lead may expect decals to blend into.
-DECALS = ("normal", "basecolor", "roughness", "metalness")
 
 
 def told(row: Row) -> Iterator[str]:
@@ -58,9 +56,8 @@ def _verdict(flip: float) -> str:
 
 
 def _rules(row: Row) -> str:
-    blended = (row["blends"] or "").split(", ")
-    not_blended = [_code(name) for name in DECALS if name not in blended]
-    said = [f"Decals cannot blend into {', '.join(not_blended)}: apply them before packing."] if not_blended else []
+    blended = [_code(name) for name in (row["blends"] or "").split(", ") if name]
+    said = [f"Decals blend into {', '.join(blended)}." if blended else "Decals are applied before packing."]
     said.append(
         f"A frame moves {row['mb_1080p']:.0f} MB at 1080p and {row['mb_4k']:.0f} MB at 4K, without compression, "
         f"written {row['overdraw']:g} times and read {row['readers']:g} times."

@@ -12,19 +12,24 @@ Then, of all layouts within a fifth of a decibel of it, the plainest one.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from scipy.optimize import Bounds, LinearConstraint, milp
 from scipy.sparse import csr_array
 
+from ...ground.output.errors import UsageError
 from ...ground.output.quiet import without_their_output
 from .attributes import UNORM, Attribute, Code
 from .bins import SHARED, WEBGPU, Bin
 
 # Decibels within which layouts are equal, and how long HiGHS may look, in seconds.
 EQUAL_DB, MOST_SECONDS = 0.2, 20.0
+# What SciPy says of a program whose time is over.
+TIMED_OUT = 1
+# More bytes than any layout has.
+ANY_BYTES = 256
 # Errors that are not seen in any class: 60 dB, half of a step of 8 bits.
 UNSEEN = 1e-6
 # Codes that are off by so little are exact: below what 8 bits of a display can show in any pixel, 120 dB.
@@ -72,11 +77,6 @@ class Solution:
     def worst_of(self, names: Sequence[str]) -> float:
         """The largest error of some classes."""
         return max((self.errors.get(name, 0.0) for name in names), default=0.0)
-
-    @property
-    def key(self) -> frozenset[tuple[str, str]]:
-        """What tells it from another one: the codes."""
-        return frozenset((one.code.attribute, one.code.name) for one in self.placed)
 
 
 @dataclass(frozen=True)
@@ -178,22 +178,25 @@ class _Program:
             costs = {self.used(slot): float(WEBGPU[self.slots[slot][0].format][0]) for slot in every}
             self.row(costs, 0, rules.webgpu)
 
-    def solved(self, unit: float, most: float | None = None, without: Sequence[frozenset] = ()) -> np.ndarray | None:
-        """The variables of the least t in units, or where `most` is given of the plainest layout up to that t.
+    def solved(self, unit: float, most: float | None = None, is_smallest: bool = False) -> np.ndarray | None:
+        """The variables of the least t in units; where `most` is given, of the plainest layout up to that t; or of
+        the layout of the fewest bytes. None where there is none.
 
         Args:
             unit: the error that is 1.
-            without: solutions that are not to be found again.
+
+        Raises:
+            UsageError: none was found in time.
         """
         rows, last = list(self._rows), self.count - 1
         for name in self.problem.classes:
             terms = {i: self.problem.error(code, name) / unit for i, (code, *_) in enumerate(self.choices)}
             rows.append(({**{i: d for i, d in terms.items() if d}, last: -1.0}, -np.inf, 0.0))
-        for key in without:
-            same = {i: 1.0 for i, (code, *_) in enumerate(self.choices) if (code.attribute, code.name) in key}
-            rows.append((same, -np.inf, len(key) - 1))
         cost = np.zeros(self.count)
-        if most is None:
+        if is_smallest:
+            for slot, (one, _) in enumerate(self.slots):
+                cost[self.used(slot)] = one.bytes
+        elif most is None:
             cost[last] = 1.0
         else:
             cost[: len(self.choices)] = [fuss(code, self.slots[at][0]) for code, at, _ in self.choices]
@@ -227,7 +230,9 @@ class _Program:
                 constraints=LinearConstraint(matrix, lows, highs),
                 options={"time_limit": MOST_SECONDS, "mip_rel_gap": 1e-3},
             )
-        return found.x if found.x is not None else None
+        if found.x is None and found.status == TIMED_OUT:
+            raise UsageError(f"no layout was found within {MOST_SECONDS:g} s; name fewer --formats or fewer --targets")
+        return found.x
 
     def solution(self, values: np.ndarray) -> Solution:
         chosen = [self.choices[i] for i in range(len(self.choices)) if values[i] > 0.5]
@@ -275,3 +280,12 @@ def solved(problem: Problem) -> Solution | None:
     allowed = max(best.worst_of(problem.classes) * 10 ** (EQUAL_DB / 10), UNSEEN)
     plain = program.solved(allowed, most=1.0)
     return program.solution(plain) if plain is not None else best
+
+
+def fewest_bytes(problem: Problem) -> int | None:
+    """The bytes of the smallest layout that keeps to the other rules; None where none does."""
+    program = _Program(replace(problem, rules=replace(problem.rules, bytes=ANY_BYTES)))
+    values = program.solved(1.0, is_smallest=True)
+    if values is None:
+        return None
+    return sum(one.bytes for slot, (one, _) in enumerate(program.slots) if values[program.used(slot)] > 0.5)

@@ -37,8 +37,10 @@ class BudgetOptions:
     ] = "normal,basecolor,roughness,metalness,specular,occlusion,id:4,flags:4,motion,emission:light"
     targets: Annotated[int, Option("--targets", "The most render targets that there may be.")] = 6
     formats: Annotated[str, Option("--formats", "Formats that targets may have, comma-separated, or all.")] = "all"
-    fields: Annotated[bool, Option("--fields/--no-fields", "Whether numbers may share a channel, as bits.")] = True
-    integers: Annotated[bool, Option("--integers/--no-integers", "Whether they may do so in integer targets.")] = True
+    fields: Annotated[
+        bool, Option("--fields/--no-fields", "Allow several numbers to share a channel as bit fields.")
+    ] = True
+    integers: Annotated[bool, Option("--integers/--no-integers", "Allow integer targets.")] = True
     limit: Annotated[
         str | None,
         Option("--limit", "webgpu: its 32 bytes a sample and its formats; tile:BYTES: a GPU's bytes a pixel in tiles."),
@@ -54,8 +56,11 @@ class BudgetOptions:
         None
     )
     read_alone: Annotated[
-        str, Option("--read-alone", "What a pass reads from one target, as reflections and denoisers do; or none.")
-    ] = "normal,roughness"
+        str | None,
+        Option(
+            "--read-alone", "What a pass reads from one target, or none. Default: normal,roughness without --blend."
+        ),
+    ] = None
     classes: Annotated[
         str, Option("--classes", "Classes of surfaces that judge: mirror, glossy, rough, emissive; or all.")
     ] = "all"
@@ -78,7 +83,7 @@ class BudgetOutputs:
 
 
 COLUMNS = (
-    Column("kind", "What a row is of: a proposal, a layout of yours (mine), or one of an engine.", KEY),
+    Column("kind", "proposal; mine, for a layout of --against; or engine.", KEY),
     Column("layout", "The layout's name.", KEY),
     Column("limit", "The bytes a pixel that were asked for.", KEY, "bytes"),
     Column("scene", "The scenes that judged; each figure is of the worst of them.", KEY, drops=3),
@@ -103,9 +108,11 @@ COLUMNS = (
     Column("predicted_worst_db", "`worst_db` as the sum of the codes' own errors.", unit="dB", drops=7),
     Column("predicted_db", "`psnr_db` likewise.", unit="dB", drops=8),
     Column("error_from", "Where the error of the worst class comes from.", drops=5),
-    Column("next_bytes", "The fewest bytes more, up to 4, that bring the worst class half a decibel.", unit="bytes"),
-    Column("next_db", "What they bring it.", unit="dB", better="less"),
-    Column("blends", "What decals can blend into by hardware: it has channels of its own, by a code that mixes."),
+    Column(
+        "next_bytes", "Of 1, 2 and 4 bytes more the fewest that gain half a decibel in the worst class.", unit="bytes"
+    ),
+    Column("next_db", "What these bytes gain there.", unit="dB"),
+    Column("blends", "The attributes whose targets are kept for decals that hardware blends, as --blend asks."),
     Column("codes", "The code of each attribute.", drops=9),
     Column("by_contract", "What no scene showed: its bits are by contract, not measured.", drops=9),
     Column(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from ....encodings.catalogue import LIGHT_BUFFERS
 from ....encodings.storages.storage import TARGET_FORMATS
@@ -19,7 +20,7 @@ from ...subjects.codecs.layout_names import layouts_named
 from ...subjects.environments.scenes_under import scenes_under
 from ..table import Measured, Row, Sheet, Step, Tick, Work
 from .attributes import EMISSION, MOTION
-from .bins import BINS, WEBGPU, WEBGPU_BYTES, Bin, is_integer
+from .bins import BINS, WEBGPU, WEBGPU_BYTES, Bin
 from .charts import charts
 from .contract import attributes_held, names_held
 from .measure import MINE, PROPOSAL, Question, in_order, measure
@@ -29,7 +30,10 @@ from .solve import Rules
 from .table import TABLE, BudgetOptions, BudgetOutputs
 from .written import file_of
 
-MOST_BYTES, MOST_TARGETS = 64, 8
+# A light buffer comes on top of the targets, and devices have eight.
+MOST_BYTES, MOST_TARGETS = 64, 7
+# What reflections and denoisers read.
+READ_ALONE = "normal,roughness"
 # Bytes between which the fewest for a threshold are looked for.
 LEAST_LIMIT, MOST_LIMIT = 4, 40
 TILES = (16, 32, 64)
@@ -59,8 +63,7 @@ def question(options: BudgetOptions) -> Question:
     held = attributes_held(options.hold)
     names = [one.name for one in held]
     blended = frozenset(names_held("--blend", options.blend, names))
-    alone = "" if options.read_alone.strip() == "none" else options.read_alone
-    together = [frozenset(names_held("--read-alone", alone, names)), ONE_BYTE & {*names}]
+    together = [_read_alone(options.read_alone, names, blended), ONE_BYTE & {*names}]
     size, _ = checked_target(options.size, 1, 1, device)
     webgpu, tile = _limits(options)
     light = choose_one("light buffer", options.light, LIGHT_BUFFERS)
@@ -69,8 +72,7 @@ def question(options: BudgetOptions) -> Question:
     else:
         light_bytes = LIGHT_BUFFERS[light].bytes_per_pixel
         webgpu_left = WEBGPU_BYTES - _webgpu_cost(light) if webgpu else 0
-    # Only one of two that lie in one target may be blended into.
-    sets = tuple(one for one in together if len(one) > 1 and (one <= blended or not one & blended))
+    sets = tuple(one for one in together if len(one) > 1)
     apart = frozenset(one.name for one in held if one is MOTION)
     left = webgpu_left if webgpu else None
     rules = [Rules(limit, options.targets, blended, sets, left, apart) for limit in sorted(sizes)]
@@ -95,11 +97,28 @@ def question(options: BudgetOptions) -> Question:
     )
 
 
+def _read_alone(said: str | None, names: Sequence[str], blended: frozenset[str]) -> frozenset[str]:
+    """What lies in one target. Raises UsageError where decals blend into only a part of what somebody names."""
+    if said is not None and said.strip() == "none":
+        return frozenset()
+    found = frozenset(names_held("--read-alone", said or READ_ALONE, names))
+    if said is None:
+        # Decals leave a normal and a roughness no target that holds both.
+        return frozenset() if found & blended else found
+    if found & blended and not found <= blended:
+        apart = ", ".join(sorted(found - blended))
+        raise UsageError(
+            f"--read-alone {said}: decals blend into a part of it and not into {apart}; name all in --blend"
+        )
+    return found
+
+
 def _webgpu_cost(light: str) -> int:
     """Raises UsageError for a light buffer that WebGPU does not render to."""
-    if light not in WEBGPU:
+    name = LIGHT_BUFFERS[light].storage.target.name
+    if name not in WEBGPU:
         raise UsageError(f"--light {light}: WebGPU does not render to it; it does to r11g11b10f and rgba16f")
-    return WEBGPU[light][0]
+    return WEBGPU[name][0]
 
 
 def _limits(options: BudgetOptions) -> tuple[bool, int | None]:
@@ -121,7 +140,7 @@ def _stages(options: BudgetOptions, size: tuple[int, int]) -> list[Stage]:
         Stage(maker, Setting(), size) for maker in scenes_under(options.environment, scene_makers_named(options.scene))
     ]
     for stage in made:
-        if not stage.scene.is_metal_rough:
+        if not stage.maker.is_metal_rough:
             raise UsageError(f"{stage.maker.name} has no metal/rough materials, which a budget is of; studio has")
     return made
 
@@ -130,11 +149,13 @@ def _bins(options: BudgetOptions, webgpu: bool) -> list[Bin]:
     known = {one.format: one.format for one in BINS.values()}
     chosen = set(choose("format", options.formats, known))
     found = [one for one in BINS.values() if one.format in chosen and (not webgpu or one.format in WEBGPU)]
+    if not options.fields or not options.integers:
+        found = [one for one in found if not one.fields]
     if not options.fields:
-        return [one for one in found if not one.fields]
-    # Bits in bytes are for who has no integer targets: otherwise they are the same layouts twice.
-    has_integers = options.integers and any(one.fields and is_integer(one) for one in found)
-    return [one for one in found if not one.fields or is_integer(one) is has_integers]
+        found = [replace(one, shares=False) for one in found]
+    if not found:
+        raise UsageError(f"--formats {options.formats}: no target is left of what --limit and --no-integers allow")
+    return found
 
 
 def _steps(options: BudgetOptions, outputs: BudgetOutputs) -> list[Step]:

@@ -50,6 +50,9 @@ def _target(one: Bin, placed: Sequence[Placed]) -> Target:
 
 def _in_channels(one: Bin, placed: Sequence[Placed]) -> Iterator[str]:
     """The words of a target whose numbers have channels, in the order of the channels; last what shares bytes."""
+    if any(kind == SRGB for kind, _ in one.channels) and not any(p.code.kind == SRGB for p in placed):
+        # What lies beside an unused colour lies in the fourth channel.
+        yield from [FREE] * 3
     waiting: dict[tuple[str, int], list[str]] = {}
     shared: list[str] = []
     for p in placed:

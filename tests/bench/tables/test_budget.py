@@ -11,7 +11,7 @@ import pytest
 from normalbench.bench.tables.budget import attributes as held
 from normalbench.bench.tables.budget.bins import BINS, SHARED, WEBGPU, WEBGPU_BYTES, Bin, webgpu_cost
 from normalbench.bench.tables.budget.contract import KNOWN, attributes_held
-from normalbench.bench.tables.budget.solve import Problem, Rules, solved
+from normalbench.bench.tables.budget.solve import Placed, Problem, Rules, Solution, fewest_bytes, solved
 from normalbench.bench.tables.budget.table import BudgetOptions
 from normalbench.bench.tables.budget.written import layout_of
 from normalbench.bench.tables.vectors import measure as vectors
@@ -77,12 +77,7 @@ def test_the_program_finds_what_exhaustive_search_finds():
         replace(held.SEEN["roughness"], codes=held.SEEN["roughness"].codes[1:4]),
         replace(held.SEEN["metalness"], codes=held.SEEN["metalness"].codes[::2]),
     ]
-    bins = [
-        Bin("rgb10a2", "rgb10a2", 4, {("unorm", 10): 3, ("unorm", 2): 1}, copies=1),
-        Bin("r8", "r8", 1, {("unorm", 8): 1}, copies=1),
-        Bin("rg8", "rg8", 2, {("unorm", 8): 2}, copies=1),
-        Bin("r32_uint_fields", "r32_uint", 4, {}, 32, copies=1, fuss=1.0),
-    ]
+    bins = [replace(BINS[name], copies=1) for name in ("rgb10a2", "r8", "rg8", "r32_uint_fields")]
     possible = []
     for codes in itertools.product(*(one.codes for one in attributes)):
         for homes in itertools.product(bins, repeat=len(codes)):
@@ -104,6 +99,7 @@ def test_the_program_finds_what_exhaustive_search_finds():
             return max(sum(asked.error(code, name) for code in codes) for name in asked.classes)
 
         best = min(map(worst, fitting))
+        assert fewest_bytes(asked) == min(size for _, size in possible)
         # Of those within 0.2 dB the plainest is taken, and what nobody sees is as good as exact.
         assert found is not None
         assert best <= found.worst_of(asked.classes) * (1 + 1e-6) <= max(best * 10**0.0202, 1e-6), (limit, seed)
@@ -138,11 +134,30 @@ def test_decals_have_targets_of_their_own_whose_alpha_is_free():
         if names & blended:
             assert names <= blended, f"{names} share a target that decals blend into"
             one = lying[0].bin
-            assert one.blends and not one.fields and all(p.code.blends and p.code.kind != "uint" for p in lying)
+            assert one.blends and not one.fields and all(p.code.blends for p in lying)
             channels = TARGET_FORMATS[one.format].channels
             assert sum(len(p.code.bits) for p in lying) < channels or channels < 4, (
                 "the factor's channel holds a number"
             )
+
+
+def test_without_fields_every_number_has_a_channel():
+    """And without integers there are no integer targets; a colour's fourth channel holds what lies beside no colour."""
+    plain = [replace(one, shares=False) for one in BINS.values() if not one.fields]
+    found = solved(problem(replace(USUAL, bytes=24), bins=plain))
+    assert found is not None
+    layout = layout_of("mine", found)
+    assert not any(word.bits for word in layout.words), layout.summary
+    assert not any(target.storage.is_integer for target in layout.targets)
+
+
+def test_a_number_beside_an_unused_colour_lies_in_the_fourth_channel():
+    code = next(code for code in held.SEEN["occlusion"].codes if code.bits == (8,))
+    normal = next(code for code in held.SEEN["normal"].codes if code.name == "octahedral 16:16")
+    placed = (Placed(normal, BINS["rg16"], 0), Placed(code, BINS["srgb8_a8"], 0))
+    layout = layout_of("mine", Solution(placed, {}))
+    (word,) = [word for word in layout.words if word.component == "occlusion"]
+    assert word.first == 3
 
 
 def test_what_is_read_alone_lies_in_one_target():
@@ -222,7 +237,11 @@ def test_a_layout_is_drawn_and_is_what_was_predicted(gl, run, tmp_path):
 @pytest.mark.parametrize(
     ("asked", "said"),
     [
-        (["--bytes", "8"], "8 bytes cannot hold this"),
+        (["--bytes", "8"], "8 bytes are too few: the attributes need 96 bits, and the smallest layout has 12 bytes"),
+        (["--hold", "normal,basecolor,roughness,metalness,specular,occlusion,id:17"], "takes 2 to 16 bits"),
+        (["--blend", "normal", "--read-alone", "normal,roughness"], "decals blend into a part of it"),
+        (["--formats", "rgba16", "--limit", "webgpu"], "no target is left"),
+        (["--targets", "8"], "--targets"),
         (["--bytes", "0"], "--bytes"),
         (["--hold", "normal"], "--hold: basecolor is missing"),
         (["--classes", "shiny"], "shiny"),
