@@ -20,7 +20,12 @@ class BudgetOptions:
     bytes: Annotated[str, Option("--bytes", "Bytes a pixel without native depth, comma-separated.")] = "12,16,20"
     scene: Annotated[
         str,
-        Option("--scene", "Metal/rough scenes that judge: ramps, studio, and glTF files; comma-separated.", files=True),
+        Option(
+            "--scene",
+            "Metal/rough scenes that judge: ramps, studio, and glTF files; comma-separated.",
+            files=True,
+            in_run=True,
+        ),
     ] = "ramps,studio"
     environment: Annotated[
         str | None,
@@ -102,26 +107,27 @@ COLUMNS = (
         unit="dB",
         better="more",
     ),
-    Column("worst_class", "That class, and its scene."),
+    Column("worst_class", "That class, and its scene.", HOW),
     Column("psnr_db", "The displayed image over all covered pixels.", unit="dB", better="more"),
     Column("flip_p99", "FLIP's 99th percentile over the covered pixels.", better="less", drops=6),
     Column("predicted_worst_db", "`worst_db` as the sum of the codes' own errors.", unit="dB", drops=7),
     Column("predicted_db", "`psnr_db` likewise.", unit="dB", drops=8),
-    Column("error_from", "Where the error of the worst class comes from.", drops=5),
+    Column("error_from", "Where the error of the worst class comes from.", HOW, drops=5),
     Column(
         "next_bytes", "Of 1, 2 and 4 bytes more the fewest that gain half a decibel in the worst class.", unit="bytes"
     ),
     Column("next_db", "What these bytes gain there.", unit="dB"),
-    Column("blends", "The attributes whose targets are kept for decals that hardware blends, as --blend asks."),
-    Column("codes", "The code of each attribute.", drops=9),
-    Column("by_contract", "What no scene showed: its bits are by contract, not measured.", drops=9),
+    Column("blends", "The attributes whose targets are kept for decals that hardware blends, as --blend asks.", HOW),
+    Column("codes", "The code of each attribute.", HOW, drops=9),
+    Column("by_contract", "What no scene showed: its bits are by contract, not measured.", HOW, drops=9),
     Column(
         "changes",
         "Of a layout of yours: the changes to a proposal's codes that bring most, and the worst class after each.",
+        HOW,
         drops=9,
     ),
-    Column("targets", "The render targets, as a layout file says them.", drops=10),
-    Column("holds", "What says how much a surface reflects, of an engine's layout.", drops=10),
+    Column("targets", "The render targets, as a layout file says them.", HOW, drops=10),
+    Column("holds", "What says how much a surface reflects, of an engine's layout.", HOW, drops=10),
     Column(
         "mb_1080p",
         "Bytes written and read a frame at 1920 x 1080: pixels x bytes x (overdraw + readers). Compression is not "
@@ -138,7 +144,7 @@ COLUMNS = (
         better="less",
         drops=10,
     ),
-    Column("in_tile", "Whether targets and light buffer fit the tile of --limit tile:BYTES.", drops=2),
+    Column("in_tile", "Whether targets and light buffer fit the tile of --limit tile:BYTES.", HOW, drops=2),
     Column("overdraw", "How often a pixel is written.", HOW, drops=11),
     Column("readers", "How many passes read all of it.", HOW, drops=11),
     Column("size", "Width and height of the image in pixels.", HOW, drops=11),

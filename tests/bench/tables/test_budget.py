@@ -7,12 +7,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from languages import require_runner
 
+from normalbench.bench.ground.machine.vulkan import adapters
 from normalbench.bench.tables.budget import attributes as held
 from normalbench.bench.tables.budget.bins import BINS, SHARED, WEBGPU, WEBGPU_BYTES, Bin, webgpu_cost
 from normalbench.bench.tables.budget.contract import KNOWN, attributes_held
 from normalbench.bench.tables.budget.solve import Placed, Problem, Rules, Solution, fewest_bytes, solved
-from normalbench.bench.tables.budget.table import BudgetOptions
+from normalbench.bench.tables.budget.table import TABLE, BudgetOptions
 from normalbench.bench.tables.budget.written import layout_of
 from normalbench.bench.tables.vectors import measure as vectors
 from normalbench.bench.tables.vectors.paths import Paths
@@ -21,6 +23,7 @@ from normalbench.encodings.codecs.motion_codec import MotionCodec
 from normalbench.encodings.storages.rules import by_rule
 from normalbench.encodings.storages.storage import STORAGES, TARGET_FORMATS
 from normalbench.gbuffer.layouts.layout import read_layout
+from normalbench.reports.sheets import Role
 
 DEFAULT = attributes_held(BudgetOptions().hold)
 # As `budget` asks where nobody says otherwise.
@@ -232,6 +235,74 @@ def test_a_layout_is_drawn_and_is_what_was_predicted(gl, run, tmp_path):
     layout = read_layout(folder / "budget_14.toml")
     assert layout.bytes_per_pixel == row["bytes_per_pixel"] and gl
     assert row["targets"] == "; ".join(f"{target.format}: {target.holds}" for target in layout.targets)
+    # What is no number would make a run unreadable: compare and the page take these columns for figures.
+    figures = {column.name: row[column.name] for column in TABLE.columns if column.role is Role.FIGURE}
+    assert not {name for name, value in figures.items() if value is not None and not isinstance(value, (int, float))}
+
+
+# What WebGPU calls the formats that it renders to.
+WEBGPU_NAMES = {
+    "r8": "r8unorm",
+    "rg8": "rg8unorm",
+    "rgba8": "rgba8unorm",
+    "srgb8_a8": "rgba8unorm-srgb",
+    "rgb10a2": "rgb10a2unorm",
+    "r11g11b10f": "rg11b10ufloat",
+    "rg16f": "rg16float",
+    "rgba16f": "rgba16float",
+    "r8_uint": "r8uint",
+    "r16_uint": "r16uint",
+    "r32_uint": "r32uint",
+}
+
+
+def _webgpu_device():
+    """A device of WebGPU's own limit; this machine's may be higher. Skips the test where there is none."""
+    require_runner("wgsl")
+    return adapters()[0].request_device_sync(
+        required_limits={"max-color-attachment-bytes-per-sample": WEBGPU_BYTES},
+        required_features=["rg11b10ufloat-renderable"],
+    )
+
+
+def _refusal(gpu, formats) -> str:
+    """Why WebGPU creates no pipeline that renders to these formats; empty where it does."""
+    import wgpu
+
+    names = [WEBGPU_NAMES[name] for name in formats]
+    kinds = ["vec4u" if name.endswith("uint") else "vec4f" for name in names]
+    made = ", ".join(f"@location({at}) made_{at}: {kind}" for at, kind in enumerate(kinds))
+    text = f"""
+        struct Made {{ {made} }}
+        @vertex fn corner() -> @builtin(position) vec4f {{ return vec4f(); }}
+        @fragment fn pixel() -> Made {{ var made: Made; return made; }}
+    """
+    module = gpu.create_shader_module(code=text)
+    try:
+        gpu.create_render_pipeline(
+            layout=gpu.create_pipeline_layout(bind_group_layouts=[]),
+            vertex={"module": module, "entry_point": "corner"},
+            fragment={"module": module, "entry_point": "pixel", "targets": [{"format": name} for name in names]},
+        )
+    except wgpu.GPUError as error:
+        return str(error)
+    return ""
+
+
+def test_wgpu_takes_the_targets_that_cost_32_bytes_and_refuses_more():
+    """Random targets, up to 8; its message says what it counts for them where it refuses."""
+    gpu, rng = _webgpu_device(), np.random.default_rng(11)
+    assert WEBGPU_NAMES.keys() == WEBGPU.keys()
+    drawn = [list(rng.choice(list(WEBGPU), size)) for size in rng.integers(4, 9, 120)]
+    # One byte first, in the middle and last; just at the limit, and just above it.
+    known = [["rgba8"] * 4, ["rgba8"] * 4 + ["r8"], ["r8"] + ["r32_uint"] * 7, ["rgba8", "r8", "rgb10a2", "rgba16f"]]
+    counts = {True: 0, False: 0}
+    for formats in (*known, *drawn):
+        cost, refusal = webgpu_cost(formats), _refusal(gpu, formats)
+        assert cost is not None and bool(refusal) == (cost > WEBGPU_BYTES), f"{formats}: {cost} bytes; {refusal}"
+        assert not refusal or f"color attachments {cost} exceeds" in refusal, f"{formats}: {cost} bytes; {refusal}"
+        counts[bool(refusal)] += 1
+    assert min(counts.values()) > 20
 
 
 @pytest.mark.parametrize(
@@ -262,3 +333,10 @@ def test_what_cannot_be_asked_is_one_line(run, asked, said):
     usual = {"--scene": "ramps", "--size": "64x48"} | dict(zip(asked[::2], asked[1::2], strict=True))
     status, _, err = run("budget", *itertools.chain.from_iterable(usual.items()))
     assert status != 0 and said in err and "Traceback" not in err, err
+
+
+@pytest.mark.usefixtures("gl")
+def test_a_run_gives_its_scenes_to_the_budget(run, tmp_path):
+    """Before it measures: room cannot be judged by."""
+    status, _, err = run("run", "--tables", "budget", "--scene", "room", "--output", str(tmp_path / "run"))
+    assert status != 0 and "room has no metal/rough materials" in err, err
