@@ -11,8 +11,8 @@ from ....gbuffer.layouts.words import FREE, OTHER, Target, place_of, spelt_out
 from ...measures.metrics.totals import psnr_db
 from .solve import Solution
 
-# How many changes are named.
-MOST = 3
+# How many changes are named, and the decibels that each brings at least: what rounds to less is no advice.
+MOST, LEAST_DB = 3, 0.1
 # What an attribute lies in, and the layout's words of all the others in floats.
 COMPONENTS: Mapping[str, tuple[str, ...]] = {
     "normal": ("normal.x", "normal.y", "normal.z"),
@@ -90,7 +90,7 @@ def said(
             key=lambda name: _worst({**now, name: theirs[name][1]}, classes),
             default=None,
         )
-        if best is None or _worst({**now, best: theirs[best][1]}, classes) >= _worst(now, classes):
+        if best is None or _gain_db(now, {**now, best: theirs[best][1]}, classes) < LEAST_DB:
             break
         now[best] = theirs[best][1]
         parts.append(f"{best} as {theirs[best][0]}, {psnr_db(_worst(now, classes)):.1f} dB")
@@ -101,3 +101,7 @@ def said(
 
 def _worst(errors: Errors, classes: Sequence[str]) -> float:
     return max(sum(found.get(name, 0.0) for found in errors.values()) for name in classes)
+
+
+def _gain_db(before: Errors, after: Errors, classes: Sequence[str]) -> float:
+    return psnr_db(_worst(after, classes)) - psnr_db(_worst(before, classes))

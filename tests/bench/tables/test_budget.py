@@ -11,6 +11,7 @@ from languages import require_runner
 
 from normalbench.bench.ground.machine.vulkan import adapters
 from normalbench.bench.tables.budget import attributes as held
+from normalbench.bench.tables.budget import changes
 from normalbench.bench.tables.budget.bins import BINS, SHARED, WEBGPU, WEBGPU_BYTES, Bin, webgpu_cost
 from normalbench.bench.tables.budget.contract import KNOWN, attributes_held
 from normalbench.bench.tables.budget.solve import Placed, Problem, Rules, Solution, fewest_bytes, solved
@@ -340,3 +341,19 @@ def test_a_run_gives_its_scenes_to_the_budget(run, tmp_path):
     """Before it measures: room cannot be judged by."""
     status, _, err = run("run", "--tables", "budget", "--scene", "room", "--output", str(tmp_path / "run"))
     assert status != 0 and "room has no metal/rough materials" in err, err
+
+
+def test_a_change_that_brings_nothing_is_not_named():
+    """Of a layout with the proposal's own codes nothing is; of one with a worse normal the normal alone."""
+    found = solved(problem(USUAL))
+    assert found is not None
+    errors = falling()
+    mine = {one.code.attribute: errors[one.code.attribute, one.code.name] for one in found.placed if one.code.trip}
+
+    def said(given):
+        return changes.said(given, found, lambda *key: errors.get(key, {}), ["class 0", "class 1"])
+
+    nearly = {name: {k: e * 1.001 for k, e in one.items()} for name, one in mine.items()}
+    assert said(nearly).startswith("no code"), said(nearly)
+    worse = {name: {k: e * (64 if name == "normal" else 1.001) for k, e in one.items()} for name, one in mine.items()}
+    assert "normal as" in said(worse) and "; then" not in said(worse), said(worse)
