@@ -95,8 +95,8 @@ COLUMNS = (
     Column("bytes_per_pixel", "Of the targets, without native depth.", unit="bytes", better="less"),
     Column(
         "contract_bytes",
-        "The same with the motion, ids, reflectance and occlusion of --hold added where it lacks them, and less emission "
-        "that nobody asked for: layouts are compared by it.",
+        "The same with the motion, ids, reflectance and occlusion of --hold added where it lacks them, and less "
+        "emission that nobody asked for: layouts are compared by it.",
         unit="bytes",
         better="less",
     ),

@@ -225,7 +225,7 @@ def test_names_of_several_kinds_are_written(run, tmp_path):
     ], err
     assert "normalbench code rgbm:8 --of light" in (tmp_path / "light_rgbm_8_rgba8.h").read_text()
     status, out, err = run("code", "octahedral,rgbm", "--storage", "rg8", "--to", "c", "--check")
-    assert status == 0 and "octahedral" in out and "left out: rgbm: rgbm is made for rgba8" in err
+    assert status == 0 and "octahedral" in out and "left out: rgbm/rg8: rgbm is made for rgba8" in err
 
 
 def test_a_range_is_a_constant_of_the_code():
