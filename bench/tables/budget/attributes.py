@@ -152,57 +152,49 @@ class Attribute:
     """What is stored of a surface.
 
     Attributes:
-        name, title: what it is called, and what it is.
+        name: what it is called.
         codes: the ones that it may have, the floor's and all above it.
         usual_bits: what it has at least where no scene shows what its code loses.
         is_seen: whether an image reads it; where not, its bits are by contract.
-        floor: why it has no fewer bits; a clause.
     """
 
     name: str
-    title: str
     codes: tuple[Code, ...]
     usual_bits: int = 0
     is_seen: bool = True
-    floor: str = ""
 
 
-def exact_bits(name: str, title: str, word: str, bits: int) -> Attribute:
+def exact_bits(name: str, word: str, bits: int) -> Attribute:
     """So many bits that come back as they are, as ids do."""
     parts = tuple(min(bits - start, MOST_PART) for start in range(0, bits, MOST_PART))
     code = Code(name, f"{bits} bits", (word,) * len(parts), parts, is_exact=True)
-    return Attribute(name, title, (code,), bits, False, "comes back as it is")
+    return Attribute(name, (code,), bits, False)
 
 
 # The bits of one word of a layout that holds a whole number.
 MOST_PART = 16
+# Rest is exact, and up to 64 pixels a frame motion is off by less than 1/16 pixel of 1920 x 1080.
 MOTION = Attribute(
     "motion",
-    "motion vectors",
     (Code("motion", "linear in halves", ("motion.x", "motion.y"), (16, 16), FLOAT, in_fields=False),),
     32,
     False,
-    "no motion is exact, and up to 64 pixels a frame it is off by less than 1/16 pixel of 1920 x 1080",
 )
 # In a word with others, which saves bits and is no upscaler's input.
 PACKED_MOTION = Attribute(
     "motion",
-    "motion vectors",
     (*MOTION.codes, Code("motion", "sqrt 14:14", ("sqrt(motion.x)", "sqrt(motion.y)"), (14, 14))),
     28,
     False,
-    MOTION.floor,
 )
 EMISSION = Attribute(
     "emission",
-    "emitted light",
     (
         Code("emission", "RGB9E5", ("rgb9e5(emission)",), (32,), RGB9E5, in_fields=False),
         Code("emission", "R11G11B10F", ("emission",), (11, 11, 10), FLOAT, in_fields=False),
     ),
     32,
     False,
-    "is light, of any brightness",
 )
 
 
@@ -222,11 +214,10 @@ SEEN: Mapping[str, Attribute] = MappingProxyType(
     {
         one.name: one
         for one in (
-            Attribute("normal", "shading normal", tuple(_normals()), 20),
-            Attribute("basecolor", "base colour", tuple(_basecolors()), 18),
+            Attribute("normal", tuple(_normals()), 20),
+            Attribute("basecolor", tuple(_basecolors()), 18),
             Attribute(
                 "roughness",
-                "perceptual roughness",
                 (
                     *_singles("roughness", "roughness", (*range(6, 11), 16)),
                     *_roots("roughness", "roughness", range(6, 11)),
@@ -235,13 +226,12 @@ SEEN: Mapping[str, Attribute] = MappingProxyType(
             ),
             Attribute(
                 "metalness",
-                "metalness",
                 tuple(_singles("metalness", "metalness", range(3, 9))),
+                # Filtered maps have values between 0 and 1.
                 4,
-                floor="filtered maps have values between 0 and 1",
             ),
-            Attribute("specular", "reflectance of what is no metal", tuple(_reflectances()), 5),
-            Attribute("occlusion", "occlusion", tuple(_singles("occlusion", "occlusion", range(4, 9))), 6),
+            Attribute("specular", tuple(_reflectances()), 5),
+            Attribute("occlusion", tuple(_singles("occlusion", "occlusion", range(4, 9))), 6),
         )
     }
 )

@@ -8,18 +8,18 @@ from types import MappingProxyType
 from ...ground.output.errors import UsageError
 from .attributes import EMISSION, MOST_PART, MOTION, PACKED_MOTION, SEEN, Attribute, exact_bits
 
-# Attributes that are so many bits, which come back as they are; with the word that a layout has for them.
-EXACT: Mapping[str, tuple[str, str]] = MappingProxyType(
+# Attributes of bits that come back as they are, with the word that a layout has for them.
+EXACT: Mapping[str, str] = MappingProxyType(
     {
-        "id": ("model of shading", "kind"),
-        "flags": ("flags", "other"),
-        "shadow": ("shadow factor", "other"),
-        "custom": ("custom data", "other"),
-        "other": ("other data", "other"),
+        "id": "kind",
+        "flags": "other",
+        "shadow": "other",
+        "custom": "other",
+        "other": "other",
     }
 )
 # A frame of a tangent: an angle around the normal and a hand.
-TANGENT = exact_bits("tangent", "an angle around the normal and a hand", "other", 8)
+TANGENT = exact_bits("tangent", "other", 8)
 IN_LIGHT, PACKED = "emission:light", "motion:packed"
 MOST_BITS = 64
 KNOWN = (*SEEN, MOTION.name, PACKED, EMISSION.name, IN_LIGHT, TANGENT.name, *(f"{name}:BITS" for name in EXACT))
@@ -52,10 +52,10 @@ def _attribute(word: str) -> Attribute | None:
         raise UsageError(f"--hold {word}: unknown; known: {', '.join(KNOWN)}")
     if not size.isdigit() or not 1 <= int(size) <= MOST_BITS:
         raise UsageError(f"--hold {word}: {name} takes 1 to {MOST_BITS} bits, such as {name}:4")
-    title, layout_word = EXACT[name]
+    layout_word = EXACT[name]
     if layout_word == "kind" and not 2 <= int(size) <= MOST_PART:
         raise UsageError(f"--hold {word}: a model of shading takes 2 to {MOST_PART} bits")
-    return exact_bits(name, title, layout_word, int(size))
+    return exact_bits(name, layout_word, int(size))
 
 
 def names_held(option: str, words: str | None, held: Sequence[str]) -> list[str]:
