@@ -226,7 +226,7 @@ FAULTS = (
         "part-of-a-byte",
         ENCODINGS,
         "lost guard",
-        "return (shift >= 0 ? held >> shift : held << -shift) & ((1u << bits) - 1u);",
+        "return (shift >= 0 ? held >> shift : held << -shift) & (~0u >> (32 - bits));",
         "return shift >= 0 ? held >> shift : held << -shift;",
         "test_storage.py",
         "across",
