@@ -84,7 +84,7 @@ def said(
     now = dict(mine)
     start = _worst(now, classes)
     parts: list[str] = []
-    for _ in range(MOST):
+    for _ in range(MOST if start else 0):
         best = min(
             (name for name in now if name in theirs and now[name] is not theirs[name][1]),
             key=lambda name: _worst({**now, name: theirs[name][1]}, classes),
