@@ -17,13 +17,12 @@ from ....encodings.codecs.curve_codec import CurveCodec
 from ....encodings.storages.rules import by_rule
 from ....encodings.storages.storage import STORAGES
 from ....encodings.vec import Vec3
+from ....gbuffer.scenes.metal_rough import DIELECTRIC
 
 # What a channel holds.
 UNORM, SRGB, FLOAT, RGB9E5 = "unorm", "srgb", "float", "rgb9e5"
 # The curve that leaves numbers as they are.
 ITSELF = "linear"
-# The reflectance of what is no metal, where nothing else is said: of an index of refraction of 1.5.
-DIELECTRIC = 0.04
 
 
 @dataclass(frozen=True)
@@ -137,14 +136,10 @@ def _basecolors() -> Iterator[Code]:
     yield _on_curve("basecolor", "albedo", ITSELF, (10, 10, 10))
 
 
-def _singles(attribute: str, component: str, sizes: Iterable[int]) -> Iterator[Code]:
+def _singles(attribute: str, sizes: Iterable[int], curve: str = ITSELF) -> Iterator[Code]:
+    """Of an attribute that a layout calls by the same name."""
     for bits in sizes:
-        yield _on_curve(attribute, component, ITSELF, (bits,))
-
-
-def _roots(attribute: str, component: str, sizes: range) -> Iterator[Code]:
-    for bits in sizes:
-        yield _on_curve(attribute, component, "square_root", (bits,))
+        yield _on_curve(attribute, attribute, curve, (bits,))
 
 
 @dataclass(frozen=True)
@@ -219,19 +214,19 @@ SEEN: Mapping[str, Attribute] = MappingProxyType(
             Attribute(
                 "roughness",
                 (
-                    *_singles("roughness", "roughness", (*range(6, 11), 16)),
-                    *_roots("roughness", "roughness", range(6, 11)),
+                    *_singles("roughness", (*range(6, 11), 16)),
+                    *_singles("roughness", range(6, 11), "square_root"),
                 ),
                 8,
             ),
             Attribute(
                 "metalness",
-                tuple(_singles("metalness", "metalness", range(3, 9))),
+                tuple(_singles("metalness", range(3, 9))),
                 # Filtered maps have values between 0 and 1.
                 4,
             ),
             Attribute("specular", tuple(_reflectances()), 5),
-            Attribute("occlusion", tuple(_singles("occlusion", "occlusion", range(4, 9))), 6),
+            Attribute("occlusion", tuple(_singles("occlusion", range(4, 9))), 6),
         )
     }
 )

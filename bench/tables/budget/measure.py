@@ -21,16 +21,13 @@ from . import changes
 from .attributes import Attribute, usual
 from .bins import Bin, webgpu_cost
 from .rates import FRAME, LEAST_PIXELS, PIPELINE, Exact, Stage, rates
-from .solve import EXACT as NOTHING
-from .solve import Placed, Problem, Rules, Solution, fewest_bytes, solved
+from .solve import NOTHING, UNSEEN, Placed, Problem, Rules, Solution, fewest_bytes, solved
 from .table import TABLE
 from .written import layout_of
 
 PROPOSAL, ENGINE, MINE = "proposal", "engine", "mine"
 # By how many bytes more a limit is tried, to say what they would buy, and from how many decibels on that is said.
 MORE, WORTH_DB = (1, 2, 4), 0.5
-# Above it no size is worth more: half of a step of 8 bits.
-SEEN_DB = 60.0
 UNMEASURABLE = (ShaderError, FormatError, LayoutError)
 # What engines may lack, with a word of a layout that has it.
 LACKS = {"motion": "motion.x", "id": "kind", "specular": "reflectance", "occlusion": "occlusion"}
@@ -126,7 +123,7 @@ class Judged:
     def _solved(self, rules: Rules) -> Solution | None:
         q = self._question
         # What nobody sees has its usual bits where there is room for them, and its floor where there is not.
-        for held in (self.attributes, q.attributes):
+        for held in (self.attributes, *([q.attributes] if self.attributes != q.attributes else [])):
             if found := solved(Problem(held, self._errors, self.classes, q.bins, rules)):
                 return found
         return None
@@ -164,8 +161,9 @@ class Judged:
 
     def _next(self, rules: Rules, found: Solution) -> Row:
         """How many bytes more bring something, and what; empty where a few bring nothing."""
-        now = psnr_db(found.worst_of(self.classes))
-        for size in MORE if now < SEEN_DB else ():
+        worst = found.worst_of(self.classes)
+        now = psnr_db(worst)
+        for size in MORE if worst > UNSEEN else ():
             more = self._solved(replace(rules, bytes=rules.bytes + size))
             gain = psnr_db(more.worst_of(self.classes)) - now if more else 0.0
             if gain >= WORTH_DB:
@@ -193,7 +191,7 @@ class Judged:
             "predicted_db": psnr_db(max(frames, default=0.0)),
             "predicted_worst_db": psnr_db(total),
             "error_from": ", ".join(said) or None,
-            "blends": ", ".join(one.code.attribute for one in found.placed if _mixes(one)) or None,
+            "blends": ", ".join(one.code.attribute for one in found.placed if one.bin.blends) or None,
             "codes": "; ".join(f"{one.code.attribute} {one.code.name}" for one in found.placed),
             "by_contract": ", ".join(self.unseen) or None,
         }
@@ -293,12 +291,7 @@ class Judged:
                 yield layout
 
 
-def _mixes(one: Placed) -> bool:
-    """Whether a code lies in a target that decals blend into."""
-    return one.bin.blends
-
-
-def _key(one: Any) -> tuple[str, str]:
+def _key(one: Placed) -> tuple[str, str]:
     return one.code.attribute, one.code.name
 
 

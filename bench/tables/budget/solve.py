@@ -33,7 +33,7 @@ ANY_BYTES = 256
 # Errors that are not seen in any class: 60 dB, half of a step of 8 bits.
 UNSEEN = 1e-6
 # Codes that are off by so little are exact: below what 8 bits of a display can show in any pixel, 120 dB.
-EXACT = 1e-12
+NOTHING = 1e-12
 SMALL = 1e-6
 
 
@@ -99,7 +99,7 @@ class Problem:
 
     def error(self, code: Code, name: str) -> float:
         found = self.errors.get((code.attribute, code.name), {}).get(name, 0.0)
-        return 0.0 if found < EXACT else found
+        return 0.0 if found < NOTHING else found
 
 
 class _Program:
@@ -265,7 +265,7 @@ def solved(problem: Problem) -> Solution | None:
     # Solved anew in units of what was found, until that no longer changes.
     for _ in range(6):
         worst = best.worst_of(problem.classes)
-        if worst <= EXACT:
+        if worst <= NOTHING:
             break
         values = program.solved(worst)
         if values is None:
