@@ -107,6 +107,7 @@ def budget(
     scene: Names = ...,
     environment: Names | None = ...,
     hold: Names = ...,
+    speed: float = ...,
     targets: int = ...,
     formats: Names = ...,
     fields: bool = ...,
@@ -132,7 +133,8 @@ def budget(
         bytes: Bytes a pixel without native depth, comma-separated.
         scene: Metal/rough scenes that judge: ramps, studio, and glTF files; comma-separated.
         environment: What they reflect: studio, sky, strips, lamp, or an .hdr or .exr file.
-        hold: What is stored: normal, basecolor, roughness, metalness, specular, occlusion, tangent; motion in a target of its own, or motion:packed; id:BITS, flags:BITS, shadow:BITS, custom:BITS, other:BITS; emission, or emission:light where the light buffer has it.
+        hold: What is stored: normal, basecolor, roughness, metalness, specular, occlusion, tangent; motion in a target of its own, or motion:packed; id:BITS, flags:BITS, or either as id:stencil; shadow:BITS, custom:BITS, other:BITS; emission, or emission:light where the light buffer has it.
+        speed: Pixels a frame at 1920 x 1080 up to which motion must be within 1/16 pixel.
         targets: The most render targets that there may be.
         formats: Formats that targets may have, comma-separated, or all.
         fields: Allow several numbers to share a channel as bit fields.

@@ -9,14 +9,16 @@ from functools import cache, partial
 from types import MappingProxyType
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 
-from ....encodings.catalogue import CURVE_ENCODINGS, ENCODINGS
+from ....encodings.catalogue import CURVE_ENCODINGS, ENCODINGS, LIGHT_BUFFERS
 from ....encodings.codecs.codec import Codec
 from ....encodings.codecs.curve_codec import CurveCodec
+from ....encodings.codecs.light_codec import LightCodec
 from ....encodings.storages.rules import by_rule
-from ....encodings.storages.storage import STORAGES
-from ....encodings.vec import Vec3
+from ....encodings.storages.storage import STORAGES, TARGET_FORMATS
+from ....encodings.vec import Vec3, Vec4
 from ....gbuffer.scenes.metal_rough import DIELECTRIC
 
 # What a channel holds.
@@ -27,8 +29,8 @@ ITSELF = "linear"
 
 @dataclass(frozen=True)
 class Surfaces:
-    """What pixels see, float32: normals in the world's axes and base colours (height, width, 3), the others (height,
-    width)."""
+    """What pixels see, float32: normals in the world's axes, base colours and the light that is given off (height,
+    width, 3), the others (height, width)."""
 
     normal: np.ndarray
     basecolor: np.ndarray
@@ -36,6 +38,7 @@ class Surfaces:
     metalness: np.ndarray
     specular: np.ndarray
     occlusion: np.ndarray
+    emission: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -63,6 +66,11 @@ class Code:
     in_fields: bool = True
     is_exact: bool = False
     trip: Callable[[Surfaces], Surfaces] | None = None
+
+    @property
+    def key(self) -> tuple[str, str]:
+        """What tells it from all others."""
+        return self.attribute, self.name
 
     @property
     def total_bits(self) -> int:
@@ -93,21 +101,22 @@ def _curve_trip(attribute: str, codecs: tuple[CurveCodec, ...], surfaces: Surfac
     return replace(surfaces, **{attribute: back[0] if given.ndim == 2 else np.stack(back, axis=-1)})
 
 
-def _normals() -> Iterator[Code]:
-    def code(encoding: str, bits: tuple[int, ...], storage: str = "", kind: str = UNORM, blends: bool = False) -> Code:
-        found = STORAGES[storage] if storage else by_rule("unorm", bits)
-        codec = Codec(ENCODINGS[encoding], found)
-        words = tuple(f"normal.{axis}" for axis in "xyz"[: len(bits)])
-        name = f"{encoding} {_sized(bits)}" + (" in halves" if kind == FLOAT else "")
-        return Code(
-            "normal", name, words, bits, kind, blends, kind == UNORM and not blends, trip=partial(_normal_trip, codec)
-        )
+def _normal(encoding: str, bits: tuple[int, ...], storage: str = "", kind: str = UNORM, blends: bool = False) -> Code:
+    found = STORAGES[storage] if storage else by_rule("unorm", bits)
+    codec = Codec(ENCODINGS[encoding], found)
+    words = tuple(f"normal.{axis}" for axis in "xyz"[: len(bits)])
+    name = f"{encoding} {_sized(bits)}" + (" in halves" if kind == FLOAT else "")
+    return Code(
+        "normal", name, words, bits, kind, blends, kind == UNORM and not blends, trip=partial(_normal_trip, codec)
+    )
 
+
+def _normals() -> Iterator[Code]:
     for bits in range(10, 17):
-        yield code("octahedral", (bits, bits))
-    yield code("xyz_renormalised", (10,) * 3, blends=True)
-    yield code("xyz_renormalised", (16,) * 3, blends=True)
-    yield code("xyz_renormalised", (16,) * 3, "rgba16f", FLOAT, blends=True)
+        yield _normal("octahedral", (bits, bits))
+    yield _normal("xyz_renormalised", (10,) * 3, blends=True)
+    yield _normal("xyz_renormalised", (16,) * 3, blends=True)
+    yield _normal("xyz_renormalised", (16,) * 3, "rgba16f", FLOAT, blends=True)
 
 
 def _on_curve(
@@ -122,6 +131,19 @@ def _on_curve(
     words = tuple(f"{shown}".replace(component, f"{component}.{c}") for c in "rgb") if len(bits) == 3 else (shown,)
     blends = kind == SRGB or is_itself
     return Code(attribute, name, words, bits, kind, blends, kind == UNORM, trip=partial(_curve_trip, attribute, codecs))
+
+
+def in_halves(attribute: str) -> Iterator[Code]:
+    """The code of an attribute in 16-bit floats that only layouts of such targets need."""
+    if attribute == "normal":
+        yield _normal("octahedral", (16, 16), "rg16f", FLOAT)
+        return
+    component = {"basecolor": "albedo", "specular": "reflectance"}.get(attribute, attribute)
+    codec = CurveCodec(CURVE_ENCODINGS[ITSELF], TARGET_FORMATS["r16f"], 1.0)
+    channels = 3 if attribute == "basecolor" else 1
+    words = tuple(f"{component}.{c}" for c in "rgb"[:channels]) if channels > 1 else (component,)
+    trip = partial(_curve_trip, attribute, (codec,) * channels)
+    yield Code(attribute, "in halves", words, (16,) * channels, FLOAT, True, False, trip=trip)
 
 
 def _curved(curve: str, limit: float | None, component: str) -> str:
@@ -168,28 +190,44 @@ def exact_bits(name: str, word: str, bits: int) -> Attribute:
 
 # The bits of one word of a layout that holds a whole number.
 MOST_PART = 16
-# Rest is exact, and up to 64 pixels a frame motion is off by less than 1/16 pixel of 1920 x 1080.
-MOTION = Attribute(
-    "motion",
-    (Code("motion", "linear in halves", ("motion.x", "motion.y"), (16, 16), FLOAT, in_fields=False),),
-    32,
-    False,
-)
-# In a word with others, which saves bits and is no upscaler's input.
-PACKED_MOTION = Attribute(
-    "motion",
-    (*MOTION.codes, Code("motion", "sqrt 14:14", ("sqrt(motion.x)", "sqrt(motion.y)"), (14, 14))),
-    28,
-    False,
-)
+# The codes of motion, each with the pixels a frame of 1920 x 1080 up to which it is off by less than 1/16 pixel; rest
+# is exact in all of them. The last one is for a word with others, which saves bits and is no upscaler's input.
+HALF_MOTION = Code("motion", "linear in halves", ("motion.x", "motion.y"), (16, 16), FLOAT, in_fields=False)
+FAST_MOTION = Code("motion", "linear 16:16", ("linear(motion.x)", "linear(motion.y)"), (16, 16))
+ROOT_MOTION = Code("motion", "sqrt 14:14", ("sqrt(motion.x)", "sqrt(motion.y)"), (14, 14))
+UP_TO_PIXELS: Mapping[Code, float] = MappingProxyType({HALF_MOTION: 100.0, FAST_MOTION: 500.0, ROOT_MOTION: 64.0})
+
+
+def motion(speed: float, is_packed: bool = False) -> Attribute:
+    """Motion in the codes that keep the floor up to a speed in pixels a frame: halves, as upscalers read them, where
+    they do."""
+    whole = next(code for code in (HALF_MOTION, FAST_MOTION) if speed <= UP_TO_PIXELS[code])
+    packed = (ROOT_MOTION,) if is_packed and speed <= UP_TO_PIXELS[ROOT_MOTION] else ()
+    codes = (whole, *packed)
+    return Attribute("motion", codes, min(code.total_bits for code in codes), False)
+
+
+def _emission(name: str, buffer: str, word: str, bits: tuple[int, ...], kind: str) -> Code:
+    trip = partial(_light_trip, LIGHT_BUFFERS[buffer])
+    return Code("emission", name, (word,), bits, kind, in_fields=False, trip=trip)
+
+
+def _light_trip(codec: LightCodec, surfaces: Surfaces) -> Surfaces:
+    r, g, b = (jnp.asarray(plane) for plane in np.moveaxis(surfaces.emission, -1, 0))
+    back = codec.round_trip(Vec4(r, g, b, jnp.ones_like(r)))
+    return replace(surfaces, emission=np.stack([np.asarray(plane) for plane in back[:3]], axis=-1))
+
+
+# Light has no largest value: its floor is the relative error of these codes, of the largest channel half of 2^-8 for
+# RGB9E5, half of 2^-6 for R11G11B10F.
 EMISSION = Attribute(
     "emission",
     (
-        Code("emission", "RGB9E5", ("rgb9e5(emission)",), (32,), RGB9E5, in_fields=False),
-        Code("emission", "R11G11B10F", ("emission",), (11, 11, 10), FLOAT, in_fields=False),
+        _emission("RGB9E5", "rgb9e5", "rgb9e5(emission)", (32,), RGB9E5),
+        _emission("R11G11B10F", "r11g11b10f", "emission", (11, 11, 10), FLOAT),
+        _emission("in halves", "rgba16f", "emission", (16, 16, 16), FLOAT),
     ),
     32,
-    False,
 )
 
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
+from ....encodings.storages.storage import TARGET_FORMATS
 from .attributes import FLOAT, RGB9E5, SRGB, UNORM, Code
 
 Channel = tuple[str, int]
@@ -25,6 +26,7 @@ class Bin:
         blends: whether decals blend into it; its last channel is then their factor and holds nothing.
         fuss: what an engineer would rather do without: 0 for plain channels.
         shares: whether codes share its bytes bit by bit.
+        is_usual: whether it is tried where no formats are named.
     """
 
     name: str
@@ -36,6 +38,12 @@ class Bin:
     blends: bool = False
     fuss: float = 0.0
     shares: bool = False
+    is_usual: bool = True
+
+    @property
+    def part(self) -> int:
+        """The bits of a channel that fields lie in."""
+        return TARGET_FORMATS[self.format].bits[0]
 
     def need(self, code: Code) -> Mapping[Channel, float] | None:
         """What a code takes of its channels, or of its bits; None where it cannot lie here."""
@@ -105,14 +113,21 @@ _WHOLE = (
     # Of 6 bits of mantissa where RGB9E5 has 9.
     Bin("r11g11b10f", "r11g11b10f", 4, {(FLOAT, 11): 2, (FLOAT, 10): 1}, copies=1, fuss=1.0),
 )
-# Whole numbers, whose bits codes share in any sizes.
+# Whole numbers, whose bits codes share in any sizes. Others hold no more than these do.
+_USUAL_FIELDS = {"r8_uint": 1, "r16_uint": 1, "r32_uint": 4, "rg32_uint": 2}
 _FIELDS = tuple(
-    Bin(f"{name}_fields", name, size, {}, 8 * size, copies, fuss=fuss)
-    for name, size, copies, fuss in (
-        ("r8_uint", 1, 1, SMALL + INTEGER),
-        ("r16_uint", 2, 1, SMALL + INTEGER),
-        ("r32_uint", 4, 4, INTEGER),
+    Bin(
+        f"{name}_fields",
+        name,
+        storage.texel_bytes,
+        {},
+        8 * storage.texel_bytes,
+        _USUAL_FIELDS.get(name, 2),
+        fuss=INTEGER + SMALL * (storage.texel_bytes < 4),
+        is_usual=name in _USUAL_FIELDS,
     )
+    for name, storage in TARGET_FORMATS.items()
+    if storage.is_integer
 )
 LAST = {
     "rgba8": (UNORM, 8),
@@ -136,9 +151,9 @@ WEBGPU: Mapping[str, tuple[int, int]] = MappingProxyType(
     {
         name: (cost, alignment)
         for alignment, costs in (
-            (1, {"r8": 1, "rg8": 2, "rgba8": 8, "srgb8_a8": 8, "r8_uint": 1}),
-            (2, {"rg16f": 4, "rgba16f": 8, "r16_uint": 2}),
-            (4, {"rgb10a2": 8, "r11g11b10f": 8, "r32_uint": 4}),
+            (1, {"r8": 1, "rg8": 2, "rgba8": 8, "srgb8_a8": 8, "r8_uint": 1, "rgba8_uint": 4}),
+            (2, {"rg16f": 4, "rgba16f": 8, "r16_uint": 2, "rg16_uint": 4, "rgba16_uint": 8}),
+            (4, {"rgb10a2": 8, "r11g11b10f": 8, "r32_uint": 4, "rg32_uint": 8, "rgba32_uint": 16}),
         )
         for name, cost in costs.items()
     }

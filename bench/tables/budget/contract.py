@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
 from ...ground.output.errors import UsageError
-from .attributes import EMISSION, MOST_PART, MOTION, PACKED_MOTION, SEEN, Attribute, exact_bits
+from .attributes import EMISSION, MOST_PART, SEEN, Attribute, exact_bits, motion
 
 # Attributes of bits that come back as they are, with the word that a layout has for them.
 EXACT: Mapping[str, str] = MappingProxyType(
@@ -20,15 +20,24 @@ EXACT: Mapping[str, str] = MappingProxyType(
 )
 # A frame of a tangent: an angle around the normal and a hand.
 TANGENT = exact_bits("tangent", "other", 8)
-IN_LIGHT, PACKED = "emission:light", "motion:packed"
+MOTION, PACKED, IN_LIGHT, STENCIL = "motion", "motion:packed", "emission:light", "stencil"
 MOST_BITS = 64
-KNOWN = (*SEEN, MOTION.name, PACKED, EMISSION.name, IN_LIGHT, TANGENT.name, *(f"{name}:BITS" for name in EXACT))
+# What hardware can test before shading.
+IN_STENCIL = ("id", "flags")
+KNOWN = (
+    *(*SEEN, MOTION, PACKED, EMISSION.name, IN_LIGHT, TANGENT.name),
+    *(f"{name}:BITS" for name in EXACT),
+    *(f"{name}:{STENCIL}" for name in IN_STENCIL),
+)
 
 
-def attributes_held(words: str) -> list[Attribute]:
-    """The attributes that comma-separated words stand for. Raises UsageError for an unknown one, two of one name, and
-    where there is no normal."""
-    found = [_attribute(word) for word in filter(None, map(str.strip, words.split(",")))]
+def attributes_held(words: str, speed: float) -> list[Attribute]:
+    """The attributes that comma-separated words stand for, motion up to a speed in pixels a frame.
+
+    Raises:
+        UsageError: an unknown one, two of one name, or one is missing that images need.
+    """
+    found = [_attribute(word, speed) for word in filter(None, map(str.strip, words.split(",")))]
     held = [one for one in found if one]
     names = [one.name for one in held]
     if twice := next((name for name in names if names.count(name) > 1), None):
@@ -39,15 +48,16 @@ def attributes_held(words: str) -> list[Attribute]:
     return held
 
 
-def _attribute(word: str) -> Attribute | None:
+def _attribute(word: str, speed: float) -> Attribute | None:
     """Raises UsageError."""
     name, _, size = word.partition(":")
-    if word == IN_LIGHT:
+    # What lies in the light buffer or in the stencil takes no bytes here.
+    if word == IN_LIGHT or (name in IN_STENCIL and size == STENCIL):
         return None
-    if word == PACKED:
-        return PACKED_MOTION
-    if not size and name in (*SEEN, MOTION.name, EMISSION.name, TANGENT.name):
-        return {**SEEN, MOTION.name: MOTION, EMISSION.name: EMISSION, TANGENT.name: TANGENT}[name]
+    if word in (MOTION, PACKED):
+        return motion(speed, word == PACKED)
+    if not size and name in (*SEEN, EMISSION.name, TANGENT.name):
+        return {**SEEN, EMISSION.name: EMISSION, TANGENT.name: TANGENT}[name]
     if name not in EXACT:
         raise UsageError(f"--hold {word}: unknown; known: {', '.join(KNOWN)}")
     if not size.isdigit() or not 1 <= int(size) <= MOST_BITS:

@@ -85,7 +85,10 @@ class Exact:
             measured_exposure(linear[self.covered]) if exposure is None else exposure, stage.maker.tone_mapping
         )
         self.shown = self.display.image(linear)
-        self.surfaces = Surfaces(normal[..., :3], colour[..., :3], *(material[..., i] for i in (2, 0, 1, 3)))
+        metalness, specular, roughness, occlusion = (material[..., i] for i in range(4))
+        self.surfaces = Surfaces(
+            normal[..., :3], colour[..., :3], roughness, metalness, specular, occlusion, light[..., :3]
+        )
         self.classes = self._masks(light[..., :3].max(axis=-1) > 0)
 
     def _masks(self, gives_light: np.ndarray) -> dict[str, np.ndarray]:
@@ -139,6 +142,7 @@ class Exact:
         normal, colour, material, light = (one.copy() for one in self._textures)
         where = self.covered
         normal[where, :3], colour[where, :3] = given.normal[where], given.basecolor[where]
+        light[where, :3] = given.emission[where]
         numbers = (given.metalness, given.specular, given.roughness, given.occlusion)
         material[where] = np.stack([one[where] for one in numbers], axis=-1)
         return normal, colour, material, light
@@ -155,6 +159,13 @@ class Seen:
 
 def _has_flip() -> bool:
     return find_spec("flip_evaluator") is not None
+
+
+def rates_of_pair(exact: Exact, first: Code, second: Code) -> Mapping[str, float]:
+    """The errors that two codes make together."""
+    trips = [code.trip for code in (first, second) if code.trip]
+    key = cache.key_of("budget pair", exact.key, str(first.key), str(second.key))
+    return cache.kept(key, lambda: exact.of(lambda seen: trips[1](trips[0](seen))))
 
 
 Rates = Mapping[str, Mapping[str, float]]

@@ -19,9 +19,15 @@ def told(row: Row) -> Iterator[str]:
     if row["skipped"]:
         yield f"{row['skipped'].rstrip('.')}."
         return
-    yield f"{row['limit']} bytes a pixel: {_answer(row)}"
+    yield f"{_subject(row)}: {_answer(row)}"
     yield _errors(row)
     yield _rules(row)
+
+
+def _subject(row: Row) -> str:
+    if row["kind"] == "improved":
+        return f"The same attributes in the same formats, {row['layout']}"
+    return f"{row['limit']} bytes a pixel"
 
 
 def _answer(row: Row) -> str:

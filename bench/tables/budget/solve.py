@@ -1,8 +1,9 @@
 """Which code each attribute has and in which target it lies: the least error of the worst class, by an integer program.
 
-With y = 1 where a code lies in a target, z = 1 where a target is used, and d the error that a code makes in a class:
+With y = 1 where a code lies in a target, z = 1 where a target is used, d the error that a code makes in a class, and e
+what two codes make together beyond that, which counts where w = 1, of both:
 
-    minimise t   where for each class   sum of d y <= t
+    minimise t   where for each class   sum of d y + sum of e w <= t
     each attribute has one code in one target; what lies in a target fits it; the targets' bytes fit the limit
 
 solved by HiGHS. Errors of many orders of magnitude meet, so it is solved again with errors in units of the last t.
@@ -11,8 +12,8 @@ Then, of all layouts within a fifth of a decibel of it, the plainest one.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence, Set
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -47,6 +48,7 @@ class Rules:
         blended: attributes that decals blend into.
         together: sets of attributes that lie in one target each, so that a pass reads one.
         apart: attributes whose target holds nothing else.
+        formats: at most so many targets of each; empty where all may be of one.
         webgpu: what is left to the targets of WebGPU's bytes a sample; None where these do not count.
     """
 
@@ -56,6 +58,12 @@ class Rules:
     together: tuple[frozenset[str], ...] = ()
     webgpu: int | None = None
     apart: frozenset[str] = frozenset()
+    formats: Mapping[str, int] = field(default_factory=dict)
+
+
+# A code by its attribute and its name, and two of them.
+Key = tuple[str, str]
+Pair = frozenset[Key]
 
 
 @dataclass(frozen=True)
@@ -65,6 +73,10 @@ class Placed:
     code: Code
     bin: Bin
     copy: int
+
+    @property
+    def key(self) -> Key:
+        return self.code.key
 
 
 @dataclass(frozen=True)
@@ -86,6 +98,7 @@ class Problem:
     Attributes:
         attributes: what is stored.
         errors: by attribute and name of a code, the error of each class; nothing of a code that no image shows.
+        together: what two codes make beyond their own errors, by class.
         classes: those whose worst is to be least.
         bins: targets that there may be.
         rules: what the layout must keep to.
@@ -96,6 +109,7 @@ class Problem:
     classes: Sequence[str]
     bins: Sequence[Bin]
     rules: Rules
+    together: Mapping[Pair, Mapping[str, float]] = field(default_factory=dict)
 
     def error(self, code: Code, name: str) -> float:
         found = self.errors.get((code.attribute, code.name), {}).get(name, 0.0)
@@ -103,7 +117,8 @@ class Problem:
 
 
 class _Program:
-    """The integer program of a problem: variables are placements, then targets, then shared bytes, then t."""
+    """The integer program of a problem: variables are placements, then targets, then shared bytes, then pairs, then
+    t."""
 
     def __init__(self, problem: Problem):
         self.problem = problem
@@ -115,16 +130,22 @@ class _Program:
             for at, (one, _) in enumerate(self.slots)
             if one.blends == (attribute.name in problem.rules.blended) and (need := one.need(code)) is not None
         ]
-        self.count = len(self.choices) + 2 * len(self.slots) + 1
+        keys = {code.key for code, *_ in self.choices}
+        self.pairs = [pair for pair in problem.together if pair <= keys]
+        self.count = len(self.choices) + 2 * len(self.slots) + len(self.pairs) + 1
         self._rows: list[tuple[dict[int, float], float, float]] = []
         self._hold()
         self._fit()
+        self._pair()
 
     def used(self, slot: int) -> int:
         return len(self.choices) + slot
 
     def shared(self, slot: int) -> int:
         return len(self.choices) + len(self.slots) + slot
+
+    def both(self, pair: int) -> int:
+        return len(self.choices) + 2 * len(self.slots) + pair
 
     def row(self, terms: Mapping[int, float], low: float, high: float) -> None:
         self._rows.append((dict(terms), low, high))
@@ -173,10 +194,25 @@ class _Program:
         every = range(len(self.slots))
         self.row({self.used(slot): float(self.slots[slot][0].bytes) for slot in every}, 0, rules.bytes)
         self.row({self.used(slot): 1.0 for slot in every}, 0, rules.targets)
+        for name, most in rules.formats.items():
+            self.row({self.used(slot): 1.0 for slot in every if self.slots[slot][0].format == name}, 0, most)
         if rules.webgpu is not None:
             # Targets are written with the widest alignment first, so that none is lost to it.
             costs = {self.used(slot): float(WEBGPU[self.slots[slot][0].format][0]) for slot in every}
             self.row(costs, 0, rules.webgpu)
+
+    def _pair(self) -> None:
+        """w = 1 where both codes of a pair are taken, and 0 where one of them is not."""
+        for at, pair in enumerate(self.pairs):
+            taken = [{i: 1.0 for i, (code, *_) in enumerate(self.choices) if code.key == key} for key in pair]
+            self.row({**taken[0], **taken[1], self.both(at): -1.0}, -np.inf, 1)
+            for one in taken:
+                self.row({**one, self.both(at): -1.0}, 0, np.inf)
+
+    def forbid(self, codes: Set[Key]) -> None:
+        """Not all of these codes together."""
+        terms = {i: 1.0 for i, (code, *_) in enumerate(self.choices) if code.key in codes}
+        self.row(terms, -np.inf, len(codes) - 1)
 
     def solved(self, unit: float, most: float | None = None, is_smallest: bool = False) -> np.ndarray | None:
         """The variables of the least t in units; where `most` is given, of the plainest layout up to that t; or of
@@ -191,6 +227,9 @@ class _Program:
         rows, last = list(self._rows), self.count - 1
         for name in self.problem.classes:
             terms = {i: self.problem.error(code, name) / unit for i, (code, *_) in enumerate(self.choices)}
+            terms |= {
+                self.both(at): self.problem.together[pair].get(name, 0.0) / unit for at, pair in enumerate(self.pairs)
+            }
             rows.append(({**{i: d for i, d in terms.items() if d}, last: -1.0}, -np.inf, 0.0))
         cost = np.zeros(self.count)
         if is_smallest:
@@ -203,7 +242,7 @@ class _Program:
             for slot, (one, _) in enumerate(self.slots):
                 cost[self.used(slot)] = one.fuss + TARGET_FUSS
         upper = np.ones(self.count)
-        upper[len(self.choices) + len(self.slots) : last] = 4
+        upper[len(self.choices) + len(self.slots) : len(self.choices) + 2 * len(self.slots)] = 4
         upper[last] = np.inf if most is None else most
         # What alone is worse than what is known to be possible is not looked at.
         limit = np.inf if most is None else most
@@ -239,6 +278,10 @@ class _Program:
         placed = tuple(Placed(code, *self.slots[at]) for code, at, _ in chosen)
         names = {name for found in self.problem.errors.values() for name in found}
         errors = {name: sum(self.problem.error(one.code, name) for one in placed) for name in sorted(names)}
+        keys = {one.code.key for one in placed}
+        for pair in self.pairs:
+            if pair <= keys:
+                errors = {name: e + self.problem.together[pair].get(name, 0.0) for name, e in errors.items()}
         return Solution(placed, errors)
 
 
@@ -255,12 +298,18 @@ def fuss(code: Code, one: Bin) -> float:
 
 
 def solved(problem: Problem) -> Solution | None:
-    """The best layout; None where none keeps to the rules."""
+    """The plainest of the best layouts; None where none keeps to the rules."""
+    return next(iter(finalists(problem, 1)), None)
+
+
+def finalists(problem: Problem, count: int) -> list[Solution]:
+    """Up to so many layouts of other codes each, the plainest first, none of them worse than the best by more than what
+    counts as equal; none where none keeps to the rules."""
     program = _Program(problem)
     unit = 1.0
     values = program.solved(unit)
     if values is None:
-        return None
+        return []
     best = program.solution(values)
     # Solved anew in units of what was found, until that no longer changes.
     for _ in range(6):
@@ -270,16 +319,22 @@ def solved(problem: Problem) -> Solution | None:
         values = program.solved(worst)
         if values is None:
             break
-        found = program.solution(values)
-        better = found.worst_of(problem.classes)
+        tried = program.solution(values)
+        better = tried.worst_of(problem.classes)
         if better < worst:
-            best = found
+            best = tried
         if better > worst * (1 - 1e-3):
             break
     # What nobody sees is no reason for another layout.
     allowed = max(best.worst_of(problem.classes) * 10 ** (EQUAL_DB / 10), UNSEEN)
-    plain = program.solved(allowed, most=1.0)
-    return program.solution(plain) if plain is not None else best
+    found: list[Solution] = []
+    while len(found) < count:
+        plain = program.solved(allowed, most=1.0)
+        if plain is None:
+            break
+        found.append(program.solution(plain))
+        program.forbid({one.code.key for one in found[-1].placed})
+    return found or [best]
 
 
 def fewest_bytes(problem: Problem) -> int | None:

@@ -36,10 +36,14 @@ class BudgetOptions:
         Option(
             "--hold",
             "What is stored: normal, basecolor, roughness, metalness, specular, occlusion, tangent; motion in a target "
-            "of its own, or motion:packed; id:BITS, flags:BITS, shadow:BITS, custom:BITS, other:BITS; emission, or "
-            "emission:light where the light buffer has it.",
+            "of its own, or motion:packed; id:BITS, flags:BITS, or either as id:stencil; shadow:BITS, custom:BITS, "
+            "other:BITS; emission, or emission:light where the light buffer has it.",
         ),
     ] = "normal,basecolor,roughness,metalness,specular,occlusion,id:4,flags:4,motion,emission:light"
+    speed: Annotated[
+        float,
+        Option("--speed", "Pixels a frame at 1920 x 1080 up to which motion must be within 1/16 pixel."),
+    ] = 64.0
     targets: Annotated[int, Option("--targets", "The most render targets that there may be.")] = 6
     formats: Annotated[str, Option("--formats", "Formats that targets may have, comma-separated, or all.")] = "all"
     fields: Annotated[
@@ -88,7 +92,11 @@ class BudgetOutputs:
 
 
 COLUMNS = (
-    Column("kind", "proposal; mine, for a layout of --against; or engine.", KEY),
+    Column(
+        "kind",
+        "proposal; mine, for a layout of --against; improved, for the same attributes in the same targets; or engine.",
+        KEY,
+    ),
     Column("layout", "The layout's name.", KEY),
     Column("limit", "The bytes a pixel that were asked for.", KEY, "bytes"),
     Column("scene", "The scenes that judged; each figure is of the worst of them.", KEY, drops=3),

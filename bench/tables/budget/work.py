@@ -19,11 +19,11 @@ from ...measures.metrics.images import require_flip
 from ...subjects.codecs.layout_names import layouts_named
 from ...subjects.environments.scenes_under import scenes_under
 from ..table import Measured, Row, Sheet, Step, Tick, Work
-from .attributes import EMISSION, MOTION
+from .attributes import EMISSION, UP_TO_PIXELS
 from .bins import BINS, WEBGPU, WEBGPU_BYTES, Bin
 from .charts import charts
-from .contract import attributes_held, names_held
-from .measure import MINE, PROPOSAL, Question, in_order, measure
+from .contract import MOTION, PACKED, attributes_held, names_held
+from .measure import IMPROVED, MINE, PROPOSAL, Question, in_order, measure
 from .rates import CLASSES, Stage
 from .sentences import told
 from .solve import Rules
@@ -38,6 +38,8 @@ READ_ALONE = "normal,roughness"
 LEAST_LIMIT, MOST_LIMIT = 4, 40
 TILES = (16, 32, 64)
 WEB, TILE = "webgpu", "tile"
+# The rows whose layouts are this table's own.
+WRITTEN = (PROPOSAL, IMPROVED)
 # What belongs together because it is read together.
 ONE_BYTE = frozenset({"id", "flags"})
 SHOWN = (
@@ -60,7 +62,8 @@ def question(options: BudgetOptions) -> Question:
     in_range("--targets", options.targets, 1, MOST_TARGETS)
     for name, value in (("--overdraw", options.overdraw), ("--readers", options.readers)):
         in_range(name, value, 0.0, 64.0)
-    held = attributes_held(options.hold)
+    in_range("--speed", options.speed, 0.0, max(UP_TO_PIXELS.values()))
+    held = attributes_held(options.hold, options.speed)
     names = [one.name for one in held]
     blended = frozenset(names_held("--blend", options.blend, names))
     together = [_read_alone(options.read_alone, names, blended), ONE_BYTE & {*names}]
@@ -73,7 +76,8 @@ def question(options: BudgetOptions) -> Question:
         light_bytes = LIGHT_BUFFERS[light].bytes_per_pixel
         webgpu_left = WEBGPU_BYTES - _webgpu_cost(light) if webgpu else 0
     sets = tuple(one for one in together if len(one) > 1)
-    apart = frozenset(one.name for one in held if one is MOTION)
+    is_packed = PACKED in [word.strip() for word in options.hold.split(",")]
+    apart = frozenset() if is_packed else frozenset({MOTION} & {*names})
     left = webgpu_left if webgpu else None
     rules = [Rules(limit, options.targets, blended, sets, left, apart) for limit in sorted(sizes)]
     judging = tuple(choose("class", options.classes, {name: name for name in CLASSES}))
@@ -148,7 +152,9 @@ def _stages(options: BudgetOptions, size: tuple[int, int]) -> list[Stage]:
 def _bins(options: BudgetOptions, webgpu: bool) -> list[Bin]:
     known = {one.format: one.format for one in BINS.values()}
     chosen = set(choose("format", options.formats, known))
-    found = [one for one in BINS.values() if one.format in chosen and (not webgpu or one.format in WEBGPU)]
+    is_said = options.formats.strip() != "all"
+    found = [one for one in BINS.values() if one.format in chosen and (one.is_usual or is_said)]
+    found = [one for one in found if not webgpu or one.format in WEBGPU]
     if not options.fields or not options.integers:
         found = [one for one in found if not one.fields]
     if not options.fields:
@@ -172,7 +178,7 @@ def _write(done: Measured, _: Tick) -> None:
     if folder:
         folder.mkdir(parents=True, exist_ok=True)
     for row in done.rows if folder else ():
-        if row["kind"] == PROPOSAL and not row["skipped"]:
+        if row["kind"] in WRITTEN and not row["skipped"]:
             path = folder / f"{row['layout']}.toml"
             write_text(lambda row=row: file_of(row), path)
             tell(f"{path}: {row['bytes_per_pixel']} bytes a pixel")
@@ -188,15 +194,16 @@ def _measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
 
 
 def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
-    """For each limit what to take, in sentences and target by target; then all layouts."""
-    for row in rows:
-        if row["kind"] == PROPOSAL:
-            words = row["targets"].split("; ") if row["targets"] else []
-            targets = [_target_row(at, text) for at, text in enumerate(words)]
-            yield Sheet(f"{row['limit']} bytes, target by target" if targets else "", targets, said=tuple(told(row)))
+    """For each limit what to take, in sentences and target by target, and what somebody's layout could be; then all
+    layouts."""
     for row in rows:
         if row["kind"] == MINE and row["changes"]:
             yield Sheet("", [], said=(f"{row['layout']}: {row['changes']}",))
+        if row["kind"] in WRITTEN:
+            words = row["targets"].split("; ") if row["targets"] else []
+            targets = [_target_row(at, text) for at, text in enumerate(words)]
+            name = f"{row['limit']} bytes" if row["kind"] == PROPOSAL else row["layout"]
+            yield Sheet(f"{name}, target by target" if targets else "", targets, said=tuple(told(row)))
     shown = [{name: row[name] for name in SHOWN} for row in rows if row["worst_db"] is not None]
     if shown:
         yield Sheet("layouts, by bytes", shown, TABLE.drops(shown))

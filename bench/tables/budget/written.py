@@ -8,7 +8,7 @@ from typing import Any
 from ....encodings.catalogue import ENCODINGS
 from ....gbuffer.layouts.layout import Layout
 from ....gbuffer.layouts.words import FREE, Target
-from .attributes import SRGB
+from .attributes import SRGB, Code
 from .bins import SHARED, Bin
 from .solve import Placed, Solution
 
@@ -43,9 +43,26 @@ def _target(one: Bin, placed: Sequence[Placed]) -> Target:
     if one.fields:
         # The widest first, so that the numbers of a code begin at the top.
         order = sorted(placed, key=lambda p: (p.code.is_exact, -p.code.total_bits))
-        said = [f"{word}:{bits}" for p in order for word, bits in zip(p.code.words, p.code.bits, strict=True)]
-        return Target(one.format, " ".join(said))
+        return Target(one.format, " ".join(_in_fields(one, order)))
     return Target(one.format, " ".join(_in_channels(one, placed)))
+
+
+def _in_fields(one: Bin, placed: Sequence[Placed]) -> list[str]:
+    """The words of a target of whole numbers: each code in a channel, where they fit so; else one after the other."""
+    channels: list[list[Code]] = []
+    for p in placed:
+        home = next((c for c in channels if sum(code.total_bits for code in (*c, p.code)) <= one.part), None)
+        if home is None:
+            channels.append(home := [])
+        home.append(p.code)
+    used = [sum(code.total_bits for code in codes) for codes in channels]
+    is_apart = len(channels) * one.part <= one.fields and max(used) <= one.part
+    said = []
+    for at, codes in enumerate(channels):
+        said += [f"{word}:{bits}" for code in codes for word, bits in zip(code.words, code.bits, strict=True)]
+        if is_apart and used[at] < one.part and at + 1 < len(channels):
+            said.append(f"{FREE}:{one.part - used[at]}")
+    return said
 
 
 def _in_channels(one: Bin, placed: Sequence[Placed]) -> Iterator[str]:

@@ -1,0 +1,120 @@
+"""What a layout of somebody's holds, and in which targets: what a proposal for the same has to hold and may use."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from ....encodings.storages.storage import Storage
+from ....gbuffer.layouts.layout import Layout
+from ....gbuffer.layouts.words import FREE, Target, Word, all_placed, place_of, spelt_out
+from .attributes import EMISSION, FLOAT, SEEN, SRGB, UNORM, Attribute, Code, in_halves
+from .bins import BINS, Bin
+from .changes import COMPONENTS
+from .solve import Rules
+
+# A target of signed numbers may as well be one of as many bits without a sign.
+SIGNED = "_snorm"
+
+
+@dataclass(frozen=True)
+class Own:
+    """A layout's own attributes, the targets that it has, and what a proposal for it must keep to."""
+
+    attributes: Sequence[Attribute]
+    bins: Sequence[Bin]
+    rules: Rules
+
+
+def own(layout: Layout, asked: Rules) -> Own:
+    """What a layout is compared by: what it holds in as many targets of its formats.
+
+    Args:
+        asked: rules of the question. What the layout itself does not keep to is left out.
+    """
+    formats = Counter(_format(target) for target in layout.targets)
+    attributes = list(_attributes(layout))
+    homes = {name: {word.target for word in layout.words if word.component in COMPONENTS[name]} for name in COMPONENTS}
+    together = [names for names in asked.together if names <= homes.keys() and _is_one([homes[n] for n in names])]
+    rules = replace(
+        asked,
+        bytes=layout.bytes_per_pixel,
+        targets=len(layout.targets),
+        blended=asked.blended & {one.name for one in attributes},
+        together=tuple(together),
+        apart=frozenset(),
+        formats=formats,
+        webgpu=None,
+    )
+    return Own(attributes, [one for name, count in formats.items() for one in _bins(name, count)], rules)
+
+
+def _is_one(homes: Sequence[set[int]]) -> bool:
+    return len(set().union(*homes)) == 1
+
+
+def _format(target: Target) -> str:
+    return target.format.removesuffix(SIGNED)
+
+
+def _bins(name: str, count: int) -> Iterator[Bin]:
+    """Bins of a format, as many as the layout has targets of it."""
+    known = [replace(one, copies=count) for one in BINS.values() if one.format == name]
+    if known:
+        yield from known
+        return
+    storage = Target(name, FREE).storage
+    channels = Counter((_kind(storage, at), bits) for at, bits in enumerate(storage.bits))
+    yield Bin(name, name, sum(storage.bits) // 8, channels, copies=count)
+
+
+def _kind(storage: Storage, channel: int) -> str:
+    if storage.kind == "float":
+        return FLOAT
+    return SRGB if channel < storage.curved else UNORM
+
+
+def _attributes(layout: Layout) -> Iterator[Attribute]:
+    """What an image shows, in all of its codes; then the rest, in as many bits of the same kind as it has."""
+    has_halves = any(t.storage.kind == "float" and max(t.storage.bits) == 16 for t in layout.targets)
+    for name, attribute in SEEN.items():
+        if layout.components & {*COMPONENTS[name]}:
+            more = in_halves(name) if has_halves else ()
+            yield replace(attribute, codes=(*attribute.codes, *more))
+    placed = [(text, word) for at, target in enumerate(layout.targets) for text, word in _texts(layout, at, target)]
+    seen = {component for names in COMPONENTS.values() for component in names}
+    others = [(text, word) for text, word in placed if word.component not in seen]
+    if any(word.component.startswith(EMISSION.name) for _, word in others):
+        yield EMISSION
+    motion = [pair for pair in others if pair[1].component.startswith("motion.")]
+    if motion:
+        yield _as_it_is("motion", layout, motion)
+    rest = [pair for pair in others if not pair[1].component.startswith(("motion.", EMISSION.name))]
+    for at, pair in enumerate(rest):
+        yield _as_it_is(f"{pair[1].component} {at}", layout, [pair])
+
+
+def _texts(layout: Layout, at: int, target: Target) -> Iterator[tuple[str, Word]]:
+    texts = [t for t in spelt_out(place_of(layout.name, at, target), target) if not t.startswith(FREE)]
+    yield from zip(texts, all_placed(layout.name, at, target), strict=True)
+
+
+def _as_it_is(name: str, layout: Layout, pairs: Sequence[tuple[str, Word]]) -> Attribute:
+    """Words that keep what they have."""
+    kinds, bits = [], []
+    for _, word in pairs:
+        storage = layout.targets[word.target].storage
+        kinds.append(UNORM if word.bits else _kind(storage, word.first))
+        bits.append(word.bits or storage.bits[word.first])
+    # A number that is no colour has no curve of its own: what lies in a channel of sRGB is as good in any other.
+    kind = FLOAT if FLOAT in kinds else UNORM
+    words = tuple(_without_bits(text) for text, _ in pairs)
+    exact = kind == UNORM and not name.startswith("motion")
+    code = Code(name, f"{sum(bits)} bits", words, tuple(bits), kind, in_fields=kind == UNORM, is_exact=exact)
+    return Attribute(name, (code,), sum(bits), False)
+
+
+def _without_bits(text: str) -> str:
+    curve, bracket, rest = text.rpartition(")")
+    return curve + bracket + rest.partition(":")[0] if bracket else text.partition(":")[0]
