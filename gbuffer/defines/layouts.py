@@ -47,6 +47,7 @@ def layout_defines(layout: Layout, rounds: tuple[int, ...], is_metal_rough: bool
         "TARGETS": len(storages),
         "TARGET_KIND": tuple(storage_kind(storage) for storage in storages),
         "TARGET_SCALE": tuple(float(s.scale(i % s.channels)) for s in storages for i in range(4)),
+        "TARGET_PART": tuple(s.bits[0] for s in storages),
         "TARGET_BITS": tuple(s.bits[i % s.channels] for s in storages for i in range(4)),
         "TARGET_ROUNDS": rounds,
         **_integer_defines(storages),
@@ -139,8 +140,7 @@ def _integer_defines(storages: Sequence[Storage]) -> dict[str, object]:
         counts[storage.is_integer] += 1
     found |= {"TEXEL_OUTPUTS": " ".join(outputs), "TEXEL_WRITES": " ".join(writes), "TEXEL_READS": " ".join(reads)}
     found |= {"PLAIN_TARGETS": counts[False], "WORD_TARGETS": counts[True]}
-    found["TARGET_INTEGER"] = tuple(int(storage.is_integer) for storage in storages)
-    return found | {"TARGET_PART": tuple(storage.bits[0] if storage.is_integer else 8 for storage in storages)}
+    return found | {"TARGET_INTEGER": tuple(int(storage.is_integer) for storage in storages)}
 
 
 FIRST_OF_MOTION = "motion.x"

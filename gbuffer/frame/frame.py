@@ -179,10 +179,10 @@ class Frame:
         if not self.scene.is_metal_rough:
             return {}
         device = self.device
-        (sums,) = device.lasting("dfg", lambda: [device.upload(dfg_table())])
+        (sums,) = device.lasting(self.stack, "dfg", lambda: [device.upload(dfg_table())])
         if (around := self.scene.environment) is None:
             return {"dfg": sums}
-        fine, coarse = device.lasting(around, lambda: _levels_uploaded(device, kept_prefiltered(around)))
+        fine, coarse = device.lasting(self.stack, around, lambda: _levels_uploaded(device, kept_prefiltered(around)))
         return {"dfg": sums, "environment_fine": fine, "environment_coarse": coarse}
 
     def _dither_tables(self) -> dict[str, Any]:
@@ -198,7 +198,7 @@ class Frame:
             "LIGHT_ENCODING": plan.light_buffer.glsl,
             "CURVES": curve_files(plan.layout),
         }
-        return self.device.shared_program(vertex, fragment, {**self._defines, **defines}, names)
+        return self.device.shared_program(self.stack, vertex, fragment, {**self._defines, **defines}, names)
 
     def array(self, program: Program, content: list[Any], indices: Any = None) -> VertexArray:
         """Vertices under a program, released with the frame."""

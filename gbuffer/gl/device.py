@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from functools import cache
 from pathlib import Path
@@ -15,6 +15,7 @@ import numpy as np
 from ...encodings.storages.rounding import store_texel
 from ...encodings.storages.storage import STORAGES, Storage
 from ...encodings.vec import jnp
+from .lasting import Lasting
 from .opened import OPENED
 from .raw import DepthBuffer, attach_slice, samples_of
 from .shader import ShaderError, Source
@@ -23,9 +24,9 @@ SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swiftshader", "software")
 DITHER, FRAMEBUFFER_SRGB = 0x0BD0, 0x8DB9
 # How a device's own conversion may round.
 NATIVE_ROUNDINGS = ("nearest", "truncate")
-# More than any one frame uses: the one that was asked for longest ago is released.
+# Beyond these, what no frame uses is released.
 KEPT_PROGRAMS = 64
-# Sets of textures that outlive frames, each of up to a hundred megabytes; more than one frame uses.
+# Sets of textures, each of up to a hundred megabytes.
 KEPT_TEXTURES = 4
 SRGB8_ALPHA8 = 0x8C43
 # Factors of what is drawn and of what is there: their sum, their product, and the one over the other by its alpha.
@@ -47,6 +48,11 @@ Owned = TypeVar("Owned", bound=_Releasable)
 
 class NoDeviceError(Exception):
     """This machine has no usable GL driver."""
+
+
+def _release_all(made: Sequence[_Releasable]) -> None:
+    for one in made:
+        one.release()
 
 
 def _create_context() -> moderngl.Context:
@@ -88,9 +94,9 @@ class Device:
         self.max_targets = int(min(info["GL_MAX_DRAW_BUFFERS"], info["GL_MAX_COLOR_ATTACHMENTS"]))
         samples = ("GL_MAX_SAMPLES", "GL_MAX_COLOR_TEXTURE_SAMPLES", "GL_MAX_DEPTH_TEXTURE_SAMPLES")
         self.max_samples = int(min(info[name] for name in samples))
-        self._programs: dict[tuple[str, str], moderngl.Program] = {}
+        self._programs: Lasting[moderngl.Program] = Lasting(KEPT_PROGRAMS, lambda program: program.release())
         self._native: dict[str, str] = {}
-        self._lasting: dict[object, list[Any]] = {}
+        self._textures: Lasting[list[Any]] = Lasting(KEPT_TEXTURES, _release_all)
         # In use while no pass is: a framebuffer that is released while in use leaves an error for the next one.
         self.idle = self.context.simple_framebuffer((1, 1))
         # GL dithers by default, where it dithers at all: what is stored would not be what was written.
@@ -112,16 +118,18 @@ class Device:
         """A vertex and a fragment shader under the same macros. Raises ShaderError as `fragment_pass` does."""
         return self._compiled_program(Source(vertex, defines, names), Source(fragment, defines, names))
 
-    def shared_program(self, vertex: str | Path, fragment: str | Path, defines: Mapping[str, object], names=None):
-        """A program that the device keeps for the next who asks for the same; not to be released."""
+    def shared_program(
+        self,
+        stack: ExitStack,
+        vertex: str | Path,
+        fragment: str | Path,
+        defines: Mapping[str, object],
+        names=None,
+    ) -> moderngl.Program:
+        """A program in use until the stack closes, which the device keeps for the next who asks for the same."""
         sources = Source(vertex, defines, names), Source(fragment, defines, names)
         key = (sources[0].text, sources[1].text)
-        if key not in self._programs:
-            if len(self._programs) >= KEPT_PROGRAMS:
-                self._programs.pop(next(iter(self._programs))).release()
-            self._programs[key] = self._compiled_program(*sources)
-        self._programs[key] = self._programs.pop(key)
-        return self._programs[key]
+        return self._programs.used(stack, key, lambda: self._compiled_program(*sources))
 
     def _compiled_program(self, first: Source, second: Source) -> moderngl.Program:
         try:
@@ -220,15 +228,14 @@ class Device:
         texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
         return texture
 
-    def lasting(self, key: object, make: Callable[[], Sequence[moderngl.Texture | moderngl.TextureArray]]) -> list[Any]:
-        """Textures that outlive frames: made once for a key, and released once KEPT_TEXTURES others were asked for."""
-        if key not in self._lasting:
-            if len(self._lasting) >= KEPT_TEXTURES:
-                for texture in self._lasting.pop(next(iter(self._lasting))):
-                    texture.release()
-            self._lasting[key] = list(make())
-        self._lasting[key] = self._lasting.pop(key)
-        return self._lasting[key]
+    def lasting(
+        self,
+        stack: ExitStack,
+        key: Hashable,
+        make: Callable[[], Sequence[moderngl.Texture | moderngl.TextureArray]],
+    ) -> list[Any]:
+        """Textures in use until the stack closes, which the device keeps for the next who asks for the same."""
+        return self._textures.used(stack, key, lambda: list(make()))
 
     @staticmethod
     def build_mips(texture: moderngl.Texture) -> None:

@@ -5,23 +5,20 @@
 // each of the normal's numbers has, 0 for one like any other. DEPTH_RANGE is the near and the far plane. SIGN_CARRIER is
 // the component that carries number SIGN_NUMBER of the normal's code as its sign, or -1; LEAST_CARRIED keeps it off 0.
 // NORMAL_UNIT is 1 where texels hold the normal's numbers in [0, 1], whatever their format: half of 1 more than a code's.
-// HAS_WORDS is 1 where targets are of whole numbers: TARGET_INTEGER says which, TARGET_PART the bits of each channel that
-// integers lie across.
+// TARGET_PART is the bits of each channel that integers lie across. HAS_WORDS is 1 where targets are of whole numbers:
+// TARGET_INTEGER says which.
 #include "depth_code.glsl"
 #include "storage.glsl"
 
 const int word_component[] = WORD_COMPONENT, word_target[] = WORD_TARGET, word_first[] = WORD_FIRST;
 const int word_bits[] = WORD_BITS, target_kind[] = TARGET_KIND, target_rounds[] = TARGET_ROUNDS;
-const int target_bits[] = TARGET_BITS, normal_levels[] = NORMAL_LEVELS;
+const int target_bits[] = TARGET_BITS, normal_levels[] = NORMAL_LEVELS, target_part[] = TARGET_PART;
 const float target_scale[] = TARGET_SCALE;
 
 #if HAS_WORDS
-const int target_part[] = TARGET_PART, target_integer[] = TARGET_INTEGER;
+const int target_integer[] = TARGET_INTEGER;
 // What targets of whole numbers hold; the others' texels are numbers.
 uvec4 target_words[TARGETS];
-int part_of(int target) { return target_part[target]; }
-#else
-int part_of(int target) { return 8; }
 #endif
 
 // Perceptual roughness and Blinn-Phong power: alpha = roughness^2, alpha^2 = 2 / (power + 2) (B. Walter et al.,
@@ -128,7 +125,7 @@ vec4[TARGETS] to_texels(float numbers[NUMBERS]) {
             uint integer = carries
                 ? uint(floor(carrying(component, x, numbers[SIGN_NUMBER], 0, scale) * scale + 0.5))
                 : to_word(component, x, scale);
-            for (int c = 0; c < 4; ++c) packed_bytes[target][c] |= part_in(integer, first, bits, c, part_of(target));
+            for (int c = 0; c < 4; ++c) packed_bytes[target][c] |= part_in(integer, first, bits, c, target_part[target]);
         }
     }
 #if HAS_WORDS
@@ -161,7 +158,7 @@ void from_texels(vec4 texels[TARGETS], inout float numbers[NUMBERS]) {
 #if HAS_WORDS
                 if (target_integer[target] != 0) part = target_words[target][c];
 #endif
-                integer |= part_from(part, first, bits, c, part_of(target));
+                integer |= part_from(part, first, bits, c, target_part[target]);
             }
             float scale = exp2(float(bits)) - 1.0;
             if (carries) take_carried(component, carried(float(integer) / scale, 0), scale, numbers);

@@ -2,7 +2,8 @@
 
 A target is a format and a line of words that fill its bits in order, the most significant first. A word alone
 (`albedo.r`) takes one whole channel and is converted as the format converts. A word with a number of bits (`depth:16`)
-is an unsigned integer laid across channels of 8 bits, or of integers. `-` leaves a channel free.
+is an unsigned integer laid across the first channels of equal bits of a UNORM format, or of integers. `-` leaves a
+channel free.
 
 A quantity may carry a number of the normal's code that is 1 or -1 as its own sign: `roughness*normal.z`. It may lie on
 a curve of the catalogue, over a range of its own: `squared(roughness)`, `linear:0.08(reflectance)`. A colour without a
@@ -166,10 +167,12 @@ def _word_parts(place: str, text: str) -> tuple[str, str, int, Kept | None]:
 
 def _check_packed(place: str, text: str, storage: Storage, bits: int, first: int) -> None:
     is_curved = first < sum(storage.bits[: storage.curved])
-    is_bytes = storage.kind == "unorm" and set(storage.bits) == {8} and not is_curved
-    if not (is_bytes or storage.is_integer) or bits > MAX_PACKED_BITS:
-        into = "channels of 8-bit UNORM or of integers"
+    if storage.kind != "unorm" or is_curved or bits > MAX_PACKED_BITS:
+        into = "channels of UNORM or of integers"
         raise LayoutError(f"{place}: {text}: up to {MAX_PACKED_BITS} bits may be packed, into {into}")
+    equal = storage.bits.count(storage.bits[0]) * storage.bits[0]
+    if equal < first + bits <= sum(storage.bits):
+        raise LayoutError(f"{place}: {text}: fields lie in the first {equal} bits, whose channels are of one size")
 
 
 def _ends(storage: Storage) -> list[int]:

@@ -25,7 +25,7 @@ class Bin:
         copies: how many there may be.
         blends: whether decals blend into it; its last channel is then their factor and holds nothing.
         fuss: what an engineer would rather do without: 0 for plain channels.
-        shares: whether codes share its bytes bit by bit.
+        shares: whether codes share its channels of the first one's size bit by bit.
         is_usual: whether it is tried where no formats are named.
     """
 
@@ -55,10 +55,13 @@ class Bin:
         taken = {(code.kind, bits): float(code.bits.count(bits)) for bits in code.bits}
         if not code.is_exact and all(self.channels.get(channel, 0) >= count for channel, count in taken.items()):
             return taken
-        # Bytes are shared bit by bit, also the one beside a colour on the sRGB curve.
+        # Two bits lie in the fourth channel of 10:10:10:2, which nothing else fits.
+        if code.is_exact and all((UNORM, bits) in self.channels and bits != self.part for bits in code.bits):
+            return self._need_of_exact(code)
+        # Channels are shared bit by bit, also the one beside a colour on the sRGB curve.
         if self.shares and code.in_fields and code.kind == UNORM:
-            fits = code.total_bits <= 8 * self.channels.get((UNORM, 8), 0)
-            return {SHARED: code.total_bits / 8} if fits else None
+            fits = code.total_bits <= self.part * self.channels.get((UNORM, self.part), 0)
+            return {SHARED: code.total_bits / self.part} if fits else None
         return self._need_of_exact(code) if code.is_exact else None
 
     def channels_of(self, code: Code) -> list[Channel]:
@@ -80,8 +83,8 @@ class Bin:
         return taken if all(self.channels[channel] >= count for channel, count in taken.items()) else None
 
 
-# What is shared bit by bit, and bytes whose bits whole numbers share.
-BITS, SHARED = ("bits", 0), ("shared", 8)
+# What is shared bit by bit, of whole numbers and of channels.
+BITS, SHARED = ("bits", 0), ("shared", 0)
 
 
 # What an engineer would rather do without: targets of fewer than 32 bits, which many GPUs round up in tiles, and those
@@ -89,11 +92,16 @@ BITS, SHARED = ("bits", 0), ("shared", 8)
 SMALL, INTEGER = 2.0, 1.5
 
 
+# Channels of these bits are shared: of 16 there are few, and half of one is as much as a byte.
+SHARED_SIZES = (8, 10)
+
+
 def _plain(name: str, size: int, copies: int = 2, **channels: int) -> Bin:
     kinds = {"u": UNORM, "s": SRGB, "f": FLOAT}
     held = {(kinds[key[0]], int(key[1:])): count for key, count in channels.items()}
-    shares = {bits for _, bits in held} == {8}
-    return Bin(name, name, size, held, 0, copies, fuss=SMALL * (size < 4), shares=shares)
+    return Bin(
+        name, name, size, held, 0, copies, fuss=SMALL * (size < 4), shares=TARGET_FORMATS[name].bits[0] in SHARED_SIZES
+    )
 
 
 _PLAIN = (

@@ -181,7 +181,7 @@ class _Program:
             here = [(i, need) for i, (_, at, need) in enumerate(self.choices) if at == slot]
             for channel, room in one.channels.items():
                 terms = {i: float(need[channel]) for i, need in here if channel in need}
-                if channel == (UNORM, 8):
+                if channel == (UNORM, one.part):
                     terms[self.shared(slot)] = 1.0
                 self.row({**terms, self.used(slot): -float(room)}, -np.inf, 0)
             self.row({**{i: need[SHARED] for i, need in here if SHARED in need}, self.shared(slot): -1.0}, -np.inf, 0)

@@ -8,7 +8,7 @@ from typing import Any
 from ....encodings.catalogue import ENCODINGS
 from ....gbuffer.layouts.layout import Layout
 from ....gbuffer.layouts.words import FREE, Target
-from .attributes import SRGB, Code
+from .attributes import SRGB, UNORM, Code
 from .bins import SHARED, Bin
 from .solve import Placed, Solution
 
@@ -86,9 +86,13 @@ def _in_channels(one: Bin, placed: Sequence[Placed]) -> Iterator[str]:
     for at, channel in enumerate(order):
         words = waiting.pop(channel, [])
         yield from words
+        is_shared = channel == (UNORM, one.part)
+        bits = sum(int(word.rpartition(":")[2]) for word in shared) if is_shared else 0
+        yield from shared if is_shared else ()
         if channel[0] != SRGB and waiting and at + 1 < len(order):
-            yield from [FREE] * (one.channels[channel] - len(words))
-    yield from shared
+            if bits % one.part:
+                yield f"{FREE}:{one.part - bits % one.part}"
+            yield from [FREE] * (one.channels[channel] - len(words) - -(-bits // one.part))
 
 
 def file_of(row: Mapping[str, Any]) -> str:

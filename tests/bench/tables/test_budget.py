@@ -74,7 +74,7 @@ def _holds(one: Bin, codes) -> bool:
     for need in needs:
         for channel, count in need.items():
             taken[channel] = taken.get(channel, 0) + count
-    taken[("unorm", 8)] = taken.get(("unorm", 8), 0) + math.ceil(taken.pop(SHARED, 0))
+    taken["unorm", one.part] = taken.get(("unorm", one.part), 0) + math.ceil(taken.pop(SHARED, 0))
     return all(count <= one.channels.get(channel, 0) for channel, count in taken.items())
 
 
@@ -286,6 +286,17 @@ def words_of(layout):
 
 def bits_of(layout, word) -> int:
     return word.bits or layout.targets[word.target].storage.bits[word.first]
+
+
+def test_codes_share_the_channels_of_ten_bits():
+    """A normal, a roughness and an occlusion in 30 bits; the two bits beside them are another's."""
+    home = BINS["rgb10a2"]
+    codes = {code.key: code for one in held.SEEN.values() for code in one.codes}
+    flags = held.exact_bits("flags", "other", 2).codes[0]
+    names = [("normal", "octahedral 11:11"), ("metalness", "linear 5")]
+    layout = layout_of("mine", Solution(tuple(Placed(c, home, 0) for c in (*(codes[n] for n in names), flags)), {}))
+    (target,) = layout.targets
+    assert target.holds == "normal.x:11 normal.y:11 metalness:5 -:3 other"
 
 
 @pytest.mark.parametrize("name", ["rg32_uint", "rgba32_uint", "rgba16_uint"])

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from .....encodings.storages.storage import Storage
 from .....gbuffer.layouts.words import Word
 
 
@@ -19,8 +20,12 @@ class Part:
     is_masked: bool
 
 
-def parts_of(words: Sequence[Word], channel: int, size: int) -> Iterator[Part]:
-    """The parts of words in a channel of so many bits; bits count from the first channel's highest."""
+def parts_of(words: Sequence[Word], channel: int, storage: Storage) -> Iterator[Part]:
+    """The parts of words in a channel; bits count from the first channel's highest, and none lie in a channel of
+    another size than that."""
+    size = storage.bits[0]
+    if storage.bits[channel] != size:
+        return
     begin, end = size * channel, size * (channel + 1)
     for word in words:
         last = word.first + word.bits

@@ -67,7 +67,7 @@ def _places(contents: Contents, word: Word) -> Iterator[str]:
         yield AXES[word.first]
         return
     for channel, size in enumerate(storage.bits):
-        for part in parts_of([word], channel, size):
+        for part in parts_of([word], channel, storage):
             low, high = max(part.shift, 0), min(size, part.shift + word.bits) - 1
             yield f"{AXES[channel]} {low}-{high}" if high > low else f"{AXES[channel]} {low}"
 

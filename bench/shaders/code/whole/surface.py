@@ -112,10 +112,11 @@ def _unwritten(layout: Layout) -> str:
 
 def _unwritten_other(layout: Layout) -> str:
     for at, target in enumerate(layout.targets):
-        bytes_or_whole = target.storage.is_integer or set(target.storage.bits) == {8}
+        storage = target.storage
+        equal = storage.bits.count(storage.bits[0]) * storage.bits[0] if storage.kind == "unorm" else 0
         for word in all_placed(layout.name, at, target):
-            if word.component == OTHER and word.bits and not bytes_or_whole:
-                return f"other:{word.bits} within {target.format}; bits lie in channels of 8 bits or of integers"
+            if word.component == OTHER and word.bits and word.first + word.bits > equal:
+                return f"other:{word.bits} within {target.format}, whose first {equal} bits hold fields"
     return ""
 
 

@@ -15,8 +15,6 @@ from .numbers import Number
 from .surface import Contents, Field, code_is_whole
 
 AXES = "xyzw"
-# What stands for 1 in a byte.
-BYTE = "255.0"
 # How many parts of an integer are joined in a line, and the longest text that stands in the line of its target.
 JOINED, SHORT = 3, 12
 
@@ -118,13 +116,13 @@ class Texts:
             return ([], made) if len(made) <= SHORT else ([f"float {name} = {made};"], name)
         storage = self._layout.targets[at].storage
         size = storage.bits[channel]
-        joined = packed_texts([(p, self._integer_name(p.word)) for p in parts_of(words, channel, size)], size)
+        joined = packed_texts([(p, self._integer_name(p.word)) for p in parts_of(words, channel, storage)], size)
         if not joined:
             return [], "0u" if storage.is_integer else "0.0"
         lines = [f"uint {name} = {' | '.join(joined[:JOINED])};"]
         for more in range(JOINED, len(joined), JOINED):
             lines.append(f"{name} |= {' | '.join(joined[more : more + JOINED])};")
-        return lines, name if storage.is_integer else f"float({name}) / {BYTE}"
+        return lines, name if storage.is_integer else f"float({name}) / {float(storage.scale(channel))}"
 
     # And back.
 
@@ -142,11 +140,11 @@ class Texts:
         words = [word for word in self.contents.words if word.target == at]
         held = {}
         for channel in range(storage.channels):
-            found = list(parts_of(words, channel, storage.bits[channel]))
+            found = list(parts_of(words, channel, storage))
             text = f"t.target_{at}" + (f".{AXES[channel]}" if storage.channels > 1 or not storage.is_integer else "")
             if found and not storage.is_integer:
-                yield f"uint byte_{at}_{channel} = uint({text} * {BYTE} + 0.5);"
-                text = f"byte_{at}_{channel}"
+                yield f"uint bits_{at}_{AXES[channel]} = uint({text} * {float(storage.scale(channel))} + 0.5);"
+                text = f"bits_{at}_{AXES[channel]}"
             for part in found:
                 held.setdefault(part.word, []).append((part, text))
         for word in words:

@@ -201,14 +201,15 @@ def _put(layout: Layout, word: Word, value: np.ndarray, is_float: bool, stored: 
         stored[:, word.target, word.first] = number.view(np.uint32)
         return
     for channel, size in enumerate(storage.bits):
-        for part in parts_of([word], channel, size):
+        scale = storage.scale(channel)
+        for part in parts_of([word], channel, storage):
             moved = value << np.uint32(part.shift) if part.shift >= 0 else value >> np.uint32(-part.shift)
             moved &= np.uint32(2**size - 1)
             if storage.is_integer:
                 stored[:, word.target, channel] |= moved
             else:
-                held = np.rint(np.ascontiguousarray(stored[:, word.target, channel]).view(np.float32) * 255.0)
-                texel = ((held.astype(np.uint32) | moved) * np.float32(1 / 255)).astype(np.float32)
+                held = np.rint(np.ascontiguousarray(stored[:, word.target, channel]).view(np.float32) * scale)
+                texel = ((held.astype(np.uint32) | moved) * np.float32(1 / scale)).astype(np.float32)
                 stored[:, word.target, channel] = texel.view(np.uint32)
 
 
@@ -250,10 +251,10 @@ def _steps(layout: Layout, word: Word, stored: np.ndarray) -> np.ndarray:
         curved = np.asarray(to_srgb(jnp.asarray(number))) if word.first < storage.curved else number
         return np.rint(curved.astype(np.float64) * storage.scale(word.first)).astype(np.int64)
     found = np.zeros(len(texels), np.uint32)
-    for channel, size in enumerate(storage.bits):
+    for channel in range(storage.channels):
         held = np.ascontiguousarray(texels[:, channel])
-        held = held if storage.is_integer else np.rint(held.view(np.float32) * 255.0).astype(np.uint32)
-        for part in parts_of([word], channel, size):
+        held = held if storage.is_integer else np.rint(held.view(np.float32) * storage.scale(channel)).astype(np.uint32)
+        for part in parts_of([word], channel, storage):
             moved = held >> np.uint32(part.shift) if part.shift >= 0 else held << np.uint32(-part.shift)
             found |= moved & np.uint32(2**word.bits - 1)
     return found.astype(np.int64)

@@ -20,6 +20,7 @@ from normalbench.bench.shaders.code.whole.run import RUNS
 from normalbench.bench.shaders.code.whole.surface import Contents
 from normalbench.bench.shaders.code.whole.verify import agreement
 from normalbench.bench.subjects.codecs.layout_names import layouts_named
+from normalbench.encodings.storages.storage import TARGET_FORMATS
 from normalbench.gbuffer.layouts.presets import LAYOUTS
 from normalbench.gbuffer.layouts.words import Word
 
@@ -62,6 +63,10 @@ holds = "emission"
 [[targets]]
 format = "rg16_snorm"
 holds = "motion.x motion.y"
+
+[[targets]]
+format = "rgb10a2"
+holds = "occlusion:7 other:9 other:14 other"
 """
 PRESETS = ("unreal4", "bevy", "unity_hdrp")
 FAST, FEW, MANY = ("c", "python"), 2**12, 10**6
@@ -162,10 +167,11 @@ def test_words_that_cross_channels_come_back():
     """Integers across channels of 8 and of 16 bits: what is put is what is taken, and nothing else is touched."""
     words = [Word("a", 0, 0, 11), Word("b", 0, 11, 10), Word("c", 0, 21, 11)]
     given = {"a": 0b10110011101, "b": 0b1100101011, "c": 0b01110001101}
-    for size in (8, 16, 32):
+    for name, size in (("rgba8_uint", 8), ("rg16_uint", 16), ("r32_uint", 32)):
+        storage = TARGET_FORMATS[name]
         held, read = {}, {word: [] for word in words}
         for channel in range(32 // size):
-            parts = list(parts_of(words, channel, size))
+            parts = list(parts_of(words, channel, storage))
             text = " | ".join(packed_texts([(part, part.word.component) for part in parts], size))
             held[f"t{channel}"] = eval(text.replace("u", ""), dict(given)) & 2**size - 1
             for part in parts:

@@ -1,0 +1,32 @@
+"""What lies on a device beyond those who asked for it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from contextlib import ExitStack
+from typing import Generic, TypeVar
+
+T = TypeVar("T")
+
+
+class Lasting(Generic[T]):
+    """Objects by a key, each made once. Beyond so many, those that were asked for longest ago and that nobody uses any
+    more are released."""
+
+    def __init__(self, most: int, release: Callable[[T], None]):
+        self._most, self._release = most, release
+        self._held: dict[Hashable, T] = {}
+        self._users: dict[Hashable, int] = {}
+
+    def used(self, stack: ExitStack, key: Hashable, make: Callable[[], T]) -> T:
+        """The object of a key, in use until the stack closes. Raises what `make` does."""
+        found = self._held.pop(key) if key in self._held else make()
+        self._held[key] = found
+        self._users[key] = self._users.get(key, 0) + 1
+        stack.callback(self._leave, key)
+        for old in [other for other in self._held if not self._users.get(other)][: len(self._held) - self._most]:
+            self._release(self._held.pop(old))
+        return found
+
+    def _leave(self, key: Hashable) -> None:
+        self._users[key] -= 1
