@@ -100,7 +100,7 @@ def _largest(supremum: float | None, met: float) -> str:
 
 
 def _instructions(codec: Codec) -> Iterator[str]:
-    rows = cost.counted([codec.encoding], FAMILY, STAGE)
+    rows = cost.counted(cost.cases([codec.encoding], (), cost.OPERATIONS), FAMILY, STAGE)
     counts: Sequence[Any] = [row["instructions"] for row in rows.values()]
     if len(counts) != len(cost.OPERATIONS):
         yield "Instructions: not counted here: `normalbench doctor` says what is missing."

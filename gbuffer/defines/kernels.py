@@ -27,14 +27,14 @@ class Operation:
     """What stands between loading numbers and storing them.
 
     Attributes:
-        glsl: the file that defines `operation`.
-        given, beside, made: how many numbers go in, go in beside them, and come out; each 2 to 4.
+        glsl: the file that defines `operation`, a shader's name or a path.
+        given, beside, made: how many numbers go in, go in beside them, and come out; at least 1.
         own_defines, own_names: what that file needs, as `Source` takes it.
         tables: makes its look-up tables by sampler name, as `Encoding.tables`.
         is_portable: whether its SPIR-V says what it costs; what a driver has to unroll and fold first does not.
     """
 
-    glsl: str
+    glsl: str | Path
     given: int
     beside: int
     made: int
@@ -52,14 +52,14 @@ class Operation:
     def defines(self) -> dict[str, object]:
         """The macros of a kernel around it."""
         sizes = {"GIVEN": self.given, "BESIDE": self.beside, "MADE": self.made}
-        taken = ("xyzw"[: self.given] * 2)[: self.made]
-        vectors = {name: f"vec{size}" for name, size in sizes.items()}
-        return {"PLANES": PLANES, "GROUP": GROUP, "TAKEN": taken, **vectors, **self.own_defines}
+        kinds = {name: f"vec{size}" if 2 <= size <= 4 else f"float[{size}]" for name, size in sizes.items()}
+        beside = {"BESIDE_PLANE": max(4, self.given)}
+        return {"PLANES": PLANES, "GROUP": GROUP, **beside, **kinds, **self.own_defines}
 
     @property
     def names(self) -> dict[str, Path]:
         """The files that a kernel includes by name."""
-        return {**self.own_names, "OPERATION": shaders()[self.glsl]}
+        return {**self.own_names, "OPERATION": Path(shaders().get(str(self.glsl), self.glsl))}
 
     def source(self, shader: str) -> Source:
         """The operation in one of the kernels. Raises ShaderError where a file cannot be read."""

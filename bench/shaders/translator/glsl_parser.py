@@ -157,10 +157,11 @@ class GlslParser(Parser):
             words = []
             while self._next_token.text in ("const", "in", "inout", "out"):
                 words.append(self._take().text)
-            kind = self._kind()
+            kind = self._sized(self._kind())
             name = "" if self._next_token.text in (",", ")") else self._word_token().text
             is_changed = bool({"inout", "out"} & set(words))
-            found.append(Parameter(self._sized(kind), name or f"unused{len(found)}", is_changed, "out" not in words))
+            kind = kind if "[" in kind else self._sized(kind)
+            found.append(Parameter(kind, name or f"unused{len(found)}", is_changed, "out" not in words))
             if self._next_token.text != ")":
                 self._take(",")
         return found

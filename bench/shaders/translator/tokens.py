@@ -205,7 +205,8 @@ def _open_comment(line: str, bare: str) -> str:
 def _is_number(words: Sequence[Token]) -> bool:
     """A number under a sign, or an array of numbers."""
     texts = [word.text for word in words if word.text != "-"]
-    is_array = len(texts) > 1 and texts[0] in ("float", "int") and texts[1] == "["
+    # Without numbers in brackets behind it, `float[4]` is a type.
+    is_array = len(texts) > 1 and texts[0] in ("float", "int") and texts[1] == "[" and "(" in texts
     return is_array or (len(texts) == 1 and words[-1].kind == "number")
 
 

@@ -69,10 +69,10 @@ GLSLANG_STAGES = {"fragment": "frag", "compute": "comp"}
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """An encoding's operation, or a packing's.
+    """An encoding's operation, a packing's or a layout's.
 
     Attributes:
-        encoding, storage: an encoding or the name of a packing, and None for the other.
+        encoding, storage: an encoding or the name of a packing or of a layout, and None for the other.
         operation: "encode", "decode", "pack" or "unpack".
         make: makes it; raises ShaderError.
     """
@@ -331,13 +331,11 @@ def listings_of(family: str) -> Any:
     return READERS[known.vendor] if known else disassembly
 
 
-def counted(
-    encodings: Iterable[Encoding], family: str, stage: str, packings: Iterable[Packing] = ()
-) -> dict[tuple[str, str], Row]:
-    """The rows of one family with instructions, by encoding or packing, and operation; none where there are no
+def counted(chosen: Sequence[Case], family: str, stage: str) -> dict[tuple[str, str], Row]:
+    """The rows of one family with instructions, by encoding, packing or layout, and operation; none where there are no
     compilers."""
     try:
-        found = isa_rows(cases(encodings, packings, OPERATIONS), [stage], [family], [], nobody)
+        found = isa_rows(chosen, [stage], [family], [], nobody)
         rows = [row for row, _ in found if row["family"] == family and row["instructions"] is not None]
     except MissingError:
         rows = []

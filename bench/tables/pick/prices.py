@@ -23,9 +23,8 @@ class Costs:
         chosen = list(codecs)
         encodings = list(dict.fromkeys(codec.encoding for codec in chosen))
         packings = {packing_of(codec).name: packing_of(codec) for codec in chosen if codec.storage.is_packed}
-        self._rows = {
-            family: cost.counted(encodings, family, usual_stage(family), list(packings.values())) for family in families
-        }
+        cases = cost.cases(encodings, packings.values(), cost.OPERATIONS)
+        self._rows = {family: cost.counted(cases, family, usual_stage(family)) for family in families}
 
     def of(self, codec: Codec) -> Row:
         """The columns of costs on the family where the code is dearest; none where nothing is known."""

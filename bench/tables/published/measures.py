@@ -139,7 +139,7 @@ class InACube:
 @cache
 def _instructions() -> dict[tuple[str, str], float]:
     names = {*(name for name, _ in published.SLOTS), *(name for name, _ in published.SLOTS_2009)}
-    rows = cost.counted((ENCODINGS[name] for name in sorted(names)), FAMILY, STAGE)
+    rows = cost.counted(cost.cases((ENCODINGS[name] for name in sorted(names)), (), cost.OPERATIONS), FAMILY, STAGE)
     return {key: float(row["instructions"]) for key, row in rows.items()}
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 
@@ -87,15 +88,24 @@ def gbuffer_code(layout: Layout, language: str, prefix: str = "") -> GBufferCode
 def _program(texts: Texts, prefix: str) -> Program:
     """The two functions of a layout as a tree. Raises ShaderError, TranslationError."""
     layout = texts.contents.layout
-    defines = {**encoding_defines(layout.codec.encoding), **curve_defines(layout)}
-    files = {"ENCODING": layout.codec.encoding.glsl, "CURVES": curve_files(layout)}
-    source = Source(ROOT, defines, files)
-    functions = _template().render(texts.context)
+    defines, files = read_of(layout)
+    source, functions = Source(ROOT, defines, files), functions_text(texts)
     for name in ("CODE", "ENCODE", "DECODE"):
         functions = re.sub(rf"\b{name}\b", str(defines[name]), functions)
     program = given_back(reduced(read_glsl(f"{source.text}\n{functions}"), ROOTS, prefix, layout.encoding.prefix))
     _shorten(program, prefix)
     return program
+
+
+def functions_text(texts: Texts) -> str:
+    """The structures and the two functions of a layout in GLSL, with macros of what they call."""
+    return _template().render(texts.context)
+
+
+def read_of(layout: Layout) -> tuple[dict[str, object], dict[str, Any]]:
+    """The macros and the files of what a layout's functions call, as `Source` takes them. Raises ShaderError."""
+    defines = {**encoding_defines(layout.codec.encoding), **curve_defines(layout)}
+    return defines, {"ENCODING": layout.codec.encoding.glsl, "CURVES": curve_files(layout)}
 
 
 def _shorten(program: Program, prefix: str) -> None:

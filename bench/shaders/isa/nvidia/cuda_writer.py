@@ -7,6 +7,7 @@ from ...translator.tree import (
     Assign,
     Binary,
     Choice,
+    Construct,
     Declare,
     Elements,
     Expression,
@@ -47,8 +48,7 @@ class CudaWriter(Writer):
         return f"__forceinline__ {self._kind(function.kind)} {function.name}({', '.join(parameters)})"
 
     def _kind(self, kind: str) -> str:
-        scalar, bracket, count = kind.partition("[")
-        return f"Array<{scalar}, {count.rstrip(']')}>" if bracket else kind
+        return kind_text(kind)
 
     def _declaration_text(self, declared: Declare) -> str:
         value = f" = {self._text(declared.value)}" if declared.value is not None else ""
@@ -56,6 +56,11 @@ class CudaWriter(Writer):
 
     def _elements(self, value: Elements) -> str:
         return f"{self._kind(value.kind)}{{{self._listed(value)}}}"
+
+    def _construct(self, value: Construct) -> str:
+        if value.kind in self._structs:
+            return f"{value.kind}{{{self._arguments(value.arguments)}}}"
+        return super()._construct(value)
 
     def _simple_text(self, statement: Statement) -> str:
         match statement:
@@ -83,6 +88,12 @@ class CudaWriter(Writer):
     def _choice_and_level(self, value: Choice) -> tuple[str, int]:
         """Both values are computed and one is taken, which is what compilers of shaders make of `?:`."""
         return f"chosen({', '.join(map(self._text, (value.condition, value.chosen, value.other)))})", PRIMARY
+
+
+def kind_text(kind: str) -> str:
+    """A type of GLSL as glsl.cuh has it."""
+    scalar, bracket, count = kind.partition("[")
+    return f"Array<{scalar}, {count.rstrip(']')}>" if bracket else kind
 
 
 def _field_indices(names: str) -> str:

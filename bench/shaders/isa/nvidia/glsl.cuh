@@ -10,6 +10,7 @@ template <typename T, int N> struct Array {
     T at[N];
     __forceinline__ constexpr T &operator[](int i) { return at[i]; }
     __forceinline__ constexpr const T &operator[](int i) const { return at[i]; }
+    static constexpr int length() { return N; }
 };
 
 template <typename T, int N> struct Vec;

@@ -12,18 +12,18 @@ from ...translator import tree
 from ...translator.glsl_parser import read_glsl
 from ...translator.reduce import reduced
 from ...translator.tree import TranslationError
-from .cuda_writer import CudaWriter
+from .cuda_writer import CudaWriter, kind_text
 
 FOLDER = Path(__file__).parent
 ROOT, LANGUAGE, KERNEL = (FOLDER / name for name in ("operation.glsl", "glsl.cuh", "kernel.cu"))
 PREFIX = "kernel"
 # Of the kernel around an operation.
-MACROS = ("GROUP", "GIVEN", "BESIDE", "MADE")
+MACROS = ("GROUP", "BESIDE_PLANE", "GIVEN", "BESIDE", "MADE")
 
 
 def cuda_of(operation: Operation) -> str:
     """The kernel's whole text. Raises ShaderError as `functions_of`."""
-    head = "".join(f"#define {name} {operation.defines[name]}\n" for name in MACROS)
+    head = "".join(f"#define {name} {kind_text(str(operation.defines[name]))}\n" for name in MACROS)
     return "\n".join((head + _text(LANGUAGE), functions_of(operation), f"{_text(KERNEL)}}}  // namespace glsl\n"))
 
 

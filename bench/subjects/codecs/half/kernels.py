@@ -22,16 +22,12 @@ class HalfOperation(Operation):
 
     @property
     def empty(self) -> Operation:
-        return HalfOperation("kernel_half_empty.glsl", self.given, self.beside, self.made)
+        return HalfOperation(HERE / "kernel_half_empty.glsl", self.given, self.beside, self.made)
 
     @property
     def defines(self) -> dict[str, object]:
         halves = {f"HALF_{name}": f"f16vec{size}" for name, size in (("GIVEN", self.given), ("BESIDE", self.beside))}
         return super().defines | halves
-
-    @property
-    def names(self) -> dict[str, Path]:
-        return {**self.own_names, "OPERATION": HERE / self.glsl}
 
     def source(self, shader: str) -> Source:
         return HalfSource(shader, self.defines, self.names, KERNELS)
@@ -45,4 +41,6 @@ def half_operation(encoding: Encoding, operation: str) -> Operation:
     size = encoding.components + encoding.sign_bits
     given, made = (3, size) if operation == "encode" else (size, 3)
     own = encoding_defines(encoding, as_half=True), {"ENCODING": encoding.glsl}
-    return HalfOperation(f"kernel_half_{operation}.glsl", given, 3, made, *own, encoding.tables, is_portable=False)
+    return HalfOperation(
+        HERE / f"kernel_half_{operation}.glsl", given, 3, made, *own, encoding.tables, is_portable=False
+    )

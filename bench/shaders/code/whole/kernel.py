@@ -1,0 +1,80 @@
+"""The two functions of a layout as operations, for compilers to be asked what they cost."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from .....gbuffer.defines.kernels import Operation
+from .....gbuffer.gl.shader import ShaderError
+from .....gbuffer.layouts.layout import Layout
+from ....ground.output.errors import UsageError
+from ...translator.tree import size_of
+from .bits import parts_of
+from .emit import functions_text, read_of
+from .fields import Leaf, surface_leaves, target_leaves
+from .surface import Contents
+from .text import Texts
+
+FILE = Path(__file__).with_name("kernel_layout.glsl")
+# Nothing goes in beside a surface, but GLSL has no arrays of no numbers.
+BESIDE = 1
+
+
+def pack_operation(layout: Layout) -> Operation:
+    """A surface to the channels that hold something of it. Raises ShaderError where no code is written for a layout."""
+    texts = _texts(layout)
+    return _operation(texts, ("Surface", surface_leaves(texts)), ("Targets", _held(texts)), "pack_gbuffer")
+
+
+def unpack_operation(layout: Layout) -> Operation:
+    """The channels that hold something to a surface. Raises ShaderError where no code is written for a layout."""
+    texts = _texts(layout)
+    return _operation(texts, ("Targets", _held(texts)), ("Surface", surface_leaves(texts)), "unpack_gbuffer")
+
+
+def _texts(layout: Layout) -> Texts:
+    try:
+        return Texts(Contents(layout))
+    except UsageError as error:
+        raise ShaderError(str(error)) from error
+
+
+def _operation(
+    texts: Texts, given: tuple[str, Sequence[Leaf]], made: tuple[str, Sequence[Leaf]], function: str
+) -> Operation:
+    """A function of a layout, by the structures that it takes and makes and by the numbers of these."""
+    defines, files = read_of(texts.contents.layout)
+    own = {
+        # Macros are of one line.
+        "FUNCTIONS": " ".join(line for line in functions_text(texts).splitlines() if not line.startswith("//")),
+        "KERNEL_FUNCTION": function,
+        "KERNEL_FROM": given[0],
+        "KERNEL_TO": made[0],
+        "KERNEL_LOADS": " ".join(_load(at, leaf) for at, leaf in enumerate(given[1])),
+        "KERNEL_STORES": " ".join(_store(at, leaf) for at, leaf in enumerate(made[1])),
+    }
+    return Operation(FILE, len(given[1]), BESIDE, len(made[1]), defines | own, files, is_portable=False)
+
+
+def _load(at: int, leaf: Leaf) -> str:
+    number = f"given[{at}]"
+    return f"from.{leaf.path} = {f'floatBitsToUint({number})' if leaf.is_whole else number};"
+
+
+def _store(at: int, leaf: Leaf) -> str:
+    number = f"to.{leaf.path}"
+    return f"made[{at}] = {f'uintBitsToFloat({number})' if leaf.is_whole else number};"
+
+
+def _held(texts: Texts) -> list[Leaf]:
+    """The channels in which something lies: what is written to the others is a constant."""
+    places = [(at, channel) for at, one in enumerate(texts.targets) for channel in range(size_of(one.kind))]
+    return [leaf for leaf, place in zip(target_leaves(texts), places, strict=True) if _holds(texts.contents, *place)]
+
+
+def _holds(contents: Contents, at: int, channel: int) -> bool:
+    sizes = contents.layout.targets[at].storage.bits
+    words = [word for word in contents.words if word.target == at]
+    has_own = any(not word.bits and word.first == channel for word in words)
+    return channel < len(sizes) and (has_own or any(parts_of(words, channel, sizes[channel])))
