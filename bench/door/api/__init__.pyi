@@ -119,7 +119,7 @@ def budget(
     read_alone: Names | None = ...,
     classes: Names = ...,
     overdraw: float = ...,
-    readers: float = ...,
+    readers: Names = ...,
     size: Names = ...,
     against: Names | None = ...,
     engines: bool = ...,
@@ -146,7 +146,7 @@ def budget(
         read_alone: What a pass reads from one target, or none. Default: normal,roughness without --blend.
         classes: Classes of surfaces that judge: mirror, glossy, rough, emissive; or all.
         overdraw: How often a pixel is written.
-        readers: How many passes read all of the G-buffer.
+        readers: The passes that read the G-buffer, comma-separated: a number of passes that read all of it, and for each other pass its attributes, such as 1,normal+roughness.
         size: WIDTHxHEIGHT of the image.
         against: Layouts to compare with: presets, or TOML files of yours; comma-separated.
         engines: Whether engines' layouts are measured as well.

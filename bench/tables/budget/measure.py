@@ -24,6 +24,7 @@ from .attributes import Attribute, usual
 from .bins import Bin, webgpu_cost
 from .own import Own, own
 from .rates import FRAME, LEAST_PIXELS, PIPELINE, Exact, Stage, rates, rates_of_pair
+from .readers import Readers
 from .solve import NOTHING, UNSEEN, Key, Pair, Problem, Rules, Solution, fewest_bytes, finalists
 from .table import TABLE
 from .written import layout_of
@@ -53,7 +54,7 @@ class Question:
         attributes: what is stored.
         bins: targets that there may be.
         rules: for each limit.
-        overdraw, readers: how often a pixel is written, and how many passes fetch all of it.
+        overdraw, readers: how often a pixel is written, and the passes that fetch it.
         against: layouts to compare with.
         engines: whether engines' layouts of the same kind are measured as well.
         tile: the bytes a pixel that a tile of a GPU has at full rate; None where nobody asks.
@@ -68,7 +69,7 @@ class Question:
     bins: Sequence[Bin]
     rules: Sequence[Rules]
     overdraw: float
-    readers: float
+    readers: Readers
     against: Sequence[Layout]
     engines: bool
     tile: int | None
@@ -338,8 +339,8 @@ class Judged:
         return None if q.tile is None else layout.bytes_per_pixel + q.light_bytes <= q.tile
 
     def _traffic(self, layout: Layout) -> Row:
-        q, size = self._question, layout.bytes_per_pixel
-        moved = size * (q.overdraw + q.readers) / 1e6
+        q = self._question
+        moved = (q.overdraw * layout.bytes_per_pixel + q.readers.bytes_of(layout)) / 1e6
         return {"mb_1080p": HD * moved, "mb_4k": UHD * moved}
 
     def _empty(self, kind: str, name: str) -> Row:
@@ -350,7 +351,7 @@ class Judged:
             "scene": q.scenes,
             "size": "x".join(map(str, one.stage.size)),
             "overdraw": q.overdraw,
-            "readers": q.readers,
+            "readers": q.readers.said,
         }
 
     def others(self, device: Device) -> Iterator[Layout]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ..table import Row
+from .readers import times
 
 # FLIP's 99th percentile that we call invisible, and acceptable: both are conventions (see `roughness`).
 INVISIBLE, ACCEPTABLE = 0.05, 0.1
@@ -66,7 +67,7 @@ def _rules(row: Row) -> str:
     said = [f"Decals blend into {', '.join(blended)}." if blended else "Decals are applied before packing."]
     said.append(
         f"A frame moves {row['mb_1080p']:.0f} MB at 1080p and {row['mb_4k']:.0f} MB at 4K, without compression, "
-        f"written {row['overdraw']:g} times and read {row['readers']:g} times."
+        f"written {times(row['overdraw'])}, read {row['readers']}."
     )
     if row["in_tile"] is not None:
         said.append("With the light buffer it fits the tile." if row["in_tile"] else "It takes tiles of half the size.")

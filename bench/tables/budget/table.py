@@ -74,7 +74,14 @@ class BudgetOptions:
         str, Option("--classes", "Classes of surfaces that judge: mirror, glossy, rough, emissive; or all.")
     ] = "all"
     overdraw: Annotated[float, Option("--overdraw", "How often a pixel is written.")] = 1.5
-    readers: Annotated[float, Option("--readers", "How many passes read all of the G-buffer.")] = 1.0
+    readers: Annotated[
+        str,
+        Option(
+            "--readers",
+            "The passes that read the G-buffer, comma-separated: a number of passes that read all of it, and for each "
+            "other pass its attributes, such as 1,normal+roughness.",
+        ),
+    ] = "1"
     size: Size = "320x240"
     against: Annotated[
         str | None,
@@ -138,8 +145,8 @@ COLUMNS = (
     Column("holds", "What says how much a surface reflects, of an engine's layout.", HOW, drops=10),
     Column(
         "mb_1080p",
-        "Bytes written and read a frame at 1920 x 1080: pixels x bytes x (overdraw + readers). Compression is not "
-        "modelled.",
+        "Bytes written and read a frame at 1920 x 1080: pixels x (overdraw x bytes + the bytes that each of `readers` "
+        "fetches). Compression is not modelled.",
         unit="MB",
         better="less",
         drops=4,
@@ -154,7 +161,7 @@ COLUMNS = (
     ),
     Column("in_tile", "Whether targets and light buffer fit the tile of --limit tile:BYTES.", HOW, drops=2),
     Column("overdraw", "How often a pixel is written.", HOW, drops=11),
-    Column("readers", "How many passes read all of it.", HOW, drops=11),
+    Column("readers", "How many passes read all of it, and what others read of it.", HOW, drops=11),
     Column("size", "Width and height of the image in pixels.", HOW, drops=11),
     shared.DEVICE,
     shared.SKIPPED,

@@ -25,6 +25,7 @@ from .charts import charts
 from .contract import MOTION, PACKED, attributes_held, names_held
 from .measure import IMPROVED, MINE, PROPOSAL, Question, in_order, measure
 from .rates import CLASSES, Stage
+from .readers import MOST, check_held, read_readers
 from .sentences import told
 from .solve import Rules
 from .table import TABLE, BudgetOptions, BudgetOutputs
@@ -60,11 +61,12 @@ def question(options: BudgetOptions) -> Question:
     device = require_device()
     sizes = checked_numbers("--bytes", options.bytes, int, 1, MOST_BYTES)
     in_range("--targets", options.targets, 1, MOST_TARGETS)
-    for name, value in (("--overdraw", options.overdraw), ("--readers", options.readers)):
-        in_range(name, value, 0.0, 64.0)
+    in_range("--overdraw", options.overdraw, 0.0, MOST)
+    readers = read_readers(options.readers)
     in_range("--speed", options.speed, 0.0, max(UP_TO_PIXELS.values()))
     held = attributes_held(options.hold, options.speed)
     names = [one.name for one in held]
+    check_held(readers, names)
     blended = frozenset(names_held("--blend", options.blend, names))
     together = [_read_alone(options.read_alone, names, blended), ONE_BYTE & {*names}]
     size, _ = checked_target(options.size, 1, 1, device)
@@ -90,7 +92,7 @@ def question(options: BudgetOptions) -> Question:
         bins=_bins(options, webgpu),
         rules=rules,
         overdraw=options.overdraw,
-        readers=options.readers,
+        readers=readers,
         against=layouts_named(options.against) if options.against else [],
         engines=options.engines,
         tile=tile,

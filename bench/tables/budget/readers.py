@@ -1,0 +1,111 @@
+"""The passes that read a G-buffer, and the bytes that they fetch."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from ....gbuffer.layouts.layout import Layout
+from ...ground.options.counts import in_range
+from ...ground.output.errors import UsageError
+
+ALL, JOINED = "all", "+"
+MOST = 64.0
+# The words of a layout that each attribute lies in, without what follows their point. Engines' layouts do not tell the
+# bits of flags, shadows and others apart.
+WORDS: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "normal": ("normal",),
+        "basecolor": ("albedo",),
+        "roughness": ("roughness", "power"),
+        "metalness": ("metalness",),
+        "specular": ("reflectance", "specular"),
+        "occlusion": ("occlusion",),
+        "motion": ("motion",),
+        "emission": ("emission",),
+        "id": ("kind",),
+    }
+)
+TIMES = {1.0: "once", 2.0: "twice"}
+
+
+@dataclass(frozen=True)
+class Readers:
+    """The passes that read a G-buffer.
+
+    Attributes:
+        full: how many of them read all of it.
+        parts: the attributes that each of the others reads.
+    """
+
+    full: float
+    parts: tuple[tuple[str, ...], ...] = ()
+
+    def bytes_of(self, layout: Layout) -> float:
+        """The bytes a pixel that all of them fetch: of a part the targets that hold it."""
+        return self.full * layout.bytes_per_pixel + sum(_bytes_of(layout, part) for part in self.parts)
+
+    @property
+    def said(self) -> str:
+        """How often a G-buffer is read, in words: once in full, once for normal and roughness."""
+        parts = [f"once for {' and '.join(part)}" for part in self.parts]
+        return ", ".join([*([f"{times(self.full)} in full"] if self.full or not parts else []), *parts])
+
+
+def times(count: float) -> str:
+    """How often: once, twice, 3 times."""
+    return TIMES.get(count, f"{count:g} times")
+
+
+def read_readers(words: str) -> Readers:
+    """The passes of comma-separated words: a number of those that read all, `all` for one of them, or attributes joined
+    by +. Raises UsageError for anything else."""
+    full, parts = 0.0, []
+    for word in filter(None, map(str.strip, words.split(","))):
+        count = _count(word)
+        if count is None:
+            parts.append(tuple(_attributes(word)))
+        else:
+            full += count
+    in_range("--readers", full, 0.0, MOST)
+    return Readers(full, tuple(parts))
+
+
+def check_held(readers: Readers, held: Collection[str]) -> None:
+    """Raises UsageError where a pass reads what is not held."""
+    for name in (name for part in readers.parts for name in part):
+        if name not in held:
+            raise UsageError(f"--readers {name}: not held; held: {', '.join(name for name in held if name in WORDS)}")
+
+
+def _count(word: str) -> float | None:
+    if word == ALL:
+        return 1.0
+    try:
+        count = float(word)
+    except ValueError:
+        return None
+    # What is no number is out of range as well.
+    return count if math.isfinite(count) and count >= 0 else -1.0
+
+
+def _attributes(word: str) -> Iterator[str]:
+    for name in map(str.strip, word.split(JOINED)):
+        if name not in WORDS:
+            raise UsageError(
+                f"--readers {word}: unknown; known: a number, {ALL}, {', '.join(WORDS)}, joined by {JOINED}"
+            )
+        yield name
+
+
+def _bytes_of(layout: Layout, part: Collection[str]) -> int:
+    """The bytes of the targets that hold some attributes."""
+    names = {word for name in part for word in WORDS[name]}
+    if "normal" in names:
+        # A quantity that carries a sign of the normal is read with it.
+        names |= {layout.carrier.component} if layout.carrier else set()
+        names |= {"depth"} if layout.has_signed_depth else set()
+    found = {word.target for word in layout.words if word.component.partition(".")[0] in names}
+    return sum(sum(layout.targets[at].storage.bits) // 8 for at in found)
