@@ -120,6 +120,8 @@ def budget(
     classes: Names = ...,
     overdraw: float = ...,
     readers: Names = ...,
+    family: Names = ...,
+    most_instructions: int | None = ...,
     size: Names = ...,
     against: Names | None = ...,
     engines: bool = ...,
@@ -147,6 +149,8 @@ def budget(
         classes: Classes of surfaces that judge: mirror, glossy, rough, emissive; or all.
         overdraw: How often a pixel is written.
         readers: The passes that read the G-buffer, comma-separated: a number of passes that read all of it, and for each other pass its attributes, such as 1,normal+roughness.
+        family: GPU families that issue slots are counted for, comma-separated; the dearest counts.
+        most_instructions: The most issue slots that packing and unpacking once may execute.
         size: WIDTHxHEIGHT of the image.
         against: Layouts to compare with: presets, or TOML files of yours; comma-separated.
         engines: Whether engines' layouts are measured as well.

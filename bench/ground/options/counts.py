@@ -15,6 +15,8 @@ MAX_COUNT = 2**40
 # Held in memory at once, where JAX is timed.
 MAX_TIMED_COUNT = 2**28
 MAX_REPEATS = 1000
+# Issue slots that a limit may be.
+MOST_INSTRUCTIONS = 10**6
 MAX_OBJECTS, MAX_LIGHTS = 100_000, 10_000
 
 

@@ -87,6 +87,9 @@ Samples = Annotated[int, Option("--samples", "Samples per pixel; the device may 
 Scale = Annotated[float, Option("--scale", "Size of inferred's buffers relative to the image's, up to 1.")]
 Objects = Annotated[int, Option("--objects", "Objects in the scene `objects`.")]
 Lights = Annotated[int, Option("--lights", "Point lights.")]
+Families = Annotated[
+    str, Option("--family", "GPU families that issue slots are counted for, comma-separated; the dearest counts.")
+]
 Arithmetics = Annotated[
     str,
     Option(

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import combinations
 from typing import Any
 
@@ -22,6 +23,7 @@ from ...measures.metrics.totals import psnr_db
 from . import changes
 from .attributes import Attribute, usual
 from .bins import Bin, webgpu_cost
+from .cost import Slots, least, whole, within
 from .own import Own, own
 from .rates import FRAME, LEAST_PIXELS, PIPELINE, Exact, Stage, rates, rates_of_pair
 from .readers import Readers
@@ -62,6 +64,8 @@ class Question:
         threshold: of FLIP's 99th percentile, for which the fewest bytes are looked for; None to take the rules.
         search: between which numbers of bytes.
         judging: classes of surfaces of which the worst counts.
+        families: of GPUs that issue slots are counted for.
+        most_instructions: the issue slots that packing and unpacking once may take; None where nobody asks.
     """
 
     stages: Sequence[Stage]
@@ -77,6 +81,8 @@ class Question:
     threshold: float | None
     search: tuple[int, int]
     judging: Sequence[str]
+    families: Sequence[str]
+    most_instructions: int | None
 
     @property
     def scenes(self) -> str:
@@ -106,6 +112,7 @@ class Judged:
 
     def __init__(self, question: Question, judges: Sequence[Exact], tick: Tick):
         self._question, self._judges, self._tick = question, judges, tick
+        self._slots = Slots(question.families)
         self._errors: dict[Key, dict[str, float]] = {}
         self._together: dict[Pair, dict[str, float]] = {}
         self._take(question.attributes)
@@ -148,9 +155,14 @@ class Judged:
         usually = self._usual(asked.attributes)
         for held in (usually, *([asked.attributes] if usually != asked.attributes else [])):
             problem = Problem(held, self._errors, self.classes, asked.bins, asked.rules, self._together)
-            if found := finalists(problem, count):
+            if found := self._kept(problem, count):
                 return found
         return []
+
+    def _kept(self, problem: Problem, count: int) -> list[Solution]:
+        """Up to so many of the best layouts, whose code keeps to --most-instructions where that is asked."""
+        most, best = self._question.most_instructions, partial(finalists, count=count)
+        return best(problem) if most is None else within(problem, most, self._slots, best)
 
     def _best(self, name: str, asked: Own, depth: DepthEncoding | None = None) -> tuple[Solution, Layout, Row] | None:
         """Of the layouts that count as equal the one whose FLIP is least, drawn whole; the plainest where that is as
@@ -254,12 +266,23 @@ class Judged:
     def _why(self, rules: Rules) -> str:
         """What the least is that can be, for a limit that cannot."""
         q = self._question
-        least = fewest_bytes(Problem(q.attributes, self._errors, self.classes, q.bins, rules))
-        if least is None:
+        problem = Problem(q.attributes, self._errors, self.classes, q.bins, rules)
+        least_bytes = fewest_bytes(problem)
+        if least_bytes is None:
             return "no targets hold this by these rules, whatever their bytes"
+        if least_bytes <= rules.bytes and q.most_instructions is not None:
+            return self._why_too_dear(problem, q.most_instructions)
         bits = sum(min(code.total_bits for code in one.codes) for one in q.attributes)
         few = f"{rules.bytes} bytes are too few"
-        return f"{few}: the attributes need {bits} bits, and the smallest layout has {least} bytes"
+        return f"{few}: the attributes need {bits} bits, and the smallest layout has {least_bytes} bytes"
+
+    def _why_too_dear(self, problem: Problem, most: int) -> str:
+        found = least(problem, self._slots, partial(finalists, count=1))
+        slots = f"takes {whole(self._slots, found):g} to pack and unpack" if found else "is not known"
+        families = " and ".join(self._question.families)
+        return (
+            f"{most} issue slots are too few: the cheapest layout of {problem.rules.bytes} bytes {slots} on {families}"
+        )
 
     def _predicted(self, found: Solution) -> Row:
         worst = max(self.classes, key=lambda name: found.errors.get(name, 0.0))
@@ -290,6 +313,7 @@ class Judged:
             "in_tile": self._in_tile(layout),
             "holds": layout.reflects_by or None,
             **self._traffic(layout),
+            **self._slots.columns(layout, self._question.overdraw, self._question.readers.full),
         }
         try:
             # What a layout lacks is no rounding: it is drawn exact, and its bytes are added.
@@ -354,9 +378,13 @@ class Judged:
             "readers": q.readers.said,
         }
 
-    def others(self, device: Device) -> Iterator[Layout]:
+    def others(self, device: Device) -> list[Layout]:
         """The layouts that are compared: a user's, and engines' that the pipeline draws."""
-        yield from self._question.against
+        found = [*self._question.against, *self._engines(device)]
+        self._slots.count(found)
+        return found
+
+    def _engines(self, device: Device) -> Iterator[Layout]:
         plan = self._judges[0].stage.plan
         for layout in LAYOUTS.values() if self._question.engines else ():
             # Diffuse colour and F0 are other quantities than these codes are for.

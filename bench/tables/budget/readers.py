@@ -28,7 +28,7 @@ WORDS: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "id": ("kind",),
     }
 )
-TIMES = {1.0: "once", 2.0: "twice"}
+TIMES = {0.0: "never", 1.0: "once", 2.0: "twice"}
 
 
 @dataclass(frozen=True)
@@ -49,9 +49,8 @@ class Readers:
 
     @property
     def said(self) -> str:
-        """How often a G-buffer is read, in words: once in full, once for normal and roughness."""
-        parts = [f"once for {' and '.join(part)}" for part in self.parts]
-        return ", ".join([*([f"{times(self.full)} in full"] if self.full or not parts else []), *parts])
+        """How often a G-buffer is read, in words, first in full: once in full, once for normal and roughness."""
+        return ", ".join([f"{times(self.full)} in full", *(f"once for {' and '.join(part)}" for part in self.parts)])
 
 
 def times(count: float) -> str:

@@ -23,6 +23,7 @@ def told(row: Row) -> Iterator[str]:
     yield f"{_subject(row)}: {_answer(row)}"
     yield _errors(row)
     yield _rules(row)
+    yield _price(row)
 
 
 def _subject(row: Row) -> str:
@@ -74,3 +75,11 @@ def _rules(row: Row) -> str:
     if row["by_contract"]:
         said.append(f"By contract, not measured: {', '.join(_code(name) for name in row['by_contract'].split(', '))}.")
     return " ".join(said)
+
+
+def _price(row: Row) -> str:
+    if row["pack_slots"] is None:
+        return "What it costs to pack and unpack is not known on this machine."
+    parts = f"Packing takes {row['pack_slots']:g} issue slots and unpacking {row['unpack_slots']:g}"
+    often = f"written {times(row['overdraw'])} and read {row['readers'].partition(', ')[0]}"
+    return f"{parts} on {row['dearest_family']}: {row['slots']:g} a pixel that is {often}."

@@ -12,7 +12,8 @@ Then, of all layouts within a fifth of a decibel of it, the plainest one.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence, Set
+import math
+from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -102,6 +103,8 @@ class Problem:
         classes: those whose worst is to be least.
         bins: targets that there may be.
         rules: what the layout must keep to.
+        cost: what a code costs in a target; None where nobody asks.
+        most_cost: of all codes together.
     """
 
     attributes: Sequence[Attribute]
@@ -110,6 +113,8 @@ class Problem:
     bins: Sequence[Bin]
     rules: Rules
     together: Mapping[Pair, Mapping[str, float]] = field(default_factory=dict)
+    cost: Callable[[Code, Bin], float] | None = None
+    most_cost: float = math.inf
 
     def error(self, code: Code, name: str) -> float:
         found = self.errors.get((code.attribute, code.name), {}).get(name, 0.0)
@@ -200,6 +205,13 @@ class _Program:
             # Targets are written with the widest alignment first, so that none is lost to it.
             costs = {self.used(slot): float(WEBGPU[self.slots[slot][0].format][0]) for slot in every}
             self.row(costs, 0, rules.webgpu)
+        if self.problem.most_cost < math.inf:
+            self.row(dict(enumerate(self._costs())), 0, self.problem.most_cost)
+
+    def _costs(self) -> list[float]:
+        """Of each choice; 0 where nobody asks."""
+        cost = self.problem.cost
+        return [cost(code, self.slots[at][0]) if cost else 0.0 for code, at, _ in self.choices]
 
     def _pair(self) -> None:
         """w = 1 where both codes of a pair are taken, and 0 where one of them is not."""
@@ -214,9 +226,11 @@ class _Program:
         terms = {i: 1.0 for i, (code, *_) in enumerate(self.choices) if code.key in codes}
         self.row(terms, -np.inf, len(codes) - 1)
 
-    def solved(self, unit: float, most: float | None = None, is_smallest: bool = False) -> np.ndarray | None:
+    def solved(
+        self, unit: float, most: float | None = None, is_smallest: bool = False, is_cheapest: bool = False
+    ) -> np.ndarray | None:
         """The variables of the least t in units; where `most` is given, of the plainest layout up to that t; or of
-        the layout of the fewest bytes. None where there is none.
+        the layout of the fewest bytes, or of the least cost. None where there is none.
 
         Args:
             unit: the error that is 1.
@@ -235,6 +249,8 @@ class _Program:
         if is_smallest:
             for slot, (one, _) in enumerate(self.slots):
                 cost[self.used(slot)] = one.bytes
+        elif is_cheapest:
+            cost[: len(self.choices)] = self._costs()
         elif most is None:
             cost[last] = 1.0
         else:
@@ -344,3 +360,10 @@ def fewest_bytes(problem: Problem) -> int | None:
     if values is None:
         return None
     return sum(one.bytes for slot, (one, _) in enumerate(program.slots) if values[program.used(slot)] > 0.5)
+
+
+def cheapest(problem: Problem) -> Solution | None:
+    """The layout whose codes cost least together; None where none keeps to the rules."""
+    program = _Program(problem)
+    values = program.solved(1.0, is_cheapest=True)
+    return None if values is None else program.solution(values)

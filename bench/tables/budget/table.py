@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-from ...ground.options.option import Option, Plot, Size
+from ...ground.options.option import Families, Option, Plot, Size
 from .. import shared_columns as shared
 from ..table import Column, Group, Role, Section, Table
 
@@ -82,6 +82,10 @@ class BudgetOptions:
             "other pass its attributes, such as 1,normal+roughness.",
         ),
     ] = "1"
+    family: Families = "navi21"
+    most_instructions: Annotated[
+        int | None, Option("--most-instructions", "The most issue slots that packing and unpacking once may execute.")
+    ] = None
     size: Size = "320x240"
     against: Annotated[
         str | None,
@@ -152,6 +156,22 @@ COLUMNS = (
         drops=4,
     ),
     Column("mb_4k", "The same at 3840 x 2160.", unit="MB", better="less", drops=4),
+    Column(
+        "pack_slots",
+        "Issue slots to pack a surface into the targets, in a compute shader. What formats convert costs nothing.",
+        unit="slots",
+        better="less",
+        drops=6,
+    ),
+    Column("unpack_slots", "Issue slots to unpack all of it.", unit="slots", better="less", drops=6),
+    Column(
+        "slots",
+        "Issue slots a pixel: overdraw x pack_slots + unpack_slots for each of `readers` that reads all.",
+        unit="slots",
+        better="less",
+        drops=7,
+    ),
+    Column("dearest_family", "The GPU family of --family where that is most, which the slots are of.", HOW, drops=10),
     Column(
         "webgpu_bytes",
         "What the targets cost of WebGPU's 32 bytes a sample; empty where it does not render to one of them.",

@@ -10,7 +10,7 @@ from ....encodings.storages.storage import TARGET_FORMATS
 from ....gbuffer.scenes.setting import Setting
 from ...ground.choose import choose, choose_one
 from ...ground.machine.devices import require_device, require_jax
-from ...ground.options.counts import checked_numbers, in_range
+from ...ground.options.counts import MOST_INSTRUCTIONS, checked_numbers, in_range
 from ...ground.options.scene_names import scene_makers_named
 from ...ground.options.targets import checked_target
 from ...ground.output.errors import UsageError, tell
@@ -23,6 +23,7 @@ from .attributes import EMISSION, UP_TO_PIXELS
 from .bins import BINS, WEBGPU, WEBGPU_BYTES, Bin
 from .charts import charts
 from .contract import MOTION, PACKED, attributes_held, names_held
+from .cost import check_compilers, families_counted
 from .measure import IMPROVED, MINE, PROPOSAL, Question, in_order, measure
 from .rates import CLASSES, Stage
 from .readers import MOST, check_held, read_readers
@@ -51,6 +52,7 @@ SHOWN = (
     "worst_class",
     "psnr_db",
     "flip_p99",
+    "slots",
     "next_bytes",
     "next_db",
 )
@@ -83,6 +85,10 @@ def question(options: BudgetOptions) -> Question:
     left = webgpu_left if webgpu else None
     rules = [Rules(limit, options.targets, blended, sets, left, apart) for limit in sorted(sizes)]
     judging = tuple(choose("class", options.classes, {name: name for name in CLASSES}))
+    families = families_counted(options.family)
+    if options.most_instructions is not None:
+        in_range("--most-instructions", options.most_instructions, 0, MOST_INSTRUCTIONS)
+        check_compilers(families)
     if options.threshold is not None:
         in_range("--threshold", options.threshold, 0.001, 1.0)
         require_flip("--threshold")
@@ -100,6 +106,8 @@ def question(options: BudgetOptions) -> Question:
         threshold=options.threshold,
         search=(LEAST_LIMIT, MOST_LIMIT),
         judging=judging,
+        families=families,
+        most_instructions=options.most_instructions,
     )
 
 

@@ -20,7 +20,7 @@ def layout_of(name: str, solution: Solution) -> Layout:
     normal = next((one.code for one in solution.placed if one.code.attribute == NORMAL), None)
     if normal is None:
         raise ValueError("a layout holds a normal")
-    targets = tuple(_target(one, placed) for one, placed in _by_target(solution))
+    targets = tuple(target_of(one, placed) for one, placed in _by_target(solution))
     encoding = ENCODINGS[normal.name.partition(" ")[0]]
     return Layout(name, "proposed by budget", targets, encoding, "this project", space="world")
 
@@ -39,7 +39,8 @@ def _by_target(solution: Solution) -> Iterator[tuple[Bin, list[Placed]]]:
         yield placed[0].bin, placed
 
 
-def _target(one: Bin, placed: Sequence[Placed]) -> Target:
+def target_of(one: Bin, placed: Sequence[Placed]) -> Target:
+    """The target of codes that lie in a bin."""
     if one.fields:
         # The widest first, so that the numbers of a code begin at the top.
         order = sorted(placed, key=lambda p: (p.code.is_exact, -p.code.total_bits))

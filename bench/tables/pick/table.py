@@ -9,6 +9,7 @@ from ...ground.options.option import (
     Count,
     Effects,
     Encodings,
+    Families,
     Images,
     Names,
     Option,
@@ -62,10 +63,7 @@ class PickOptions(Reading, SourceOptions):
         str, Option("--power", "Specular powers that the scenes are rendered with, comma-separated.", in_run=True)
     ] = "47,1024"
     effects: Effects = None
-    family: Annotated[
-        str,
-        Option("--family", "GPU families that issue slots are counted for, comma-separated; the dearest counts."),
-    ] = "navi21"
+    family: Families = "navi21"
     aim: Annotated[
         str,
         Option(

@@ -18,7 +18,7 @@ from ....gbuffer.scenes.catalogue import SceneMaker
 from ....gbuffer.scenes.setting import Setting
 from ...ground.choose import choose, choose_one
 from ...ground.machine.devices import found_device, require_jax
-from ...ground.options.counts import check_seed, checked_count, in_range
+from ...ground.options.counts import MOST_INSTRUCTIONS, check_seed, checked_count, in_range
 from ...ground.options.effect_names import effects_named, lacking, name_of, pipeline_with
 from ...ground.options.scene_names import powers_named, scene_makers_named
 from ...ground.options.storage_names import roundings_named, storages_named
@@ -35,7 +35,6 @@ from .answer import AIMS, HOLDS, answered, asked_of, groups, largest
 from .sentences import left_out, told
 from .table import TABLE, PickOptions, PickOutputs
 
-MOST_INSTRUCTIONS = 10**6
 MOST_READERS, MOST_WORTH, MOST_ENOUGH = 64, 100.0, 360.0
 # By the domain that is asked for, the set that is measured.
 SETS = {None: "sphere", "sphere": "sphere", "hemisphere": "hemisphere", "view": "playground"}

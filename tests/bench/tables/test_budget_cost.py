@@ -1,11 +1,23 @@
 """What the layouts of `budget` cost: bytes that passes fetch, and issue slots to pack and to unpack."""
 
 import itertools
+import json
+import math
+import re
+from collections import Counter
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.shaders.isa import isa
+from normalbench.bench.tables.budget import attributes as held
+from normalbench.bench.tables.budget import cost
+from normalbench.bench.tables.budget.bins import BINS, BITS, SHARED
 from normalbench.bench.tables.budget.readers import read_readers
+from normalbench.bench.tables.budget.sentences import told
+from normalbench.bench.tables.budget.solve import Placed, Problem, Rules, solved
 from normalbench.gbuffer.layouts.presets import LAYOUTS
 
 
@@ -18,13 +30,13 @@ from normalbench.gbuffer.layouts.presets import LAYOUTS
         ("1", 16, 16, "once in full"),
         ("2.5", 40, 40, "2.5 times in full"),
         ("all,all", 32, 32, "twice in full"),
-        ("normal", 4, 8, "once for normal"),
+        ("normal", 4, 8, "never in full, once for normal"),
         ("normal+roughness, id,1", 28, 32, "once in full, once for normal and roughness, once for id"),
-        ("basecolor+id", 8, 4, "once for basecolor and id"),
-        ("specular", 4, 4, "once for specular"),
+        ("basecolor+id", 8, 4, "never in full, once for basecolor and id"),
+        ("specular", 4, 4, "never in full, once for specular"),
         # Neither holds it.
-        ("emission", 0, 0, "once for emission"),
-        ("0", 0, 0, "0 times in full"),
+        ("emission", 0, 0, "never in full, once for emission"),
+        ("0", 0, 0, "never in full"),
     ],
 )
 def test_a_reader_fetches_the_targets_that_hold_what_it_reads(readers, unreal, signed, said):
@@ -55,10 +67,157 @@ def test_readers_that_are_none_are_one_line(readers, said):
     ("asked", "said"),
     [
         (["--readers", "emission"], "--readers emission: not held; held: normal, basecolor, roughness"),
+        (["--family", "cypress"], "--family cypress: layouts are counted in compute shaders"),
+        (["--family", "navi22"], "navi22"),
+        (["--most-instructions", "-1"], "--most-instructions -1: from 0 to 1000000"),
     ],
 )
 @pytest.mark.usefixtures("gl")
 def test_what_cannot_be_asked_is_one_line(run, asked, said):
-    usual = {"--scene": "ramps", "--size": "64x48"} | dict(zip(asked[::2], asked[1::2], strict=True))
-    status, _, err = run("budget", *itertools.chain.from_iterable(usual.items()))
+    status, _, err = run("budget", "--scene", "ramps", "--size", "64x48", *asked)
     assert status != 0 and said in err and "Traceback" not in err, err
+
+
+@pytest.mark.usefixtures("gl")
+def test_without_a_compiler_a_limit_of_slots_says_what_is_missing(run, monkeypatch):
+    monkeypatch.setattr(isa, "missing", lambda library: f"no {library}")
+    status, _, err = run("budget", "--scene", "ramps", "--size", "64x48", "--most-instructions", "90")
+    assert status == 3 and "--most-instructions counts by a compiler: no libvulkan_radeon" in err, err
+
+
+def test_without_a_compiler_no_price_is_known(monkeypatch):
+    monkeypatch.setattr(cost, "counted", lambda *_: {})
+    assert cost.Slots(["navi21"]).columns(LAYOUTS["unreal4"], 1.5, 1.0) == {}
+
+
+def test_the_dearest_family_is_that_of_a_pixel(monkeypatch):
+    """With overdraw 3 and 1 reader A takes 3 x 10 + 30 = 60 and B 3 x 20 + 5 = 65; with 4 readers A takes more."""
+    told = {"A": (10, 30), "B": (20, 5)}
+
+    def counted(cases, family, _):
+        return {
+            (case.storage, case.operation): {"executed_slots": told[family][case.operation == "unpack"]}
+            for case in cases
+        }
+
+    monkeypatch.setattr(cost, "counted", counted)
+    slots = cost.Slots(["A", "B"])
+    found = slots.columns(LAYOUTS["unreal4"], 3.0, 1.0)
+    assert found == {"pack_slots": 20, "unpack_slots": 5, "slots": 65, "dearest_family": "B"}
+    assert slots.columns(LAYOUTS["unreal4"], 3.0, 4.0)["dearest_family"] == "A"
+    assert slots.once(LAYOUTS["unreal4"]) == 40
+
+
+# Three attributes in targets of unequal sizes, as a search by hand can go through.
+FEW = [
+    replace(held.SEEN["normal"], codes=tuple(c for c in held.SEEN["normal"].codes if c.bits[0] in (10, 12, 14))),
+    replace(held.SEEN["roughness"], codes=held.SEEN["roughness"].codes[1:4]),
+    replace(held.SEEN["metalness"], codes=held.SEEN["metalness"].codes[::2]),
+]
+HOMES = [replace(BINS[name], copies=1) for name in ("rgb10a2", "rg8", "r32_uint_fields")]
+
+
+class Told:
+    """Slots that are told: of a code by itself, and of a layout what joining its words adds to or takes from that."""
+
+    def __init__(self, seed: int, join: float):
+        self._random, self._join = np.random.default_rng(seed), join
+        self._codes: dict[tuple[str, str, str], int] = {}
+
+    def count_codes(self, _):
+        """Nothing is to be counted."""
+
+    def of_code(self, code, one):
+        return self._codes.setdefault((code.attribute, code.name, one.name), int(self._random.integers(1, 30)))
+
+    def of_whole(self, placed):
+        joined = len(placed) - len({one.bin.name for one in placed})
+        return sum(self.of_code(one.code, one.bin) for one in placed) + self._join * joined
+
+
+def _possible(limit: int):
+    """Every way to place the codes of FEW in HOMES within some bytes."""
+    for codes in itertools.product(*(one.codes for one in FEW)):
+        for homes in itertools.product(HOMES, repeat=len(codes)):
+            needs: dict = {}
+            for code, home in zip(codes, homes, strict=True):
+                needs.setdefault(home.name, []).append(home.need(code))
+            if sum(home.bytes for home in set(homes)) > limit or any(None in some for some in needs.values()):
+                continue
+            rooms = {home.name: home.channels or {BITS: home.fields} for home in homes}
+            taken = {name: Counter() for name in needs}
+            for name, some in needs.items():
+                for need in some:
+                    taken[name].update(need)
+                taken[name]["unorm", 8] += math.ceil(taken[name].pop(SHARED, 0))
+            if all(n <= rooms[name].get(channel, 0) for name, held in taken.items() for channel, n in held.items()):
+                yield [Placed(code, home, 0) for code, home in zip(codes, homes, strict=True)]
+
+
+def _errors(seed: int) -> dict:
+    """Errors of 6 dB a bit in two classes."""
+    rng = np.random.default_rng(seed)
+    starts = {one.name: 10 ** rng.uniform(-1, 1, 2) for one in FEW}
+    return {
+        (one.name, code.name): {
+            f"class {i}": start * 4.0 ** (-code.total_bits / len(code.bits)) for i, start in enumerate(starts[one.name])
+        }
+        for one in FEW
+        for code in one.codes
+    }
+
+
+@pytest.mark.parametrize("join", [0.0, 2.0, -2.0])
+@pytest.mark.parametrize("seed", range(6))
+def test_the_best_layout_within_a_limit_of_slots_is_that_of_exhaustive_search(monkeypatch, seed, join):
+    """Where whole layouts cost what their codes do; else one that keeps to the limit is found where there is one."""
+    told = Told(seed, join)
+    monkeypatch.setattr(cost, "whole", lambda slots, found: slots.of_whole(found.placed))
+    problem = Problem(FEW, _errors(seed), ["class 0", "class 1"], HOMES, Rules(8, 3))
+    possible = list(_possible(8))
+    prices = [told.of_whole(placed) for placed in possible]
+
+    def worst(placed) -> float:
+        return max(sum(problem.error(one.code, name) for one in placed) for name in problem.classes)
+
+    def solve(asked):
+        return [found] if (found := solved(asked)) else []
+
+    for most in (min(prices) - 1, min(prices), sorted(prices)[len(prices) // 3], max(prices)):
+        found = cost.within(problem, most, told, solve)
+        if most < min(prices):
+            assert not found
+            continue
+        fitting = [worst(placed) for placed, price in zip(possible, prices, strict=True) if price <= most]
+        (one,) = found
+        assert told.of_whole(one.placed) <= most
+        if not join:
+            assert min(fitting) * (1 - 1e-6) <= worst(one.placed) <= max(min(fitting) * 10**0.0202, 1e-6), most
+    cheapest = cost.least(problem, told, solve)
+    assert cheapest and told.of_whole(cheapest.placed) == min(prices)
+
+
+@pytest.mark.usefixtures("gl", "radv")
+def test_rows_have_the_slots_of_the_emitted_code_and_the_bytes_of_readers(run):
+    """The figures of unreal4 are counted by hand: see test_layout_cost."""
+    asked = ["--scene", "ramps", "--size", "64x48", "--classes", "rough", "--bytes", "16", "--against", "unreal4"]
+    status, out, err = run("budget", *asked, "--readers", "1,normal+roughness", "--format", "json")
+    proposal, mine = json.loads(out)
+    assert status == 0, err
+    assert [mine[name] for name in ("pack_slots", "unpack_slots", "slots")] == [20, 29, 1.5 * 20 + 29]
+    assert mine["mb_1080p"] == pytest.approx(1920 * 1080 * (1.5 * 16 + 16 + 8) / 1e6)
+    assert proposal["dearest_family"] == "navi21" and proposal["slots"] > 0
+    said = next(sentence for sentence in told(proposal) if sentence.startswith("Packing takes"))
+    assert said.endswith(f"{proposal['slots']:g} a pixel that is written 1.5 times and read once in full.")
+
+
+@pytest.mark.usefixtures("gl", "radv")
+def test_a_limit_of_slots_is_kept_or_the_least_is_named_and_can_be(run):
+    usual = ["budget", "--scene", "ramps", "--size", "64x48", "--bytes", "20", "--classes", "rough", "--format", "json"]
+    few = [*usual, "--no-fields", "--formats", "rgba8,srgb8_a8,rgb10a2,rg16f,rg8"]
+    status, _, err = run(*few, "--most-instructions", "1")
+    (least,) = map(int, re.findall(r"1 issue slots are too few: the cheapest .* takes (\d+) to pack and unpack", err))
+    assert status != 0 and "Traceback" not in err, err
+    status, out, err = run(*few, "--most-instructions", str(least))
+    (row,) = json.loads(out)
+    assert status == 0 and row["pack_slots"] + row["unpack_slots"] <= least, err

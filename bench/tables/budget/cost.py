@@ -1,0 +1,195 @@
+"""What the code of a layout costs: issue slots to pack a surface and to unpack it, and layouts that keep to a limit of
+both."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+from ....encodings.catalogue import ENCODINGS
+from ....gbuffer.layouts.layout import Layout
+from ....gbuffer.layouts.words import Target
+from ...ground.options.counts import MOST_INSTRUCTIONS
+from ...ground.options.gpu_families import FAMILIES
+from ...ground.output.errors import MissingError, UsageError
+from ...shaders.code.whole.kernel import pack_operation, unpack_operation
+from ...shaders.isa import isa, spirv
+from ..cost.measure import Case, counted
+from ..families_named import families_named
+from ..table import Row
+from .attributes import Code
+from .bins import SHARED, Bin
+from .solve import Placed, Problem, Solution, cheapest
+from .written import NORMAL, layout_of, target_of
+
+# A layout has more numbers than a fragment shader has outputs to keep them all.
+STAGE = "compute"
+PACK, UNPACK = "pack", "unpack"
+# How a code lies in a target: in channels that the format converts, in bits of bytes, or in bits of whole numbers.
+OWN, BYTES, FIELDS = "own", "bytes", "fields"
+# How often a program is solved anew, and what a limit is lowered by at least.
+TRIES, LEAST_STEP = 6, 0.5
+# How far above the least sum the least whole layout is looked for.
+BEYOND = (1.0, 2.0)
+# Of what is not counted: above any limit.
+UNKNOWN = 2.0 * MOST_INSTRUCTIONS
+
+# The best layouts of a problem.
+Solve = Callable[[Problem], Collection[Solution]]
+
+
+@dataclass(frozen=True)
+class Price:
+    """The issue slots of a layout's code on a family: to pack a surface, and to unpack it."""
+
+    family: str
+    pack: float
+    unpack: float
+
+    @property
+    def once(self) -> float:
+        return self.pack + self.unpack
+
+
+def families_counted(names: str) -> list[str]:
+    """The families of comma-separated names. Raises UsageError for an unknown one, or one without compute shaders."""
+    found = families_named(names)
+    for name in found:
+        if STAGE not in FAMILIES[name].stages:
+            raise UsageError(
+                f"--family {name}: layouts are counted in compute shaders, which {FAMILIES[name].title} lacks"
+            )
+    return found
+
+
+def check_compilers(families: Iterable[str]) -> None:
+    """Raises MissingError where a family's compiler is not on this machine."""
+    spirv.compiler()
+    for reason in filter(None, (isa.missing(FAMILIES[family].library) for family in families)):
+        raise MissingError(f"--most-instructions counts by a compiler: {reason}")
+
+
+class Slots:
+    """Issue slots of layouts and of single codes on some families, each counted once."""
+
+    def __init__(self, families: Sequence[str]):
+        self._families = families
+        self._known: dict[str, tuple[Price, ...]] = {}
+        self._alone: dict[tuple[str, str, str], Layout] = {}
+
+    def count(self, layouts: Iterable[Layout]) -> None:
+        """Counts layouts that are not known, all at once, which takes less time than one by one."""
+        new = {one.summary: one for one in layouts if one.summary not in self._known}
+        make = {PACK: pack_operation, UNPACK: unpack_operation}
+        cases = [Case(None, key, name, partial(do, one)) for key, one in new.items() for name, do in make.items()]
+        found = {family: counted(cases, family, STAGE) for family in self._families} if cases else {}
+        for key in new:
+            prices = (_price(family, rows.get((key, PACK)), rows.get((key, UNPACK))) for family, rows in found.items())
+            self._known[key] = tuple(filter(None, prices))
+
+    def of(self, layout: Layout) -> tuple[Price, ...]:
+        """The price on each family; none where it is not known."""
+        self.count([layout])
+        return self._known[layout.summary]
+
+    def once(self, layout: Layout) -> float:
+        """What packing and unpacking once take on the family where that is most; UNKNOWN where not all count it."""
+        prices = self.of(layout)
+        return max(price.once for price in prices) if len(prices) == len(self._families) else UNKNOWN
+
+    def count_codes(self, problem: Problem) -> None:
+        """Counts every code of a problem in each way in which it may lie in a target."""
+        for code in (code for attribute in problem.attributes for code in attribute.codes):
+            for one in problem.bins:
+                if one.need(code) is not None:
+                    self._alone.setdefault(_key(code, one), alone(code, one))
+        self.count(self._alone.values())
+
+    def of_code(self, code: Code, one: Bin) -> float:
+        """What a code takes by itself in a target, after `count_codes`."""
+        return self.once(self._alone[_key(code, one)])
+
+    def columns(self, layout: Layout, overdraw: float, readers: float) -> Row:
+        """The columns of costs, of the family where a pixel is dearest; empty where nothing is known."""
+
+        def pixel(price: Price) -> float:
+            return overdraw * price.pack + readers * price.unpack
+
+        prices = self.of(layout)
+        if not prices:
+            return {}
+        dearest = max(prices, key=pixel)
+        figures = {"pack_slots": dearest.pack, "unpack_slots": dearest.unpack, "slots": pixel(dearest)}
+        return {**{name: round(value, 1) for name, value in figures.items()}, "dearest_family": dearest.family}
+
+
+def _price(family: str, pack: Row | None, unpack: Row | None) -> Price | None:
+    slots = [row["executed_slots"] for row in (pack, unpack) if row and row["executed_slots"] is not None]
+    return Price(family, *slots) if len(slots) == 2 else None
+
+
+def _key(code: Code, one: Bin) -> tuple[str, str, str]:
+    how = FIELDS if one.fields else BYTES if SHARED in (one.need(code) or {}) else OWN
+    return code.attribute, code.name, how
+
+
+def alone(code: Code, one: Bin) -> Layout:
+    """A layout that holds a code in a target, and a normal in floats where it is of another attribute."""
+    placed, name = Placed(code, one, 0), f"{code.attribute} {code.name}"
+    if code.attribute == NORMAL:
+        return layout_of(name, Solution((placed,), {}))
+    targets = (target_of(one, [placed]), Target("rgba32f", "normal.x normal.y normal.z -"))
+    return Layout(name, name, targets, ENCODINGS["xyz"], "this project", space="world")
+
+
+def within(problem: Problem, most: float, slots: Slots, solve: Solve) -> list[Solution]:
+    """The best layouts whose whole code takes at most so many slots; none where none is found.
+
+    A program knows what each code takes by itself. What a whole layout takes beyond the sum, to join bits, or less,
+    because codes share a constant, is taken from the last layout that was found.
+    """
+    slots.count_codes(problem)
+    best: list[Solution] = []
+    # Sums for which layouts kept to the limit, and did not.
+    low, high, allowed = -math.inf, math.inf, math.inf
+    for _ in range(TRIES):
+        found = list(solve(replace(problem, cost=slots.of_code, most_cost=allowed)))
+        if not found:
+            break
+        kept = [one for one in found if whole(slots, one) <= most]
+        total = _total(slots, found[0])
+        wish = most + total - whole(slots, found[0])
+        if kept:
+            low, best = allowed, kept
+        else:
+            high, wish = allowed, min(wish, total - LEAST_STEP)
+        if not low < wish < high:
+            break
+        allowed = wish
+    if best:
+        return best
+    cheapest_found = least(problem, slots, solve)
+    return [cheapest_found] if cheapest_found and whole(slots, cheapest_found) <= most else []
+
+
+def least(problem: Problem, slots: Slots, solve: Solve) -> Solution | None:
+    """Of layouts whose codes take least, the one that takes least as a whole; None where none keeps to the rules."""
+    slots.count_codes(problem)
+    first = cheapest(replace(problem, cost=slots.of_code))
+    if first is None:
+        return None
+    sums = [_total(slots, first) + more for more in BEYOND]
+    others = [one for most in sums for one in solve(replace(problem, cost=slots.of_code, most_cost=most))]
+    return min((first, *others), key=lambda one: whole(slots, one))
+
+
+def _total(slots: Slots, found: Solution) -> float:
+    """What the codes of a layout take one by one."""
+    return sum(slots.of_code(one.code, one.bin) for one in found.placed)
+
+
+def whole(slots: Slots, found: Solution) -> float:
+    """What the code of a layout takes to pack and unpack once."""
+    return slots.once(layout_of("", found))
