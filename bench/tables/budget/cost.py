@@ -103,8 +103,8 @@ class Slots:
         """Counts every code of a problem in each way in which it may lie in a target."""
         for code in (code for attribute in problem.attributes for code in attribute.codes):
             for one in problem.bins:
-                if one.need(code) is not None:
-                    self._alone.setdefault(_key(code, one), alone(code, one))
+                if one.need(code) is not None and _key(code, one) not in self._alone:
+                    self._alone[_key(code, one)] = alone(code, one)
         self.count(self._alone.values())
 
     def of_code(self, code: Code, one: Bin) -> float:
@@ -147,8 +147,8 @@ def alone(code: Code, one: Bin) -> Layout:
 def within(problem: Problem, most: float, slots: Slots, solve: Solve) -> list[Solution]:
     """The best layouts whose whole code takes at most so many slots; none where none is found.
 
-    A program knows what each code takes by itself. What a whole layout takes beyond the sum, to join bits, or less,
-    because codes share a constant, is taken from the last layout that was found.
+    A program knows what each code takes by itself. A whole layout takes more, to join bits, or less, where codes share
+    a byte: that difference is taken from the last layout that was found.
     """
     slots.count_codes(problem)
     best: list[Solution] = []

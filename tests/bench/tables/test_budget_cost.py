@@ -11,13 +11,16 @@ import numpy as np
 import pytest
 
 from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.shaders.code.whole.kernel import pack_operation, unpack_operation
 from normalbench.bench.shaders.isa import isa
 from normalbench.bench.tables.budget import attributes as held
 from normalbench.bench.tables.budget import cost
 from normalbench.bench.tables.budget.bins import BINS, BITS, SHARED
+from normalbench.bench.tables.budget.contract import attributes_held
 from normalbench.bench.tables.budget.readers import read_readers
 from normalbench.bench.tables.budget.sentences import told
 from normalbench.bench.tables.budget.solve import Placed, Problem, Rules, solved
+from normalbench.bench.tables.budget.table import BudgetOptions
 from normalbench.gbuffer.layouts.presets import LAYOUTS
 
 
@@ -197,13 +200,18 @@ def test_the_best_layout_within_a_limit_of_slots_is_that_of_exhaustive_search(mo
     assert cheapest and told.of_whole(cheapest.placed) == min(prices)
 
 
+# Few scenes, targets and kernels.
+FEW_KINDS = ["budget", "--scene", "ramps", "--size", "64x48", "--bytes", "20", "--classes", "rough", "--format", "json"]
+FEW_KINDS += ["--no-fields", "--formats", "rgba8,srgb8_a8,rgb10a2,rg16f,rg8"]
+
+
 @pytest.mark.usefixtures("gl", "radv")
 def test_rows_have_the_slots_of_the_emitted_code_and_the_bytes_of_readers(run):
     """The figures of unreal4 are counted by hand: see test_layout_cost."""
-    asked = ["--scene", "ramps", "--size", "64x48", "--classes", "rough", "--bytes", "16", "--against", "unreal4"]
-    status, out, err = run("budget", *asked, "--readers", "1,normal+roughness", "--format", "json")
-    proposal, mine = json.loads(out)
+    status, out, err = run(*FEW_KINDS, "--against", "unreal4", "--readers", "1,normal+roughness")
     assert status == 0, err
+    rows = {row["kind"]: row for row in json.loads(out)}
+    proposal, mine = rows["proposal"], rows["mine"]
     assert [mine[name] for name in ("pack_slots", "unpack_slots", "slots")] == [20, 29, 1.5 * 20 + 29]
     assert mine["mb_1080p"] == pytest.approx(1920 * 1080 * (1.5 * 16 + 16 + 8) / 1e6)
     assert proposal["dearest_family"] == "navi21" and proposal["slots"] > 0
@@ -213,11 +221,21 @@ def test_rows_have_the_slots_of_the_emitted_code_and_the_bytes_of_readers(run):
 
 @pytest.mark.usefixtures("gl", "radv")
 def test_a_limit_of_slots_is_kept_or_the_least_is_named_and_can_be(run):
-    usual = ["budget", "--scene", "ramps", "--size", "64x48", "--bytes", "20", "--classes", "rough", "--format", "json"]
-    few = [*usual, "--no-fields", "--formats", "rgba8,srgb8_a8,rgb10a2,rg16f,rg8"]
-    status, _, err = run(*few, "--most-instructions", "1")
+    status, _, err = run(*FEW_KINDS, "--most-instructions", "1")
     (least,) = map(int, re.findall(r"1 issue slots are too few: the cheapest .* takes (\d+) to pack and unpack", err))
     assert status != 0 and "Traceback" not in err, err
-    status, out, err = run(*few, "--most-instructions", str(least))
+    status, out, err = run(*FEW_KINDS, "--most-instructions", str(least))
     (row,) = json.loads(out)
     assert status == 0 and row["pack_slots"] + row["unpack_slots"] <= least, err
+
+
+def test_every_code_has_a_kernel_in_every_target_that_holds_it():
+    """Of all that --hold may name: a code without one would count as dearer than any limit."""
+    words = "shadow:8,custom:32,other:5,tangent,emission,motion:packed"
+    named = f"normal,basecolor,roughness,metalness,specular,occlusion,id:4,flags:4,{words}"
+    held_all = attributes_held(named, BudgetOptions().speed)
+    pairs = [(code, one) for held_one in held_all for code in held_one.codes for one in BINS.values() if one.need(code)]
+    assert len(pairs) > 200
+    for code, one in pairs:
+        layout = cost.alone(code, one)
+        assert pack_operation(layout).made == unpack_operation(layout).given, f"{code.name} in {one.name}"
