@@ -153,7 +153,7 @@ def within(problem: Problem, most: float, slots: Slots, solve: Solve) -> list[So
     slots.count_codes(problem)
     best: list[Solution] = []
     # Sums for which layouts kept to the limit, and did not.
-    low, high, allowed = -math.inf, math.inf, math.inf
+    low, high, allowed = -math.inf, math.inf, most
     for _ in range(TRIES):
         found = list(solve(replace(problem, cost=slots.of_code, most_cost=allowed)))
         if not found:
