@@ -1,15 +1,23 @@
-// Trigonometry in half turns, logarithms and powers of two, beside elementary.py. ATAN2_PI, SIN_PI, COS_PI, LOG2, EXP2
+// Trigonometry in half turns, logarithms and powers of two, beside elementary.py. ATAN_PI, SIN_PI, COS_PI, LOG2, EXP2
 // and SQRT_HALF_BITS are its numbers.
 #include "vec.glsl"
 
-float atan2_pi(float y, float x) {
-    float low = min(abs(x), abs(y)), high = max(abs(x), abs(y));
-    float t = low / max(high, TINY);
-    const float k[] = ATAN2_PI;
+// atan(t) / pi for t in [-1, 1].
+float atan_pi(float t) {
+    const float k[] = ATAN_PI;
     float p = k[k.length() - 1];
     for (int i = k.length() - 2; i >= 0; --i) p = p * (t * t) + k[i];
-    float a = t * p;
-    a = abs(y) > abs(x) ? 0.5 - a : a;
+    return t * p;
+}
+
+// atan2(y, x) / pi for y and x from 0 on.
+float quadrant_pi(float y, float x) {
+    float a = atan_pi(min(x, y) / max(max(x, y), TINY));
+    return y > x ? 0.5 - a : a;
+}
+
+float atan2_pi(float y, float x) {
+    float a = quadrant_pi(abs(y), abs(x));
     a = x < 0.0 ? 1.0 - a : a;
     return y < 0.0 ? -a : a;
 }

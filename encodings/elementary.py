@@ -17,7 +17,7 @@ from .vec import TINY, jnp, maximum, minimum, power_of_two, select
 
 # atan(sqrt s) / (pi sqrt s) on [0, 1], relative error below 5e-8; on [0, 1/16] sin(pi sqrt s) / sqrt s, relative error
 # below 4e-8, and cos(pi sqrt s), absolute error below 1e-8. Lowest power first.
-ATAN2_PI = (
+ATAN_PI = (
     0.31830987334251404,
     -0.10610246658325195,
     0.06363848596811295,
@@ -43,7 +43,7 @@ EXP2 = tuple(math.log(2) ** k / math.factorial(k) for k in range(8))
 SQRT_HALF_BITS = 0x3F3504F3
 
 CONSTANTS = {
-    "ATAN2_PI": ATAN2_PI,
+    "ATAN_PI": ATAN_PI,
     "SIN_PI": SIN_PI,
     "COS_PI": COS_PI,
     "LOG2": LOG2,
@@ -59,6 +59,20 @@ def _horner(coefficients, s):
     return total
 
 
+def atan_pi(t):
+    """atan(t) / pi for t in [-1, 1], within a unit in the last place of 1/4."""
+    t = jnp.asarray(t)
+    return t * _horner(ATAN_PI, t * t) if t.dtype == jnp.float32 else jnp.arctan(t) / math.pi
+
+
+def quadrant_pi(y, x):
+    """atan2(y, x) / pi in [0, 1/2] for y and x from 0 on; 0 at the origin."""
+    if x.dtype != jnp.float32:
+        return select((x == 0.0) & (y == 0.0), 0.0, jnp.arctan2(y, x) / math.pi)
+    a = atan_pi(minimum(x, y) / maximum(maximum(x, y), TINY))
+    return select(y > x, 0.5 - a, a)
+
+
 def atan2_pi(y, x):
     """atan2(y, x) / pi in [-1, 1], within 2 units in the last place of 1; 0 at the origin."""
     y = jnp.asarray(y)
@@ -67,10 +81,7 @@ def atan2_pi(y, x):
     if x.dtype != jnp.float32:
         a = select((x == 0.0) & (y == 0.0), 0.0, jnp.arctan2(abs(y), x) / math.pi)
         return select(y < 0.0, -a, a)
-    low, high = minimum(abs(x), abs(y)), maximum(abs(x), abs(y))
-    t = low / maximum(high, TINY)
-    a = t * _horner(ATAN2_PI, t * t)
-    a = select(abs(y) > abs(x), 0.5 - a, a)
+    a = quadrant_pi(abs(y), abs(x))
     a = select(x < 0.0, 1.0 - a, a)
     return select(y < 0.0, -a, a)
 

@@ -30,7 +30,7 @@ vec4 quaternion_of(Frame frame) {
 }
 
 // The frame of a unit quaternion's rotation.
-Frame frame_of_quaternion(vec4 q, float hand) {
+Frame rotated_frame(vec4 q, float hand) {
     vec3 t = vec3(1.0 - 2.0 * (q.y * q.y + q.z * q.z), 2.0 * (q.x * q.y + q.z * q.w), 2.0 * (q.x * q.z - q.y * q.w));
     vec3 n = vec3(2.0 * (q.x * q.z + q.y * q.w), 2.0 * (q.y * q.z - q.x * q.w), 1.0 - 2.0 * (q.x * q.x + q.y * q.y));
     return Frame(n, t, hand);

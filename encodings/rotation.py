@@ -49,7 +49,7 @@ def quaternion_of(frame: Frame) -> Vec4:
     return q * inversesqrt(dot(q, q))
 
 
-def frame_of_quaternion(q: Vec4, hand) -> Frame:
+def rotated_frame(q: Vec4, hand) -> Frame:
     """The frame of a unit quaternion's rotation."""
     t = Vec3(1.0 - 2.0 * (q.y * q.y + q.z * q.z), 2.0 * (q.x * q.y + q.z * q.w), 2.0 * (q.x * q.z - q.y * q.w))
     n = Vec3(2.0 * (q.x * q.z + q.y * q.w), 2.0 * (q.y * q.z - q.x * q.w), 1.0 - 2.0 * (q.x * q.x + q.y * q.y))

@@ -15,23 +15,24 @@ from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.kind import CURVE, FRAME, MOTION, NORMAL, Kind
 from ...gbuffer.gl.device import NoDeviceError
 from ...gbuffer.gl.shader import ShaderError
-from ..ground.choose import choose
+from ..ground.choose import choose, unknown_name
 from ..ground.options.code import CodeOptions
 from ..ground.options.storage_names import roundings_named
 from ..ground.options.targets import that_fit, what_is_left
 from ..ground.output.errors import MissingError, UsageError, leave_out, tell
 from ..ground.output.progress import progress
 from ..ground.output.writing import check_folder, check_is_folder, check_writable, say, whole_file, write
+from ..ground.spelling import spelled
 from ..shaders.code.emit import LANGUAGES
-from ..shaders.code.files import Code, code_of, file_name
+from ..shaders.code.files import Code, code_of, file_name, stem_of, usual_prefix
 from ..shaders.code.kinds.table import kind_of
 from ..shaders.code.run import runner
 from ..shaders.code.verify import Agreement, agreement
 from ..shaders.languages.source_options import in_names
-from ..subjects.codecs.kinds.codecs import codecs_of_kind, kinds_named
+from ..subjects.codecs.kinds.codecs import NAMED, codecs_of_kind, kinds_named
 from ..subjects.codecs.names import codecs_named, fitting
 from .code_figures import DIFFERS, NOT_RUN, VERIFIED, figures, head, rounding_of
-from .gbuffer_command import gbuffer_command, is_of_layouts
+from .gbuffer_command import LAYOUT, gbuffer_command, is_of_layouts
 
 Row = dict[str, Any]
 SHIPPED = "rgba8,rg8,rgb10a2,rgb8_12_12,rg16,rg16f"
@@ -50,7 +51,7 @@ def code_command(options: CodeOptions, format: str, output: Path | None) -> int:
         UsageError: a name is not known, nothing fits, or something cannot be written.
     """
     _check_prefix(options.prefix)
-    options = replace(options, **in_names(asdict(options)))
+    options = replace(options, **in_names(asdict(options) | {"of": _of_named(options.of)}))
     languages = choose("language", options.to, {name: name for name in LANGUAGES})
     if is_of_layouts(options):
         return gbuffer_command(options, languages, format, output)
@@ -71,6 +72,14 @@ def code_command(options: CodeOptions, format: str, output: Path | None) -> int:
     elif len(codecs) * len(languages) > 1:
         raise UsageError("several files are written into a folder: name one with -o")
     return _write(codecs, languages, options, output)
+
+
+def _of_named(word: str) -> str:
+    """What the codes are of: a kind, a layout, or empty for what the names say. Raises UsageError."""
+    known = (*NAMED, LAYOUT)
+    if word and not (found := spelled("kind", word, known)):
+        raise unknown_name("kind", [word], known)
+    return found if word else ""
 
 
 def _check_prefix(prefix: str) -> None:
@@ -119,7 +128,15 @@ def _normals(names: str, options: CodeOptions) -> list[Codec]:
 
 
 def _write(codecs: Sequence[Any], languages: Sequence[str], options: CodeOptions, output: Path | None) -> int:
-    return max((_write_codec(codec, languages, options.prefix, output) for codec in codecs), default=0)
+    written = (_write_codec(codec, languages, _prefix(codec, codecs, options), output) for codec in codecs)
+    return max(written, default=0)
+
+
+def _prefix(codec: Any, codecs: Sequence[Any], options: CodeOptions) -> str:
+    """What a codec's names begin with; empty for what they usually do. Codecs of one kind, which lie in one folder and
+    may be used together, have names of their own."""
+    is_alone = sum(usual_prefix(one) == usual_prefix(codec) for one in codecs) == 1
+    return options.prefix or ("" if is_alone else stem_of(codec))
 
 
 def _write_codec(codec: Any, languages: Sequence[str], prefix: str, output: Path | None) -> int:

@@ -12,5 +12,5 @@ vec4 hexadecachoral_encode(Frame frame, float least) {
 Frame hexadecachoral_decode(vec4 e, float least) {
     // q = (p, 1 - |p.x| - |p.y| - |p.z|) at length 1
     vec4 q = vec4(e.x, e.y, e.z, max(1.0 - abs(e.x) - abs(e.y) - abs(e.z), 0.0));
-    return frame_of_quaternion(q * inversesqrt(dot(q, q)), sign_not_zero(e.w));
+    return rotated_frame(q * inversesqrt(dot(q, q)), sign_not_zero(e.w));
 }

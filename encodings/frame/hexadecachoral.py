@@ -6,7 +6,7 @@ q and -q are one rotation, so w is made positive and follows from the other thre
 from pathlib import Path
 
 from ..codecs.frame_encoding import FrameEncoding
-from ..rotation import Frame, frame_of_quaternion, quaternion_of
+from ..rotation import Frame, quaternion_of, rotated_frame
 from ..vec import Vec4, dot, inversesqrt, maximum, sign_not_zero
 
 
@@ -23,7 +23,7 @@ def decode(e: Vec4, least) -> Frame:
     """The frame of three components and a hand."""
     # q = (p, 1 - |p.x| - |p.y| - |p.z|) at length 1
     q = Vec4(e.x, e.y, e.z, maximum(1.0 - abs(e.x) - abs(e.y) - abs(e.z), 0.0))
-    return frame_of_quaternion(q * inversesqrt(dot(q, q)), sign_not_zero(e.w))
+    return rotated_frame(q * inversesqrt(dot(q, q)), sign_not_zero(e.w))
 
 
 ENCODING = FrameEncoding(

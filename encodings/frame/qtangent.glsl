@@ -13,5 +13,5 @@ vec4 qtangent_encode(Frame frame, float least) {
 Frame qtangent_decode(vec4 e, float least) {
     // q = e / |e|
     vec4 q = e * inversesqrt(max(dot(e, e), TINY));
-    return frame_of_quaternion(q, sign_not_zero(e.w));
+    return rotated_frame(q, sign_not_zero(e.w));
 }

@@ -7,7 +7,7 @@ number that has a sign, which costs up to twice that in angle.
 from pathlib import Path
 
 from ..codecs.frame_encoding import FrameEncoding
-from ..rotation import Frame, frame_of_quaternion, quaternion_of
+from ..rotation import Frame, quaternion_of, rotated_frame
 from ..vec import TINY, Vec4, dot, inversesqrt, maximum, select, sign_not_zero, sqrt
 
 
@@ -25,7 +25,7 @@ def decode(e: Vec4, least) -> Frame:
     """The frame of a quaternion of any length; +z and +x of none."""
     # q = e / |e|
     q = e * inversesqrt(maximum(dot(e, e), TINY))
-    return frame_of_quaternion(q, sign_not_zero(e.w))
+    return rotated_frame(q, sign_not_zero(e.w))
 
 
 ENCODING = FrameEncoding(

@@ -11,5 +11,5 @@ Frame rotation_rodrigues_decode(vec4 e, float least) {
     // q = (2 e, 1 - |e|^2) / (1 + |e|^2)
     float square = dot(e.xyz, e.xyz);
     float scale = 1.0 / (1.0 + square);
-    return frame_of_quaternion(vec4(e.xyz * (2.0 * scale), (1.0 - square) * scale), 1.0);
+    return rotated_frame(vec4(e.xyz * (2.0 * scale), (1.0 - square) * scale), 1.0);
 }

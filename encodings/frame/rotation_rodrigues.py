@@ -7,7 +7,7 @@ are one rotation. No angle is needed.
 from pathlib import Path
 
 from ..codecs.frame_encoding import FrameEncoding
-from ..rotation import Frame, frame_of_quaternion, quaternion_of
+from ..rotation import Frame, quaternion_of, rotated_frame
 from ..vec import Vec3, Vec4, dot, sign_not_zero
 
 
@@ -26,7 +26,7 @@ def decode(e: Vec4, least) -> Frame:
     square = dot(v, v)
     scale = 1.0 / (1.0 + square)
     v = v * (2.0 * scale)
-    return frame_of_quaternion(Vec4(v.x, v.y, v.z, (1.0 - square) * scale), 0.0 * e.x + 1.0)
+    return rotated_frame(Vec4(v.x, v.y, v.z, (1.0 - square) * scale), 0.0 * e.x + 1.0)
 
 
 ENCODING = FrameEncoding(

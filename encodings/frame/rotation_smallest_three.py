@@ -7,7 +7,7 @@ import math
 from pathlib import Path
 
 from ..codecs.frame_encoding import FrameEncoding
-from ..rotation import Frame, frame_of_quaternion, quaternion_of
+from ..rotation import Frame, quaternion_of, rotated_frame
 from ..vec import Vec3, Vec4, dot, index_of, maximum, number_of, select, sign_not_zero, sqrt
 
 RANGE = math.sqrt(0.5)
@@ -34,7 +34,7 @@ def decode(e: Vec4, least) -> Frame:
     i = index_of(e.w, 4)
     first = Vec4(select(i == 0.0, largest, s.x), select(i == 0.0, s.x, largest), s.y, s.z)
     last = Vec4(s.x, s.y, select(i == 2.0, largest, s.z), select(i == 2.0, s.z, largest))
-    return frame_of_quaternion(select(i < 2.0, first, last), 0.0 * e.x + 1.0)
+    return rotated_frame(select(i < 2.0, first, last), 0.0 * e.x + 1.0)
 
 
 ENCODING = FrameEncoding(

@@ -8,7 +8,7 @@ vec4 rotation_vector_encode(Frame frame, float least) {
     // e = axis 2 atan2(|v|, w) / pi
     float square = max(dot(v, v), TINY);
     float inverse = inversesqrt(square);
-    return vec4(v * (2.0 * atan2_pi(square * inverse, abs(q.w)) * inverse), 0.0);
+    return vec4(v * (2.0 * quadrant_pi(square * inverse, abs(q.w)) * inverse), 0.0);
 }
 
 Frame rotation_vector_decode(vec4 e, float least) {
@@ -16,5 +16,5 @@ Frame rotation_vector_decode(vec4 e, float least) {
     float square = max(dot(e.xyz, e.xyz), TINY);
     float inverse = inversesqrt(square);
     vec2 turned = sincos_pi(0.5 * min(square * inverse, 1.0));
-    return frame_of_quaternion(vec4(e.xyz * (inverse * turned.x), turned.y), 1.0);
+    return rotated_frame(vec4(e.xyz * (inverse * turned.x), turned.y), 1.0);
 }

@@ -6,8 +6,8 @@ Also called the exponential map. All rotations lie in the unit ball; of a half t
 from pathlib import Path
 
 from ..codecs.frame_encoding import FrameEncoding
-from ..elementary import CONSTANTS, atan2_pi, sincos_pi
-from ..rotation import Frame, frame_of_quaternion, quaternion_of
+from ..elementary import CONSTANTS, quadrant_pi, sincos_pi
+from ..rotation import Frame, quaternion_of, rotated_frame
 from ..vec import TINY, Vec3, Vec4, dot, inversesqrt, maximum, minimum, sign_not_zero
 
 
@@ -18,7 +18,7 @@ def encode(frame: Frame, least) -> Vec4:
     # e = axis 2 atan2(|v|, w) / pi
     square = maximum(dot(v, v), TINY)
     inverse = inversesqrt(square)
-    e = v * (2.0 * atan2_pi(square * inverse, abs(q.w)) * inverse)
+    e = v * (2.0 * quadrant_pi(square * inverse, abs(q.w)) * inverse)
     return Vec4(e.x, e.y, e.z, 0.0 * e.x)
 
 
@@ -30,7 +30,7 @@ def decode(e: Vec4, least) -> Frame:
     inverse = inversesqrt(square)
     sine, cosine = sincos_pi(0.5 * minimum(square * inverse, 1.0))
     v = v * (inverse * sine)
-    return frame_of_quaternion(Vec4(v.x, v.y, v.z, cosine), 0.0 * e.x + 1.0)
+    return rotated_frame(Vec4(v.x, v.y, v.z, cosine), 0.0 * e.x + 1.0)
 
 
 ENCODING = FrameEncoding(

@@ -10,5 +10,5 @@ Frame rotation_xyz_decode(vec4 e, float least) {
     // w = sqrt(1 - |e|^2)
     float square = dot(e.xyz, e.xyz);
     vec3 v = e.xyz * inversesqrt(max(square, 1.0));
-    return frame_of_quaternion(vec4(v, sqrt(max(1.0 - square, 0.0))), 1.0);
+    return rotated_frame(vec4(v, sqrt(max(1.0 - square, 0.0))), 1.0);
 }

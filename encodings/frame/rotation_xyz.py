@@ -7,7 +7,7 @@ steps of the others move it most: half turns are far less exact than small ones.
 from pathlib import Path
 
 from ..codecs.frame_encoding import FrameEncoding
-from ..rotation import Frame, frame_of_quaternion, quaternion_of
+from ..rotation import Frame, quaternion_of, rotated_frame
 from ..vec import Vec3, Vec4, dot, inversesqrt, maximum, sign_not_zero, sqrt
 
 
@@ -24,7 +24,7 @@ def decode(e: Vec4, least) -> Frame:
     v = Vec3(e.x, e.y, e.z)
     square = dot(v, v)
     v = v * inversesqrt(maximum(square, 1.0))
-    return frame_of_quaternion(Vec4(v.x, v.y, v.z, sqrt(maximum(1.0 - square, 0.0))), 0.0 * e.x + 1.0)
+    return rotated_frame(Vec4(v.x, v.y, v.z, sqrt(maximum(1.0 - square, 0.0))), 0.0 * e.x + 1.0)
 
 
 ENCODING = FrameEncoding(

@@ -23,5 +23,5 @@ Frame smallest_three_decode(vec4 e, float least) {
     float i = index_of(e.w, 4);
     vec4 first = vec4(i == 0.0 ? largest : s.x, i == 0.0 ? s.x : largest, s.y, s.z);
     vec4 last = vec4(s.x, s.y, i == 2.0 ? largest : s.z, i == 2.0 ? s.z : largest);
-    return frame_of_quaternion(i < 2.0 ? first : last, sign_not_zero(e.z));
+    return rotated_frame(i < 2.0 ? first : last, sign_not_zero(e.z));
 }

@@ -5,7 +5,7 @@ vec2 equal_area_octahedral_encode(vec3 n, vec3 view) {
     // r = sqrt(1 - |n.z|) = sqrt((n.x^2 + n.y^2) / (1 + |n.z|))
     float r = sqrt((n.x * n.x + n.y * n.y) / (1.0 + abs(n.z)));
     // v = 2 r atan(|n.y| / |n.x|) / pi, u = r - v; for n.z < 0 (1 - v, 1 - u)
-    float v = r * (2.0 * atan2_pi(abs(n.y), abs(n.x)));
+    float v = r * (2.0 * quadrant_pi(abs(n.y), abs(n.x)));
     float u = r - v;
     return (n.z < 0.0 ? vec2(1.0 - v, 1.0 - u) : vec2(u, v)) * sign_not_zero(n.xy);
 }

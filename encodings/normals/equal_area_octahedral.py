@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from ..codecs.encoding import Encoding
-from ..elementary import CONSTANTS, atan2_pi, sincos_pi
+from ..elementary import CONSTANTS, quadrant_pi, sincos_pi
 from ..vec import TINY, Vec2, Vec3, maximum, select, sign_not_zero, sqrt
 
 
@@ -12,7 +12,7 @@ def encode(n: Vec3, view: Vec3) -> Vec2:
     # r = sqrt(1 - |n.z|) = sqrt((n.x^2 + n.y^2) / (1 + |n.z|))
     r = sqrt((n.x * n.x + n.y * n.y) / (1.0 + abs(n.z)))
     # v = 2 r atan(|n.y| / |n.x|) / pi, u = r - v; for n.z < 0 (1 - v, 1 - u)
-    v = r * (2.0 * atan2_pi(abs(n.y), abs(n.x)))
+    v = r * (2.0 * quadrant_pi(abs(n.y), abs(n.x)))
     u = r - v
     folded = select(n.z < 0.0, Vec2(1.0 - v, 1.0 - u), Vec2(u, v))
     return folded * sign_not_zero(n.xy)

@@ -9,7 +9,7 @@ vec3 warped_cube_encode(vec3 n, vec3 view) {
     float axis = is_z ? 2.0 : is_y ? 1.0 : 0.0;
     float face = 2.0 * axis + (turned.z < 0.0 ? 1.0 : 0.0);
     vec2 uv = turned.xy * (1.0 / abs(turned.z));
-    return vec3(4.0 * atan2_pi(uv.x, 1.0), 4.0 * atan2_pi(uv.y, 1.0), number_of(face, WARPED_CUBE_FACES));
+    return vec3(4.0 * atan_pi(uv.x), 4.0 * atan_pi(uv.y), number_of(face, WARPED_CUBE_FACES));
 }
 
 vec3 warped_cube_decode(vec3 e, vec3 view) {

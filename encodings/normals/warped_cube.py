@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from ..codecs.encoding import Encoding
-from ..elementary import CONSTANTS, atan2_pi, sincos_pi
+from ..elementary import CONSTANTS, atan_pi, sincos_pi
 from ..vec import Vec3, floor, index_of, normalize, number_of, select
 
 FACES = 6
@@ -18,7 +18,7 @@ def encode(n: Vec3, view: Vec3) -> Vec3:
     axis = select(is_z, 2.0, select(is_y, 1.0, 0.0))
     face = 2.0 * axis + select(turned.z < 0.0, 1.0, 0.0)
     uv = turned.xy * (1.0 / abs(turned.z))
-    return Vec3(4.0 * atan2_pi(uv.x, 1.0), 4.0 * atan2_pi(uv.y, 1.0), number_of(face, FACES))
+    return Vec3(4.0 * atan_pi(uv.x), 4.0 * atan_pi(uv.y), number_of(face, FACES))
 
 
 def decode(e: Vec3, view: Vec3) -> Vec3:

@@ -7,7 +7,7 @@ import pytest
 from directions import NOT_DIRECTIONS, random_directions
 
 from normalbench.encodings import vec
-from normalbench.encodings.elementary import ATAN2_PI, COS_PI, SIN_PI, atan2_pi, sincos_pi
+from normalbench.encodings.elementary import ATAN_PI, COS_PI, SIN_PI, atan2_pi, atan_pi, sincos_pi
 from normalbench.encodings.vec import Vec2, Vec3
 
 
@@ -55,7 +55,7 @@ def test_the_polynomials_are_as_exact_as_they_say():
     """The coefficients as shipped, in float64."""
     s = np.linspace(1e-12, 1, 100_001)
     r = np.sqrt(s)
-    assert abs(np.polyval(ATAN2_PI[::-1], s) / (np.arctan(r) / r / np.pi) - 1).max() < 5e-8
+    assert abs(np.polyval(ATAN_PI[::-1], s) / (np.arctan(r) / r / np.pi) - 1).max() < 5e-8
     s, r = s / 16, r / 4
     assert abs(np.polyval(SIN_PI[::-1], s) / (np.sin(np.pi * r) / r) - 1).max() < 4e-8
     assert abs(np.polyval(COS_PI[::-1], s) - np.cos(np.pi * r)).max() < 1e-8
@@ -73,6 +73,12 @@ def test_the_angle_is_the_arc_tangent_within_two_units():
     assert wrapped.max() <= 2, f"{wrapped.max():.2f} ulp at {y[wrapped.argmax()]!r}, {x[wrapped.argmax()]!r}"
     assert float(atan2_pi(jnp.float32(0), jnp.float32(0))) == 0
     assert float(atan2_pi(jnp.float32(0), jnp.float32(-1))) == 1
+
+
+def test_the_arc_tangent_of_a_number_is_that_of_the_angle():
+    """Where nobody needs the other octants, to the bit."""
+    t = jnp.linspace(-1, 1, 99_999, dtype=jnp.float32)
+    np.testing.assert_array_equal(jax.jit(atan_pi)(t), jax.jit(atan2_pi)(t, jnp.ones_like(t)))
 
 
 @pytest.mark.parametrize("is_wide", [False, True])

@@ -32,7 +32,14 @@ class CodeOptions(Sources):
     to: Annotated[str, Option("--to", "glsl, essl, hlsl, slang, wgsl, msl, c, python; comma-separated, or all.")] = (
         "hlsl"
     )
-    prefix: Annotated[str, Option("--prefix", "What every name begins with. Default: the codec's name.")] = ""
+    prefix: Annotated[
+        str,
+        Option(
+            "--prefix",
+            "What every name begins with. Default: normal, or what else the codes are of; with several codecs of a "
+            "kind their names.",
+        ),
+    ] = ""
     check: Annotated[
         bool, Option("--check", "Run the code and print how it compares with the catalogue; write no code.")
     ] = False

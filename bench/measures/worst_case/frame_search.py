@@ -20,7 +20,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ....encodings.codecs.frame_codec import FrameCodec
-from ....encodings.rotation import Frame, frame_of, frame_of_quaternion
+from ....encodings.rotation import Frame, frame_of, rotated_frame
 from ....encodings.vec import Vec4, cross, dot, normalize
 from ...ground.machine.cores import on_all_cores
 from .cells import column_peaks
@@ -70,7 +70,7 @@ def worst_frame(codec: FrameCodec) -> WorstFrame:
 
 def _moves(codec: FrameCodec, quaternions, hands):
     """How far the axes of tangent frames are moved in all, squared; FARTHEST where what comes back is no frame."""
-    given = frame_of_quaternion(Vec4(*quaternions), hands)
+    given = rotated_frame(Vec4(*quaternions), hands)
     found = _at_right_angles(codec.round_trip(frame_of(*given)))
     pairs = zip((*given[:2], cross(*given[:2])), (*found[:2], cross(*found[:2])), strict=True)
     moved = sum(dot(a - b, a - b) for a, b in pairs)

@@ -14,12 +14,14 @@ from ..languages.words import is_translated
 from ..translator.tree import TranslationError
 from ..translator.writer import identifier
 from .emit import LANGUAGES, program_of
+from .fold import WIDTH, folded
 from .kinds.table import kind_of
 from .run.interface import Interface
-from .tables import table_files
+from .tables import table_files, texels_of
 from .verify import interface_of
 
-WIDTH = 118
+# What stands before a line of a comment.
+MARK = len("// ")
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,39 +48,50 @@ class Code:
 
     def text(self, head: Iterable[str]) -> str:
         """The file, under a comment of these paragraphs."""
-        return commented(self.body, self.language, self.prefix, head)
+        return commented(self.body, self.language, self.guard, head)
+
+    @property
+    def guard(self) -> str:
+        """What a language with a preprocessor takes once: a prefix that somebody chose, or the codec in its storage.
+        Codecs of one kind usually have the same names; of two, a compiler is to say so."""
+        return stem_of(self.codec) if self.prefix == usual_prefix(self.codec) else self.prefix
 
     def files(self, head: Iterable[str]) -> dict[str, bytes]:
         """All its files, by name."""
-        beside = table_files(self.interface.tables, self.language, self.prefix)
+        beside = table_files(self.interface.tables, self.language, stem_of(self.codec), self.prefix)
         return {self.name: self.text(head).encode(), **beside}
 
 
-def commented(body: str, language: str, prefix: str, head: Iterable[str]) -> str:
+def commented(body: str, language: str, guard: str, head: Iterable[str]) -> str:
     """The text of a file under a comment of these paragraphs; one that is indented stays as it is. Languages with a
-    preprocessor take the text once, however often it is included."""
+    preprocessor take the text once, however often it is included: `guard` says what it is."""
     mark = LANGUAGES[language].mark
     comment = "".join(f"{mark} {line}".rstrip() + "\n" for said in head for line in _lines(said))
     if not LANGUAGES[language].has_preprocessor:
         return f"{comment}\n{body}"
-    guard = f"{identifier(prefix).upper()}_INCLUDED"
-    return f"{comment}\n#ifndef {guard}\n#define {guard}\n\n{body}\n#endif\n"
+    name = f"{identifier(guard).upper()}_INCLUDED"
+    return f"{comment}\n#ifndef {name}\n#define {name}\n\n{body}\n#endif\n"
 
 
 def _lines(said: str) -> list[str]:
     if said.startswith("  "):
         return [said]
-    return textwrap.wrap(said, WIDTH, subsequent_indent="  ", break_on_hyphens=False) or [""]
+    return textwrap.wrap(said, WIDTH - MARK, subsequent_indent="  ", break_on_hyphens=False) or [""]
 
 
 def file_name(codec: Any, language: str) -> str:
     """What the file of a codec's code is called."""
-    return prefix_of(codec) + LANGUAGES[language].ending
+    return stem_of(codec) + LANGUAGES[language].ending
 
 
-def prefix_of(codec: Any) -> str:
-    """What the names of a codec's functions begin with: its kind, but of normals, its encoding, its storage, and how it
-    rounds, but to the nearest."""
+def usual_prefix(codec: Any) -> str:
+    """What the names of a codec's functions begin with where nobody says otherwise: what it is of."""
+    return kind_of(codec).prefix
+
+
+def stem_of(codec: Any) -> str:
+    """What the files of a codec are called: its kind, but of normals, its encoding, its storage, and how it rounds, but
+    to the nearest."""
     kind = kind_of(codec)
     if kind.kind is NORMAL:
         return identifier(codec.name)
@@ -93,23 +106,23 @@ def code_of(codec: Any, language: str, prefix: str = "") -> Code:
     Args:
         codec: one whose storage holds what its encoding makes.
         language: a key of LANGUAGES.
-        prefix: what every name begins with; the codec's name where it is empty.
+        prefix: what every name begins with; the kind where it is empty.
 
     Raises:
         UsageError: the encoding has what cannot be translated.
         ShaderError: its GLSL cannot be read, or is of half arithmetic or a chain.
     """
     _check_written(codec)
-    prefix = prefix or prefix_of(codec)
+    prefix = prefix or usual_prefix(codec)
     try:
         program = program_of(codec, prefix)
         interface = interface_of(codec, prefix, program)
         writer = LANGUAGES[language].writer
-        sizes: dict[str, tuple[int, int, int]] = {name: table.shape for name, table in interface.tables.items()}
-        body = writer(prefix, sizes).program(program)
+        texels = {name: texels_of(table) for name, table in interface.tables.items()}
+        body = writer(prefix, texels, stem_of(codec)).program(program)
     except TranslationError as error:
         raise UsageError(_untranslatable_reason(codec, str(error))) from error
-    return Code(codec, language, prefix, body, interface)
+    return Code(codec, language, prefix, folded(body, LANGUAGES[language].mark), interface)
 
 
 def _untranslatable_reason(codec: Any, said: str) -> str:

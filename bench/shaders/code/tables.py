@@ -4,30 +4,57 @@ from __future__ import annotations
 
 import io
 import struct
-from collections.abc import Mapping
+import textwrap
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-# DXGI_FORMAT of 32-bit floats by the number of channels, and the head of a DDS file (Microsoft, "Programming Guide for
-# DDS": DDS_HEADER and DDS_HEADER_DXT10).
-FORMATS = {1: 41, 2: 16, 4: 2}
+from ..translator.texels import Texels
+from ..translator.writer import INDENT
+from .fold import WIDTH
+
+# DXGI_FORMAT of 8-bit numbers in [0, 1] and of 32-bit floats by the number of channels, and the head of a DDS file
+# (Microsoft, "Programming Guide for DDS": DDS_HEADER and DDS_HEADER_DXT10).
+BYTES, FLOATS = {1: 61, 2: 49, 4: 28}, {1: 41, 2: 16, 4: 2}
+LARGEST = np.float32(255.0)
 MAGIC, HEADER, PIXELS, TEXTURE_2D = b"DDS ", 124, 32, 3
 # CAPS, HEIGHT, WIDTH, PITCH and PIXELFORMAT are given; the pixels' format is in the second header; it is a texture.
 GIVEN, FOUR_LETTERS, IS_TEXTURE = 0x100F, 0x4, 0x1000
 
 
+def texels_of(table: np.ndarray) -> Texels:
+    """What a table is kept as: in 8 bits where these are the same numbers.
+
+    Args:
+        table: float32 of shape (height, width, channels).
+    """
+    whole = _as_bytes(table)
+    return Texels(*table.shape, is_bytes=bool((whole / LARGEST == table).all()))
+
+
+def _as_bytes(table: np.ndarray) -> np.ndarray:
+    return np.clip(np.rint(table * LARGEST), 0, 255).astype(np.uint8)
+
+
+def kept(table: np.ndarray) -> np.ndarray:
+    """A table as a file has it: uint8 or float32, of its shape."""
+    return _as_bytes(table) if texels_of(table).is_bytes else np.ascontiguousarray(table, "<f4")
+
+
 def dds(table: np.ndarray) -> bytes:
-    """A table as a texture file of 32-bit floats, read by whatever reads DDS with its header of DirectX 10.
+    """A table as a texture file, read by whatever reads DDS with its header of DirectX 10.
 
     Args:
         table: float32 of shape (height, width, channels), of 1, 2 or 4 channels.
     """
     height, width, channels = table.shape
-    head = struct.pack("<7I44x", HEADER, GIVEN, height, width, width * channels * 4, 0, 1)
+    data = kept(table)
+    head = struct.pack("<7I44x", HEADER, GIVEN, height, width, width * channels * data.itemsize, 0, 1)
     pixels = struct.pack("<2I4s5I", PIXELS, FOUR_LETTERS, b"DX10", 0, 0, 0, 0, 0)
     caps = struct.pack("<5I", IS_TEXTURE, 0, 0, 0, 0)
-    second = struct.pack("<5I", FORMATS[channels], TEXTURE_2D, 0, 1, 0)
-    return MAGIC + head + pixels + caps + second + np.ascontiguousarray(table, "<f4").tobytes()
+    kind = (BYTES if data.dtype == np.uint8 else FLOATS)[channels]
+    second = struct.pack("<5I", kind, TEXTURE_2D, 0, 1, 0)
+    return MAGIC + head + pixels + caps + second + data.tobytes()
 
 
 def header(tables: Mapping[str, np.ndarray]) -> str:
@@ -36,25 +63,31 @@ def header(tables: Mapping[str, np.ndarray]) -> str:
 
 
 def _array_text(name: str, table: np.ndarray) -> str:
-    height, width, channels = table.shape
-    rows = ("    " + ", ".join(f"{number!s}f" for number in row.ravel()) + "," for row in table)
-    size = f"{height} rows of {width} texels of {channels} {'number' if channels == 1 else 'numbers'}"
-    return "\n".join([f"// {size}.", f"static const float {name}[{table.size}] = {{", *rows, "};", ""])
+    texels, data = texels_of(table), kept(table)
+    suffix, kind = ("", "unsigned char") if texels.is_bytes else ("f", "float")
+    rows = (line for row in data for line in _lines(f"{number!s}{suffix}" for number in row.ravel()))
+    numbers = f"{texels.channels} {'number' if texels.channels == 1 else 'numbers'}"
+    size = f"{texels.height} rows of {texels.width} texels of {numbers}{', multiples of 1/255' * texels.is_bytes}"
+    return "\n".join([f"// {size}.", f"static const {kind} {name}[{table.size}] = {{", *rows, "};", ""])
+
+
+def _lines(numbers: Iterable[str]) -> list[str]:
+    text = ", ".join(numbers) + ","
+    return textwrap.wrap(text, WIDTH, initial_indent=INDENT, subsequent_indent=INDENT)
 
 
 def npy(table: np.ndarray) -> bytes:
     """A table as NumPy saves it."""
     file = io.BytesIO()
-    np.save(file, table)
+    np.save(file, kept(table))
     return file.getvalue()
 
 
-def table_files(tables: Mapping[str, np.ndarray], language: str, prefix: str) -> dict[str, bytes]:
-    """What lies beside a file of a language, by name."""
+def table_files(tables: Mapping[str, np.ndarray], language: str, stem: str, prefix: str) -> dict[str, bytes]:
+    """What lies beside a file of a language, by name: `stem`, and a table's name without the prefix."""
     if not tables:
         return {}
     if language == "c":
-        return {f"{prefix}_tables.h": header(tables).encode()}
-    if language == "python":
-        return {f"{name}.npy": npy(table) for name, table in tables.items()}
-    return {f"{name}.dds": dds(table) for name, table in tables.items()}
+        return {f"{stem}_tables.h": header(tables).encode()}
+    ending, made = ("npy", npy) if language == "python" else ("dds", dds)
+    return {f"{stem}_{name.removeprefix(f'{prefix}_')}.{ending}": made(table) for name, table in tables.items()}

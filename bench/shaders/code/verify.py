@@ -10,6 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ....encodings.storages.rounding import store_texel
+from ..translator.reduce import table_name
 from ..translator.tree import Program
 from .channels import Channels
 from .kinds.table import kind_of
@@ -122,7 +123,7 @@ def interface_of(codec: Any, prefix: str, program: Program) -> Interface:
         channels.numbers.sign_bits,
         channels.words,
         tuple(place for name, place in kind.settings.items() if name in names),
-        {f"{prefix}_{name}": table for name, table in tables.items()},
+        {table_name(name, prefix, codec.encoding.prefix): table for name, table in tables.items()},
         kind.is_ours(codec),
         kind.given(codec),
         kind.result(codec),

@@ -14,6 +14,7 @@ from types import MappingProxyType
 from .builtins import BITS, FETCH
 from .c_defined import HELPERS, OPERATIONS, Range, counted, range_of
 from .parser import BINDING, SHIFTS
+from .texels import Texels
 from .tree import (
     MATRICES,
     SIZES,
@@ -87,8 +88,8 @@ class CWriter(Writer):
         "M_PI_4 M_1_PI M_2_PI M_SQRT2 DOMAIN SING OVERFLOW UNDERFLOW PLOSS TLOSS linux unix math_errhandling I complex"
     )
 
-    def __init__(self, prefix: str, sizes: Mapping[str, tuple[int, int, int]]):
-        super().__init__(prefix, sizes)
+    def __init__(self, prefix: str, texels: Mapping[str, Texels], stem: str = ""):
+        super().__init__(prefix, texels, stem)
         self._hoisted: list[str] = []
         self._indent, self._count = INDENT, 0
         self._helpers: dict[str, str] = {}
@@ -114,7 +115,7 @@ class CWriter(Writer):
         kinds |= {kind for struct in program.structs for kind in struct.kinds.values()}
         kinds |= {f"vec{kind[3]}" for kind in kinds & set(MATRICES)}
         includes = ["#include <math.h>", "#include <stdbool.h>", "#include <stdint.h>", "#include <string.h>"]
-        includes += [f'#include "{self._prefix}_tables.h"'] if program.tables else []
+        includes += [f'#include "{self._stem}_tables.h"'] if program.tables else []
         contract = "#ifdef __clang__\n#pragma STDC FP_CONTRACT OFF\n#endif"
         helpers = [
             f"static inline {HELPERS[name].format(self._helpers[name])}" for name in HELPERS if name in self._helpers
@@ -605,14 +606,17 @@ class CWriter(Writer):
     def _fetched_parts(self, value: Call) -> list[Part]:
         table, place, _ = value.arguments
         name = getattr(table, "name", "")
-        height, width, channels = self._sizes[name]
+        texels = self._texels[name]
         x, y = (
             self._helper("at", part[0], str(most))
-            for part, most in zip(self._parts(place), (width, height), strict=True)
+            for part, most in zip(self._parts(place), (texels.width, texels.height), strict=True)
         )
-        first = self._temporary("int32_t", f"{channels} * ({y[0]} * {width} + {x[0]})")
-        parts = [(f"{name}[{first}{f' + {channel}' if channel else ''}]", PRIMARY) for channel in range(channels)]
-        return parts + [("0.0f", PRIMARY)] * (4 - channels)
+        place = f"{y[0]} * {texels.width} + {x[0]}"
+        first = self._temporary("int32_t", f"{texels.channels} * ({place})" if texels.channels > 1 else place)
+        numbers = (f"{name}[{first}{f' + {channel}' if channel else ''}]" for channel in range(texels.channels))
+        # Numbers in 8 bits are multiples of 1/255.
+        parts = [(f"{one} / 255.0f", BINDING["/"]) if texels.is_bytes else (one, PRIMARY) for one in numbers]
+        return parts + [("0.0f", PRIMARY)] * (4 - texels.channels)
 
     def _constructed_parts(self, value: Construct) -> list[Part]:
         parts = [(part, scalar_of(a.kind)) for a in value.arguments for part in self._parts(a)]

@@ -57,5 +57,8 @@ class EsslWriter(GlslWriter):
     # A word of GLSL ES 3.2.
     has_precise = False
 
-    def _table(self, table: Table) -> str:
+    # WebGL 2 has no `layout(binding)`.
+    binding_advice = "Bind it by glUniform1i."
+
+    def _declared_table(self, table: Table, binding: int) -> str:  # noqa: ARG002 (others have it in the text)
         return f"uniform highp sampler2D {table.name};"

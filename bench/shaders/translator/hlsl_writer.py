@@ -71,6 +71,7 @@ class HlslWriter(Writer):
     )
     has_templates = True
     has_precise = True
+    binding_advice = "Change the register to yours."
     # A choice by components that is longer than this is a function of its own: it would be written for each of them.
     most_letters = 120
 
@@ -105,8 +106,8 @@ class HlslWriter(Writer):
         body = f"{INDENT}{struct.name} {made};\n{sets}{INDENT}return {made};\n"
         return f"{super()._struct(struct)}\n\n{struct.name} {name}({given}) {{\n{body}}}"
 
-    def _table(self, table: Table) -> str:
-        return f"Texture2D<float4> {table.name};"
+    def _declared_table(self, table: Table, binding: int) -> str:
+        return f"Texture2D<float4> {table.name} : register(t{binding});"
 
     def _global_text(self, constant: Declare) -> str:
         return f"static const {self._declaration_text(constant)};"

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from .hlsl_writer import KINDS
+from .texels import Texels
 from .tree import (
     Binary,
     Call,
@@ -60,13 +61,20 @@ class MslWriter(Writer):
     has_tables = False
     splats = True
 
-    def __init__(self, prefix: str, sizes: Mapping[str, tuple[int, int, int]]):
-        super().__init__(prefix, sizes)
+    binding_advice = "Functions that read it take it last."
+
+    def __init__(self, prefix: str, texels: Mapping[str, Texels], stem: str = ""):
+        super().__init__(prefix, texels, stem)
         self._reads: dict[str, list[str]] = {}
 
     def program(self, program: Program) -> str:
         self._reads = tables_read(program)
         return super().program(program)
+
+    def _head_parts(self, program: Program) -> list[str]:
+        tables = sorted(table.name for table in program.tables)
+        notes = (f"// {name}, {self._table_note(name).removeprefix('// ').rstrip()}" for name in tables)
+        return [*super()._head_parts(program), *(note for note in notes if program.tables)]
 
     def _global_text(self, constant: Declare) -> str:
         return f"constant {self._declaration_text(constant)};"

@@ -9,6 +9,7 @@ from types import MappingProxyType
 from .builtins import BITS, FETCH, LIKE_GIVEN, OF_VECTORS
 from .numpy_helpers import HELPERS
 from .parser import COMPARES, SHIFTS
+from .texels import Texels
 from .tree import (
     MATRICES,
     Binary,
@@ -78,8 +79,8 @@ class NumpyValues(Writer):
 
     functions = FUNCTIONS
 
-    def __init__(self, prefix: str, sizes: Mapping[str, tuple[int, int, int]]):
-        super().__init__(prefix, sizes)
+    def __init__(self, prefix: str, texels: Mapping[str, Texels], stem: str = ""):
+        super().__init__(prefix, texels, stem)
         self._helpers: set[str] = set()
         self._public = {f"{prefix}_{name}" for name in PUBLIC}
         # The functions that are told for which normals they are called, and the conditions within the statement that is

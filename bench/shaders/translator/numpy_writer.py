@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from .c_defined import counted
 from .numpy_helpers import HELPERS, needed
 from .numpy_values import BINDING, TYPES, NumpyValues, broad, inner_shape, shape_text
+from .texels import Texels
 from .tree import (
     Assign,
     Binary,
@@ -93,8 +94,8 @@ class NumpyWriter(NumpyValues):
         "range print zip len enumerate NamedTuple"
     )
 
-    def __init__(self, prefix: str, sizes: Mapping[str, tuple[int, int, int]]):
-        super().__init__(prefix, sizes)
+    def __init__(self, prefix: str, texels: Mapping[str, Texels], stem: str = ""):
+        super().__init__(prefix, texels, stem)
         self._state = _State()
 
     # The file.
@@ -116,7 +117,12 @@ class NumpyWriter(NumpyValues):
         return "\n\n\n".join(["\n".join(head), *helpers, *structs, *values, *functions]) + "\n"
 
     def _table(self, table: Table) -> str:
-        return f'{self._own(table.name)} = np.load(Path(__file__).with_name("{table.name}.npy"))'
+        name, texels = self._own(table.name), self._texels[table.name]
+        file = f"{self._stem}_{table.name.removeprefix(f'{self._prefix}_')}.npy"
+        size = f"shape ({texels.height}, {texels.width}, {texels.channels})"
+        scale = " / np.float32(255.0)" if texels.is_bytes else ""
+        said = f"# {size}, {'multiples of 1/255 as uint8' if texels.is_bytes else 'float32'}."
+        return f'{said}\n{name} = np.load(Path(__file__).with_name("{file}")){scale}'
 
     def _struct(self, struct: Struct) -> str:
         fields = self._fields(struct)

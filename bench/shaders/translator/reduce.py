@@ -66,8 +66,9 @@ def reduced(
     constants = _used_constants(program.constants, used)
     _rename(functions, {keys[name]: f"{prefix}_{called}" for name, called in roots.items()}, prefix, own)
     tables = [table for table in program.tables if table.name in used]
-    _replace(functions, {table.name: f"{prefix}_{table.name}" for table in tables})
-    tables = [Table(f"{prefix}_{table.name}") for table in tables]
+    names = {table.name: table_name(table.name, prefix, own) for table in tables}
+    _replace(functions, names)
+    tables = [Table(name) for name in names.values()]
     _rename_constants(constants, functions, prefix, own)
     return Program(constants, tables, functions, _named_structs(program, constants, functions, prefix, own))
 
@@ -207,6 +208,11 @@ def _rename(functions: list[Function], names: dict[str, str], prefix: str, own: 
         function.name = names[function.name]
 
 
+def table_name(name: str, prefix: str, own: str) -> str:
+    """What a look-up table is called."""
+    return f"{prefix}_{_without(own, name)}"
+
+
 def _without(own: str, name: str) -> str:
     """A name without what those of an encoding's own functions begin with."""
     return re.sub(f"^{own}_(?=.)", "", name)
@@ -229,7 +235,7 @@ def _shorter_name(own: str, name: str) -> str:
 
 
 def _rename_constants(constants: list[Declare], functions: list[Function], prefix: str, own: str) -> None:
-    short = {constant.name: _shorter_name(own, constant.name) for constant in constants}
+    short = {constant.name: _shorter_name(prefix, _shorter_name(own, constant.name)) for constant in constants}
     taken = list(short.values())
     names: dict[str, str] = {}
     others = {function.name for function in functions}

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from .parser import COMPARES, SHIFTS
+from .texels import Texels
 from .tree import (
     Binary,
     Call,
@@ -70,16 +71,13 @@ class WgslWriter(Writer):
     assigns_to_parts = False
     group = 0
 
-    def __init__(self, prefix: str, sizes: Mapping[str, tuple[int, int, int]]):
-        super().__init__(prefix, sizes)
-        self._bindings = 0
+    def __init__(self, prefix: str, texels: Mapping[str, Texels], stem: str = ""):
+        super().__init__(prefix, texels, stem)
         # Parameters that a function assigns to: variables, which begin as what it is given.
         self._copied: dict[str, str] = {}
 
-    def _table(self, table: Table) -> str:
-        text = f"@group({self.group}) @binding({self._bindings}) var {table.name}: texture_2d<f32>;"
-        self._bindings += 1
-        return text
+    def _declared_table(self, table: Table, binding: int) -> str:
+        return f"@group({self.group}) @binding({binding}) var {table.name}: texture_2d<f32>;"
 
     def _global_text(self, constant: Declare) -> str:
         value = self._text(constant.value) if constant.value else ""

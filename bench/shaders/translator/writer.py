@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from .builtins import BITS, FETCH, LIKE_GIVEN, OF_VECTORS
 from .parser import BINDING, COMPARISONS, SHIFTS
+from .texels import Texels
 from .tokens import with_a_point
 from .tree import (
     Assign,
@@ -65,10 +66,12 @@ class Writer:
 
     Args:
         prefix: what the program's names begin with.
-        sizes: of each table its height, its width and its channels.
+        texels: what each table holds, by its name.
+        stem: what the names of files beside the program's begin with; the prefix where it is empty.
 
     Attributes:
         head: what stands before all else.
+        binding_advice: how a table is bound, in a sentence.
         has_tables: whether tables are variables of the program.
         splats: whether a function of vectors takes no scalar in place of one.
         has_rich_parameters: whether functions take and give arrays, and change what they are given.
@@ -87,13 +90,16 @@ class Writer:
     has_precise = False
     has_templates = False
     head = ""
+    binding_advice = "Change the binding to yours."
     has_tables = True
     splats = False
     has_rich_parameters = False
     assigns_to_parts = True
 
-    def __init__(self, prefix: str, sizes: Mapping[str, tuple[int, int, int]]):
-        self._prefix, self._sizes = prefix, sizes
+    def __init__(self, prefix: str, texels: Mapping[str, Texels], stem: str = ""):
+        self._prefix, self._texels, self._stem = prefix, texels, stem or prefix
+        # Tables that are declared already.
+        self._bindings = 0
         self._renamed: dict[str, str] = {}
         self._assigned: set[str] = set()
         # Names that no variable of a function may have, and all that it has.
@@ -135,7 +141,21 @@ class Writer:
         return f"{name}_" if name in self.reserved else name
 
     def _table(self, table: Table) -> str:
-        return f"uniform sampler2D {table.name};"
+        """A table's declaration, below what has to be bound there. Tables are bound in the order of their names."""
+        declared = self._declared_table(table, self._bindings)
+        self._bindings += 1
+        return self._table_note(table.name) + declared
+
+    def _declared_table(self, table: Table, binding: int) -> str:
+        return f"layout(binding = {binding}) uniform sampler2D {table.name};"
+
+    def _table_note(self, name: str) -> str:
+        """What a texture holds, in comments; nothing of a table that is not known."""
+        if name not in self._texels:
+            return ""
+        texels, file = self._texels[name], f"{self._stem}_{name.removeprefix(f'{self._prefix}_')}.dds"
+        size = f"{texels.width} x {texels.height} texels, {texels.format}, one mip level, from {file}"
+        return f"// {size}.\n// It is read texel by texel: no sampler, no filter. {self.binding_advice}\n"
 
     def _constant(self, constant: Declare) -> str:
         return self._comments(constant, "") + self._global_text(constant)

@@ -10,7 +10,7 @@ from types import MappingProxyType
 import numpy as np
 
 from ....encodings.codecs.files import called
-from ....encodings.rotation import frame_of_quaternion
+from ....encodings.rotation import rotated_frame
 from ....encodings.vec import Vec4
 from ....gbuffer.scenes.files.read import READERS
 from ....gbuffer.scenes.mesh import Mesh, tangents
@@ -71,7 +71,7 @@ def rotations(count: int, seed: int) -> FrameSet:
         u, (a, b) = random.random(some), 2 * np.pi * random.random((2, some))
         low, high = np.sqrt(1 - u), np.sqrt(u)
         q = Vec4(low * np.sin(a), low * np.cos(a), high * np.sin(b), high * np.cos(b))
-        frame = frame_of_quaternion(q, np.where(random.random(some) < 0.5, -1.0, 1.0))
+        frame = rotated_frame(q, np.where(random.random(some) < 0.5, -1.0, 1.0))
         return frames_from(np.stack(frame.normal, axis=1), np.stack([*frame.tangent, frame.hand], axis=1))
 
     return FrameSet("rotations", count, seed, True, chunk)

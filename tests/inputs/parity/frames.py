@@ -12,7 +12,7 @@ from normalbench.encodings.catalogue import FRAME_ENCODINGS
 from normalbench.encodings.codecs.frame_codec import FrameCodec
 from normalbench.encodings.codecs.frame_encoding import FrameEncoding
 from normalbench.encodings.frame.octahedral_angle import SEAM
-from normalbench.encodings.rotation import Frame, frame_of, frame_of_quaternion
+from normalbench.encodings.rotation import Frame, frame_of, rotated_frame
 from normalbench.encodings.storages.storage import FRAME_STORAGES
 from normalbench.encodings.vec import Vec3, Vec4
 from normalbench.gbuffer.codecs.frames.frame_passes import FramePasses, exact_frames
@@ -40,7 +40,7 @@ def as_rows(frame: Frame) -> np.ndarray:
 def of_quaternions(q: np.ndarray) -> np.ndarray:
     """Frames of quaternions of any length, each with either hand; float32 of shape (2 count, 8)."""
     q = q / np.linalg.norm(q, axis=1, keepdims=True)
-    frame = frame_of_quaternion(Vec4(*q.T), np.ones(len(q)))
+    frame = rotated_frame(Vec4(*q.T), np.ones(len(q)))
     one = as_rows(frame).astype(np.float32)
     other = one * np.float32([1, 1, 1, -1, 1, 1, 1, 1])
     return np.concatenate([one, other])

@@ -80,6 +80,7 @@ class CodeKind:
         units: (what was given) -> what differences of what is decoded are counted in, (count, 1).
         searches: (codec) -> whether the encoder takes the best of several codes.
         held: (codec) -> the values that its functions take, in words.
+        called: what names begin with where nobody says otherwise, if that is not the kind's word.
     """
 
     kind: Kind
@@ -103,3 +104,9 @@ class CodeKind:
     searches: Callable[[Any], bool] = field(default=lambda _: False)
     named: Callable[[Any], str] = field(default=lambda codec: codec.encoding.name)
     fields: tuple[str, ...] = ()
+    called: str = ""
+
+    @property
+    def prefix(self) -> str:
+        """What names begin with where nobody says otherwise."""
+        return self.called or self.kind.word

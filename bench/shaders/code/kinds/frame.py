@@ -75,6 +75,7 @@ def _errors(given: np.ndarray, back: np.ndarray) -> np.ndarray:
 KIND = CodeKind(
     kind=FRAME,
     plural="tangent frames",
+    called="tangent",
     given=lambda _: ("n.xyz", "view.xyz", "n.w"),
     fields=FIELDS,
     settings={},

@@ -22,7 +22,7 @@ from ...translator.reduce import reduced
 from ...translator.tree import Call, Program, TranslationError, inside
 from ..emit import LANGUAGES
 from ..files import commented
-from .fold import folded
+from ..fold import folded
 from .surface import Contents
 from .text import Texts
 
@@ -59,7 +59,8 @@ class GBufferCode:
 
     def text(self, head: Iterable[str]) -> str:
         """The file, under a comment of these paragraphs."""
-        return commented(self.body, self.language, self.prefix, head)
+        guard = self.layout.name if self.prefix == PREFIX else self.prefix
+        return commented(self.body, self.language, guard, head)
 
 
 @cache

@@ -11,7 +11,7 @@ from .....encodings.catalogue import FRAME_ENCODINGS
 from .....encodings.codecs.frame_codec import FrameCodec
 from .....encodings.codecs.frame_encoding import FrameEncoding
 from .....encodings.codecs.kind import FRAME
-from .....encodings.rotation import frame_of_quaternion
+from .....encodings.rotation import rotated_frame
 from .....encodings.storages.storage import FRAME_STORAGES
 from .....encodings.vec import Vec4
 from .....gbuffer.codecs.own.own_passes import RESULTS, Tried
@@ -39,7 +39,7 @@ def _frames(own: Own) -> Values:
     hand = np.where(np.arange(COUNT) % 2, -1.0, 1.0)
     if own.size("rotation")[0]:
         return Values(_largest_first(q).astype(np.float32), rows(hand))
-    frame = frame_of_quaternion(Vec4(*q.T), hand)
+    frame = rotated_frame(Vec4(*q.T), hand)
     return Values(rows(*frame.normal, hand), rows(*frame.tangent))
 
 
@@ -55,7 +55,7 @@ def _axes(given: np.ndarray, more: np.ndarray, of_rotation: bool) -> tuple[np.nd
         return given[:, :3], more[:, :3]
     q = given.astype(np.float64)
     with np.errstate(invalid="ignore", divide="ignore"):
-        n, t, _ = frame_of_quaternion(Vec4(*(q / np.linalg.norm(q, axis=1, keepdims=True)).T), 1.0)
+        n, t, _ = rotated_frame(Vec4(*(q / np.linalg.norm(q, axis=1, keepdims=True)).T), 1.0)
     return np.stack(n, axis=1), np.stack(t, axis=1)
 
 

@@ -290,7 +290,7 @@ def test_code_of_a_user_is_the_users(run, tmp_path):
     (tmp_path / "many.glsl").write_text(MANY_WORDS)
     path, made = str(tmp_path / "many.glsl"), tmp_path / "made"
     status, _, err = run("code", path, "--storage", "rg8", "--to", "glsl,python", "-o", str(made))
-    assert status == 0 and "left out: " not in err and "def _many_rg8_halves(x):" in (made / "many_rg8.py").read_text()
+    assert status == 0 and "left out: " not in err and "def _normal_halves(x):" in (made / "many_rg8.py").read_text()
     text = " ".join((made / "many_rg8.glsl").read_text().replace("//", "").split())
     assert "Encode and decode are yours." in text and f"normalbench code {path}" in text
     assert "the catalogue's" not in text
@@ -300,7 +300,7 @@ def test_a_header_of_c_can_be_included_twice_without_a_warning(tmp_path):
     """All warnings are errors; two codecs of one encoding stand next to each other."""
     require_runner("c")
     for storage in ("rgba8", "rgba16f"):
-        written(tmp_path, code_of(codec_of(f"xyz_renormalised/{storage}"), "c"))
+        written(tmp_path, code_of(codec_of(f"xyz_renormalised/{storage}"), "c", storage))
     lines = [f'#include "xyz_renormalised_{storage}.h"' for storage in ("rgba8", "rgba16f", "rgba8")]
     (tmp_path / "both.c").write_text("\n".join([*lines, "int main(void) { return 0; }", ""]))
     command = ["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-Wno-unused-function", "-c", "both.c", "-o", "both.o"]

@@ -8,7 +8,7 @@ import pytest
 from languages import require_runner
 
 from normalbench.bench.shaders.code.emit import LANGUAGES
-from normalbench.bench.shaders.code.files import code_of, prefix_of
+from normalbench.bench.shaders.code.files import code_of, stem_of
 from normalbench.bench.shaders.code.reference import reference
 from normalbench.bench.shaders.code.verify import agreement
 from normalbench.bench.subjects.codecs.kinds.codecs import NAMED, codecs_of_kind, kinds_named
@@ -76,7 +76,7 @@ def test_motion_is_rounded_as_it_is_said(storage, tmp_path):
     (codec,) = codecs_of_kind(NAMED["motion"], "cube_root", storage, ["truncate"])
     found = agreement_of(codec, "c", tmp_path)
     assert found.holds, found.says
-    assert prefix_of(codec).endswith("_truncate")
+    assert stem_of(codec).endswith("_truncate")
     nearest = reference(codec_of("motion", "cube_root", storage))
     assert np.mean((reference(codec).words != nearest.words).any(axis=1)) > 0.25
 
@@ -232,7 +232,7 @@ def test_a_range_is_a_constant_of_the_code():
     """Of light another encoding, of a curve another number; the curve's name has it."""
     assert "8.0" in code_of(codec_of("light", "rgbm:8", "rgba8"), "glsl", "p").body
     log = codec_of("curve", "log:range=4", "r8")
-    assert log.range == 4 and prefix_of(log) == "curve_log_4_r8"
+    assert log.range == 4 and stem_of(log) == "curve_log_4_r8"
 
 
 @pytest.mark.usefixtures("gl")

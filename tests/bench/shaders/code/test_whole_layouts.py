@@ -12,9 +12,9 @@ from languages import require_runner
 from normalbench.bench.door import gbuffer_command
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.shaders.code.emit import LANGUAGES
+from normalbench.bench.shaders.code.fold import WIDTH, folded
 from normalbench.bench.shaders.code.whole.bits import packed_texts, parts_of, taken_text
 from normalbench.bench.shaders.code.whole.emit import gbuffer_code
-from normalbench.bench.shaders.code.whole.fold import WIDTH, folded
 from normalbench.bench.shaders.code.whole.head import table
 from normalbench.bench.shaders.code.whole.run import RUNS
 from normalbench.bench.shaders.code.whole.surface import Contents

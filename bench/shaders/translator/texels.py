@@ -1,0 +1,33 @@
+"""What a program's look-up tables hold."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Texels:
+    """A look-up table, as a texture has it.
+
+    Attributes:
+        height, width, channels: its size.
+        is_bytes: whether every number is a whole multiple of 1/255, so that 8 bits are enough; else they are floats of
+            32 bits.
+    """
+
+    height: int
+    width: int
+    channels: int
+    is_bytes: bool = False
+
+    @property
+    def format(self) -> str:
+        """The texture's format, as DXGI and Vulkan begin its name."""
+        letters = "RGBA"[: self.channels]
+        bits = 8 if self.is_bytes else 32
+        return "".join(f"{letter}{bits}" for letter in letters) + ("_UNORM" if self.is_bytes else "_FLOAT")
+
+    @property
+    def bytes(self) -> int:
+        """How much it takes."""
+        return self.height * self.width * self.channels * (1 if self.is_bytes else 4)

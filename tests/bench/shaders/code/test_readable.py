@@ -1,0 +1,168 @@
+"""Code of every codec as an engine programmer would paste it: short names and lines, and loops over tables unrolled."""
+
+import re
+
+import numpy as np
+import pytest
+
+from normalbench.bench.shaders.code.emit import LANGUAGES
+from normalbench.bench.shaders.code.files import code_of
+from normalbench.bench.shaders.code.fold import WIDTH
+from normalbench.bench.shaders.code.tables import dds, header, kept, npy, texels_of
+from normalbench.bench.subjects.codecs.kinds.codecs import codecs_of_kind
+from normalbench.bench.subjects.codecs.names import codecs_named
+from normalbench.encodings.catalogue import BY_KIND, ENCODINGS
+from normalbench.encodings.codecs.kind import KINDS, NORMAL
+from normalbench.encodings.storages.storage import (
+    CURVE_STORAGES,
+    FRAME_STORAGES,
+    LIGHT_STORAGES,
+    MOTION_STORAGES,
+    STORAGES,
+)
+
+LONGEST = 24
+QUICK = ("hlsl", "c", "python")
+# Storages whose functions are the longest: bytes, bits across channels, floats, signed numbers, two words.
+SOME = "rg8,rgba8,rgb8_12_12,rg16f,rgba8_10_10_10_snorm"
+OF_KIND = {"motion": MOTION_STORAGES, "curve": CURVE_STORAGES, "light": LIGHT_STORAGES, "frame": FRAME_STORAGES}
+
+
+def codecs_of(kind, name, storages):
+    """The codecs of an encoding in those of some storages that hold it."""
+    if kind is NORMAL:
+        found = [codec for codec in codecs_named(name, storages, "nearest") if codec.fits]
+        return found or [codec for codec in codecs_named(name, ",".join(STORAGES), "nearest") if codec.fits][:1]
+    found = codecs_of_kind(kind, name, storages, ["nearest"])
+    return [codec for codec in found if not (codec.misfit or getattr(codec.storage, "curved", 0))]
+
+
+def names_in(body: str, language: str) -> set[str]:
+    """The names in a text without its comments and the names of files."""
+    mark = re.escape(LANGUAGES[language].mark)
+    return set(re.findall(r"[A-Za-z_]\w*", re.sub(rf'{mark} .*|"[^"\n]*"', "", body)))
+
+
+def loops_without_unrolling(body: str) -> list[str]:
+    """The loops of HLSL that read an array of constants by their counter, and that nothing unrolls."""
+    arrays = "|".join(re.findall(r"const \w+ (\w+)\[\d+\]", body)) or "^"
+    found = re.findall(r"(.*)\n( *)for \(int (\w+) = .*\n((?:\2 .*\n)*)", body)
+    reads = ((above, text) for above, _, name, text in found if re.search(rf"\b(?:{arrays})\[[^\]]*\b{name}\b", text))
+    return [text for above, text in reads if above.strip() != "[unroll]"]
+
+
+def check(codecs, languages) -> None:
+    """Every name, line and loop of the codecs' code."""
+    assert codecs
+    for codec in codecs:
+        for language in languages:
+            code = code_of(codec, language)
+            about = f"{codec.encoding.name} in {codec.storage.name}, {language}"
+            lines = code.text(["A head. " * 40]).splitlines()
+            assert max(map(len, lines)) <= WIDTH, (about, max(lines, key=len))
+            names = names_in(code.body, language)
+            assert len(max(names, key=len)) <= LONGEST, (about, max(names, key=len))
+            if language == "hlsl":
+                assert not loops_without_unrolling(code.body), about
+
+
+EVERY = [(kind, name) for kind in KINDS for name in BY_KIND[kind]]
+
+
+@pytest.mark.parametrize("kind, name", EVERY, ids=[f"{kind.word}-{name}" for kind, name in EVERY])
+def test_the_code_of_an_encoding_has_short_names_and_lines(kind, name):
+    """Names of 24 letters, lines of 99 with the comments at the top."""
+    check(codecs_of(kind, name, "rgba8" if kind is NORMAL else "")[:1], QUICK)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind, name", EVERY, ids=[f"{kind.word}-{name}" for kind, name in EVERY])
+def test_code_in_other_storages_has_short_names_and_lines(kind, name):
+    """In every language, and in storages of each kind."""
+    storages = SOME if kind is NORMAL else ",".join(OF_KIND.get(kind.word, ()))
+    check(codecs_of(kind, name, storages), LANGUAGES)
+
+
+def test_a_loop_that_nothing_unrolls_is_found():
+    """The loop of a polynomial, without the word above it."""
+    body = code_of(codecs_of(NORMAL, "spherical", "rg8")[0], "hlsl").body
+    assert "[unroll]" in body and not loops_without_unrolling(body)
+    assert loops_without_unrolling(re.sub(r" *\[unroll\]\n", "", body))
+
+
+@pytest.mark.parametrize(
+    "name, has, has_not",
+    [
+        ("warped_cube", ("atan_pi",), ("quadrant_pi", "atan2_pi")),
+        ("equal_area_octahedral", ("quadrant_pi",), ("atan2_pi",)),
+        ("spherical", ("atan2_pi",), ()),
+    ],
+)
+def test_an_arc_tangent_has_the_octants_that_it_needs(name, has, has_not):
+    """Of a ratio in [-1, 1] none but its own; of two numbers without a sign the first quadrant."""
+    names = names_in(code_of(codecs_of(NORMAL, name, "rgba8")[0], "c").body, "c")
+    assert {f"normal_{one}" for one in has} <= names and not {f"normal_{one}" for one in has_not} & names
+
+
+def test_the_table_of_best_fit_takes_a_byte_a_texel():
+    """Its scales are k / 255: 8 bits are the same numbers as floats of 32 are, a megabyte in place of four."""
+    (table,) = ENCODINGS["best_fit"].tables().values()
+    texels = texels_of(table)
+    assert texels.is_bytes and texels.format == "R8_UNORM" and texels.bytes == 2**20
+    assert np.array_equal(kept(table) / np.float32(255), table)
+    assert len(dds(table)) == 148 + 2**20 and len(npy(table)) < 2**20 + 256
+    assert "static const unsigned char t[1048576] = {" in header({"t": table})
+    (angles,) = (one for name, one in ENCODINGS["spherical_lut"].tables().items() if name.endswith("angle"))
+    assert texels_of(angles).format == "R32_FLOAT"
+
+
+DECLARED = {
+    "hlsl": "Texture2D<float4> normal_scale : register(t0);",
+    "slang": "Texture2D<float4> normal_scale : register(t0);",
+    "glsl": "layout(binding = 0) uniform sampler2D normal_scale;",
+    "essl": "uniform highp sampler2D normal_scale;",
+    "wgsl": "@group(0) @binding(0) var normal_scale: texture_2d<f32>;",
+    "msl": "// normal_scale, 1024 x 1024 texels, R8_UNORM, one mip level, from best_fit_rgba8_scale.dds.",
+}
+
+
+@pytest.mark.parametrize("language", DECLARED)
+def test_a_texture_is_declared_with_its_binding_and_what_it_holds(language):
+    """And the file that is named lies beside the code."""
+    (codec,) = codecs_of(NORMAL, "best_fit", "rgba8")
+    code = code_of(codec, language)
+    assert DECLARED[language] in code.body
+    assert "1024 x 1024 texels, R8_UNORM, one mip level, from best_fit_rgba8_scale.dds." in code.body
+    assert "It is read texel by texel: no sampler, no filter." in code.body
+    assert "best_fit_rgba8_scale.dds" in code.files([])
+
+
+def test_two_tables_are_bound_in_the_order_of_their_names():
+    body = code_of(codecs_of(NORMAL, "spherical_lut", "rg8")[0], "hlsl").body
+    assert re.findall(r"> (\w+) : register\((t\d)\);", body) == [("normal_angle", "t0"), ("normal_xy", "t1")]
+
+
+def test_codes_of_one_kind_have_names_of_their_own(run, tmp_path):
+    """They lie in one folder and may be used together; the command in each says how it is made alone."""
+    status, _, _ = run("code", "xy,octahedral,cube_root", "--storage", "rg16_snorm", "--to", "c", "-o", str(tmp_path))
+    assert status == 0
+    assert "octahedral_rg16_snorm_encode(" in (tmp_path / "octahedral_rg16_snorm.h").read_text()
+    text = (tmp_path / "xy_rg16_snorm.h").read_text()
+    assert "xy_rg16_snorm_encode(" in text
+    assert "--prefix xy_rg16_snorm" in " ".join(text.replace("//", "").split())
+    assert " motion_encode(" in (tmp_path / "motion_cube_root_rg16_snorm.h").read_text()
+
+
+def test_two_files_with_the_same_names_are_both_read():
+    """So that a compiler complains: a guard of the same name would leave one of them out without a word."""
+    (one,), (other,) = (codecs_of(NORMAL, name, "rg8") for name in ("octahedral", "spheremap"))
+    assert "#ifndef OCTAHEDRAL_RG8_INCLUDED" in code_of(one, "c").text([])
+    assert "#ifndef SPHEREMAP_RG8_INCLUDED" in code_of(other, "c").text([])
+    assert "#ifndef OCT_INCLUDED" in code_of(one, "c", "oct").text([])
+
+
+@pytest.mark.parametrize("word", ["frames", "all", "normal,depth"])
+def test_a_wrong_kind_is_a_line_that_lists_layouts(run, word):
+    status, _, err = run("code", "octahedral", "--of", word)
+    assert status == 2 and err.strip().count("\n") == 0
+    assert "known: normal, motion, curve, light, depth, frame, layout" in err
