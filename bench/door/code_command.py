@@ -77,9 +77,12 @@ def code_command(options: CodeOptions, format: str, output: Path | None) -> int:
 def _of_named(word: str) -> str:
     """What the codes are of: a kind, a layout, or empty for what the names say. Raises UsageError."""
     known = (*NAMED, LAYOUT)
-    if word and not (found := spelled("kind", word, known)):
+    if not word:
+        return ""
+    found = spelled("kind", word, known)
+    if not found:
         raise unknown_name("kind", [word], known)
-    return found if word else ""
+    return found
 
 
 def _check_prefix(prefix: str) -> None:

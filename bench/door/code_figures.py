@@ -11,7 +11,7 @@ from ..ground.options.counts import DEFAULT_COUNT
 from ..shaders.code.emit import LANGUAGES
 from ..shaders.code.files import Code
 from ..shaders.code.kinds.table import kind_of
-from ..shaders.code.tables import texels_of
+from ..shaders.code.tables import table_lines
 from ..shaders.code.twin import has_twin
 from ..subjects.normals.normal_sets import NORMAL_SETS
 from ..tables.cost import measure as cost
@@ -19,7 +19,6 @@ from ..tables.quality import measure as quality
 
 # Figures that differ by less are the same.
 SAME = 1e-3
-KB = 1024
 # What is said of a file that was run, or could not be.
 VERIFIED, DIFFERS, NOT_RUN = "verified", "differs", "not run"
 STAGE, FAMILY, FAMILY_TITLE = "fragment", "navi21", "AMD RDNA 2 (navi21, RADV)"
@@ -37,10 +36,6 @@ def head(code: Code, codec: Any, command: str, verified: str, said: Sequence[str
     """
     encoding, kind = codec.encoding, kind_of(codec)
     compared = verified.replace(" are equal, bit", " are the catalogue's, bit", 1) if kind.is_ours(codec) else verified
-    tables = [
-        f"Table: {name}, {texels.width} x {texels.height} texels of {texels.format}, {texels.bytes / KB:.4g} kB."
-        for name, texels in ((name, texels_of(table)) for name, table in code.interface.tables.items())
-    ]
     names = ", ".join(f"{code.prefix}_{name}" for name in ("encode", "pack", "unpack", "decode"))
     return [
         f"{codec.name} in {LANGUAGES[code.language].title}: {names}; for a render target {code.prefix}_to_target and "
@@ -50,7 +45,7 @@ def head(code: Code, codec: Any, command: str, verified: str, said: Sequence[str
         f"Storage: {codec.storage.title}, {codec.bits} bits, rounded to {rounding_of(codec)}. "
         f"{kind.plural.capitalize()}: {kind.held(codec)}.",
         *said,
-        *tables,
+        *table_lines(code.interface.tables),
         f"Verified: {compared}.",
         f"Made by normalbench {version('normalbench')}: {command}",
         _licence(codec),

@@ -84,11 +84,14 @@ def _command(code: GBufferCode, options: CodeOptions) -> str:
 
 def _save(code: GBufferCode, said: Sequence[str], output: Path | None) -> None:
     if output is None:
+        if code.tables:
+            raise UsageError(f"{code.layout.name} comes with look-up tables: name a folder with -o")
         say(code.text(said))
         return
-    with whole_file(output / code.name) as partial:
-        partial.write_text(code.text(said), encoding="utf-8")
-    tell(f"{output / code.name}")
+    for name, data in code.files(said).items():
+        with whole_file(output / name) as partial:
+            partial.write_bytes(data)
+        tell(f"{output / name}")
 
 
 def verified(code: GBufferCode) -> Row:

@@ -5,6 +5,8 @@
     nb.quality(encoding="octahedral", storage=["rg8", "rgb10a2"])   # a pandas DataFrame
     nb.encode("octahedral/rg8", normals)                            # what is stored, as numbers and as integers
     nb.decode("octahedral/rg8", codes)                              # the normals that come back
+    nb.pack("granite", surface)                                     # what a layout's targets hold of surfaces
+    nb.unpack("granite", targets)                                   # the surfaces that come back
 
 Each table of the command line is a function of the same name and options; `help(nb.quality)` lists them. Nothing heavy
 is imported before something is used.
@@ -25,6 +27,8 @@ _HOMES = {
     "encode": ".bench.door.python.codecs",
     "decode": ".bench.door.python.codecs",
     "encoding": ".bench.door.python.codecs",
+    "pack": ".bench.door.python.layouts",
+    "unpack": ".bench.door.python.layouts",
     "Codes": ".bench.door.python.codecs",
     "Encoding": ".encodings.codecs.encoding",
     "Storage": ".encodings.storages.storage",

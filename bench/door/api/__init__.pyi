@@ -7,6 +7,8 @@ from .bench.door.python.codecs import Codes as Codes
 from .bench.door.python.codecs import decode as decode
 from .bench.door.python.codecs import encode as encode
 from .bench.door.python.codecs import encoding as encoding
+from .bench.door.python.layouts import pack as pack
+from .bench.door.python.layouts import unpack as unpack
 from .bench.door.python.tables import Rows as Rows
 from .encodings.codecs.codec import Codec as Codec
 from .encodings.codecs.encoding import Encoding as Encoding

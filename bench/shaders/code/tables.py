@@ -17,6 +17,7 @@ from .fold import WIDTH
 # (Microsoft, "Programming Guide for DDS": DDS_HEADER and DDS_HEADER_DXT10).
 BYTES, FLOATS = {1: 61, 2: 49, 4: 28}, {1: 41, 2: 16, 4: 2}
 LARGEST = np.float32(255.0)
+KB = 1024
 MAGIC, HEADER, PIXELS, TEXTURE_2D = b"DDS ", 124, 32, 3
 # CAPS, HEIGHT, WIDTH, PITCH and PIXELFORMAT are given; the pixels' format is in the second header; it is a texture.
 GIVEN, FOUR_LETTERS, IS_TEXTURE = 0x100F, 0x4, 0x1000
@@ -74,6 +75,15 @@ def _array_text(name: str, table: np.ndarray) -> str:
 def _lines(numbers: Iterable[str]) -> list[str]:
     text = ", ".join(numbers) + ","
     return textwrap.wrap(text, WIDTH, initial_indent=INDENT, subsequent_indent=INDENT)
+
+
+def table_lines(tables: Mapping[str, np.ndarray]) -> list[str]:
+    """What the head of a file says of tables, a line each."""
+    held = {name: texels_of(table) for name, table in tables.items()}
+    return [
+        f"Table: {name}, {one.width} x {one.height} texels of {one.format}, {one.bytes / KB:.4g} kB."
+        for name, one in held.items()
+    ]
 
 
 def npy(table: np.ndarray) -> bytes:

@@ -38,7 +38,12 @@ ONE = "1.0"
 
 
 def reduced(
-    program: Program, roots: Mapping[str, str], prefix: str, own: str, bound: Mapping[str, float] = MappingProxyType({})
+    program: Program,
+    roots: Mapping[str, str],
+    prefix: str,
+    own: str,
+    bound: Mapping[str, float] = MappingProxyType({}),
+    pair: tuple[str, str] = PAIR,
 ) -> Program:
     """What the functions of some names need, and no more.
 
@@ -48,6 +53,7 @@ def reduced(
         prefix: what every name begins with.
         own: what the names of an encoding's own functions begin with, which the prefix stands for.
         bound: settings of the encoder and the decoder that are numbers.
+        pair: what of `roots` is called with the same settings.
 
     Raises:
         TranslationError: one of these functions could not be read.
@@ -56,12 +62,12 @@ def reduced(
     kept = _reached_names(program, [keys[name] for name in roots])
     functions = [f for f in program.functions if f.name in kept]
     _keep_changes_inside(functions)
-    pair = {keys[name] for name, called in roots.items() if called in PAIR}
+    both = {keys[name] for name, called in roots.items() if called in pair}
     for setting, value in bound.items():
-        for function in (one for one in functions if one.name in pair):
+        for function in (one for one in functions if one.name in both):
             _bind(function, setting, value)
     for setting in SETTINGS:
-        _leave_out(setting, functions, pair)
+        _leave_out(setting, functions, both)
     used = {node.name for f in functions for node in inside(f.body) if isinstance(node, Name)}
     constants = _used_constants(program.constants, used)
     _rename(functions, {keys[name]: f"{prefix}_{called}" for name, called in roots.items()}, prefix, own)

@@ -32,12 +32,17 @@ def prepared(compute: Any, interface: Interface) -> Iterator[Run]:
     gl = device()
     with ExitStack() as stack:
         gl.owned(stack, compute)
-        bind(compute, uploaded(gl, stack, _tables_by_sampler(compute, interface.tables)))
+        bind_tables(compute, interface.tables, stack)
 
         def run(n: np.ndarray, view: np.ndarray, texels: np.ndarray) -> Ran:
             return ran_of(*dispatched(gl, compute, rows_of(n, view, texels)), interface)
 
         yield run
+
+
+def bind_tables(compute: Any, tables: Mapping[str, np.ndarray], stack: ExitStack) -> None:
+    """Bind tables as textures, released with the stack."""
+    bind(compute, uploaded(device(), stack, _tables_by_sampler(compute, tables)))
 
 
 def _tables_by_sampler(compute: Any, tables: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:

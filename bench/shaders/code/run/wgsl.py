@@ -51,7 +51,7 @@ def device_name() -> str:
 def prepared(path: Path, interface: Interface) -> Iterator[Run]:
     """The file on the Vulkan device. Raises MissingError, ShaderError."""
     gpu = device()
-    tables = _TableGroup(gpu, interface.tables)
+    tables = TableGroup(gpu, interface.tables)
     program = _program(gpu, path, interface, tables.layout)
 
     def run(n: np.ndarray, view: np.ndarray, texels: np.ndarray) -> Ran:
@@ -61,7 +61,7 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
     yield run
 
 
-class _TableGroup:
+class TableGroup:
     """Look-up tables as textures of group 0, in the order of their names."""
 
     def __init__(self, gpu: Any, tables: Mapping[str, np.ndarray]):

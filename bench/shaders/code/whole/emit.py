@@ -3,26 +3,30 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 
 from .....gbuffer.codecs.codec_passes import encoding_defines
+from .....gbuffer.codecs.depth.depth_passes import depth_defines
 from .....gbuffer.defines.layouts import curve_defines, curve_files
 from .....gbuffer.gl.shader import Source
 from .....gbuffer.layouts.layout import Layout
 from ....ground.output.errors import UsageError
 from ...translator.changes import given_back
 from ...translator.glsl_parser import read_glsl
-from ...translator.reduce import reduced
+from ...translator.reduce import reduced, table_name
 from ...translator.tree import Call, Program, TranslationError, inside
+from ...translator.writer import identifier
 from ..emit import LANGUAGES
 from ..files import commented
 from ..fold import folded
+from ..tables import table_files, texels_of
 from .surface import Contents
 from .text import Texts
 
@@ -31,8 +35,11 @@ TEMPLATE = Path(__file__).with_name("gbuffer.glsl.j2")
 # What every name begins with, where nobody says otherwise.
 PREFIX = "gbuffer"
 ROOTS = {"pack_gbuffer": "pack", "unpack_gbuffer": "unpack"}
+PAIR = ("pack", "unpack")
 # What functions of curves are called here, by what their names end with.
 SHORT = {"encode_curve": "to", "decode_curve": "from", "encode_motion": "to", "decode_motion": "from"}
+# A layout has one code of depth.
+OF_DEPTH = ("encode_depth", "decode_depth")
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +51,8 @@ class GBufferCode:
         prefix: what its names begin with.
         body: its text.
         texts: its structures.
+        settings: what both functions take besides, of `view`, `near` and `far`.
+        tables: the look-up tables by name, float32 of shape (height, width, channels).
     """
 
     layout: Layout
@@ -51,6 +60,8 @@ class GBufferCode:
     prefix: str
     body: str
     texts: Texts
+    settings: tuple[str, ...]
+    tables: Mapping[str, np.ndarray]
 
     @property
     def name(self) -> str:
@@ -61,6 +72,11 @@ class GBufferCode:
         """The file, under a comment of these paragraphs."""
         guard = self.layout.name if self.prefix == PREFIX else self.prefix
         return commented(self.body, self.language, guard, head)
+
+    def files(self, head: Iterable[str]) -> dict[str, bytes]:
+        """All its files, by name."""
+        beside = table_files(self.tables, self.language, identifier(self.layout.name), self.prefix)
+        return {self.name: self.text(head).encode(), **beside}
 
 
 @cache
@@ -77,13 +93,17 @@ def gbuffer_code(layout: Layout, language: str, prefix: str = "") -> GBufferCode
         UsageError: the layout holds what is not written, or has what cannot be translated; one line.
         ShaderError: its GLSL cannot be read.
     """
-    texts = Texts(Contents(layout))
+    texts, prefix, said = Texts(Contents(layout)), prefix or PREFIX, LANGUAGES[language]
+    made = layout.encoding.tables()
+    tables = {table_name(name, prefix, layout.encoding.prefix): table for name, table in made.items()}
+    texels = {name: texels_of(table) for name, table in tables.items()}
     try:
-        program = _program(texts, prefix or PREFIX)
-        body = LANGUAGES[language].writer(prefix or PREFIX, {}).program(program)
+        program = _program(texts, prefix)
+        body = said.writer(prefix, texels, identifier(layout.name)).program(program)
     except TranslationError as error:
         raise UsageError(f"layout {layout.name}: {error}") from error
-    return GBufferCode(layout, language, prefix or PREFIX, folded(body, LANGUAGES[language].mark), texts)
+    settings = tuple(one.name for one in program.function(f"{prefix}_pack").parameters[1:])
+    return GBufferCode(layout, language, prefix, folded(body, said.mark), texts, settings, tables)
 
 
 def _program(texts: Texts, prefix: str) -> Program:
@@ -91,9 +111,10 @@ def _program(texts: Texts, prefix: str) -> Program:
     layout = texts.contents.layout
     defines, files = read_of(layout)
     source, functions = Source(ROOT, defines, files), functions_text(texts)
-    for name in ("CODE", "ENCODE", "DECODE"):
+    for name in ("CODE", "ENCODE", "DECODE", "DEPTH_ENCODE", "DEPTH_DECODE"):
         functions = re.sub(rf"\b{name}\b", str(defines[name]), functions)
-    program = given_back(reduced(read_glsl(f"{source.text}\n{functions}"), ROOTS, prefix, layout.encoding.prefix))
+    whole = read_glsl(f"{source.text}\n{functions}")
+    program = given_back(reduced(whole, ROOTS, prefix, layout.encoding.prefix, pair=PAIR))
     _shorten(program, prefix)
     return program
 
@@ -105,17 +126,19 @@ def functions_text(texts: Texts) -> str:
 
 def read_of(layout: Layout) -> tuple[dict[str, object], dict[str, Any]]:
     """The macros and the files of what a layout's functions call, as `Source` takes them. Raises ShaderError."""
-    defines = {**encoding_defines(layout.codec.encoding), **curve_defines(layout)}
-    return defines, {"ENCODING": layout.codec.encoding.glsl, "CURVES": curve_files(layout)}
+    defines = {**depth_defines(layout.depth_encoding), **encoding_defines(layout.encoding), **curve_defines(layout)}
+    files = {"ENCODING": layout.encoding.glsl, "DEPTH_ENCODING": layout.depth_encoding.glsl}
+    return defines, files | {"CURVES": curve_files(layout)}
 
 
 def _shorten(program: Program, prefix: str) -> None:
-    """Call functions of curves by short names: PREFIX_to_square_root."""
+    """Call functions of curves and of depth by short names: PREFIX_to_square_root, PREFIX_encode_depth."""
     names = {}
     for function in program.functions:
-        found = re.fullmatch(rf"{prefix}_(\w+)_({'|'.join(SHORT)})", function.name)
+        found = re.fullmatch(rf"{prefix}_(\w+?)_({'|'.join((*SHORT, *OF_DEPTH))})", function.name)
         if found:
-            names[function.name] = f"{prefix}_{SHORT[found[2]]}_{found[1]}"
+            is_depth = found[2] in OF_DEPTH
+            names[function.name] = f"{prefix}_{found[2]}" if is_depth else f"{prefix}_{SHORT[found[2]]}_{found[1]}"
     for function in program.functions:
         for call in (node for node in inside(function.body) if isinstance(node, Call) and node.is_own):
             call.name = names.get(call.name, call.name)

@@ -8,6 +8,7 @@ from importlib.metadata import version
 from .....encodings.codecs.light_encoding import LightEncoding
 from .....gbuffer.layouts.words import OTHER, Word
 from ..emit import LANGUAGES
+from ..tables import table_lines
 from .bits import parts_of
 from .emit import GBufferCode
 from .surface import Contents
@@ -16,6 +17,11 @@ AXES = "xyzw"
 TITLES = ("target", "format", "bits", "lies in", "field", "code")
 # What keeps a line as it is: see `files.commented`.
 KEPT = "  "
+# What functions take besides.
+SAID = {
+    "view": "view is the place in view space, with the viewer at the origin.",
+    "far": "depth is -z in view space, up to the far plane.",
+}
 
 
 def head(code: GBufferCode, command: str, verified: str) -> list[str]:
@@ -33,6 +39,8 @@ def head(code: GBufferCode, command: str, verified: str) -> list[str]:
         *table(code.texts.contents),
         "",
         "Bits count from 0, the lowest. What has a channel of its own is converted by the format.",
+        *(SAID[name] for name in code.settings if name in SAID),
+        *table_lines(code.tables),
         f"Verified: {verified}.",
         f"Made by normalbench {version('normalbench')}: {command}",
         "MIT License, Copyright (c) 2026 The normalbench authors.",
@@ -89,9 +97,16 @@ def _is_fourth(name: str, word: Word) -> bool:
 
 
 def _code(contents: Contents, word: Word) -> str:
-    storage = contents.layout.targets[word.target].storage
     if word.component.startswith("normal."):
         return contents.layout.encoding.name
+    sign = f", under the sign of {word.sign}" if word.sign else ""
+    if word.component == "depth":
+        return contents.layout.depth_encoding.name + sign
+    return _kept_text(contents, word) + sign
+
+
+def _kept_text(contents: Contents, word: Word) -> str:
+    storage = contents.layout.targets[word.target].storage
     if word.kept:
         is_light = isinstance(word.kept.encoding, LightEncoding)
         return word.kept.encoding.name + ("" if is_light or word.kept.range == 1.0 else f", up to {word.kept.range:g}")

@@ -74,7 +74,7 @@ def _held(texts: Texts) -> list[Leaf]:
 
 
 def _holds(contents: Contents, at: int, channel: int) -> bool:
-    sizes = contents.layout.targets[at].storage.bits
+    storage = contents.layout.targets[at].storage
     words = [word for word in contents.words if word.target == at]
     has_own = any(not word.bits and word.first == channel for word in words)
-    return channel < len(sizes) and (has_own or any(parts_of(words, channel, sizes[channel])))
+    return channel < storage.channels and (has_own or any(parts_of(words, channel, storage)))

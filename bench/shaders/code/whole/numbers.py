@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from .....gbuffer.codecs.codec_passes import levels_of, storage_kind
+from .....gbuffer.gl.shader import glsl_value
 from .....gbuffer.layouts.layout import Layout
-from .....gbuffer.layouts.words import OTHER, PACKINGS, SIGNED, Word
+from .....gbuffer.layouts.words import OTHER, PACKINGS, SIGNED, Word, least_carried
 from .surface import WHOLE_NUMBERS
 
 # Floats of 32 bits have all whole numbers up to this many bits and a half.
@@ -44,6 +45,36 @@ class Number:
         return self.word.component in (*WHOLE_NUMBERS, OTHER)
 
     @property
+    def is_depth(self) -> bool:
+        return self.word.component == "depth"
+
+    @property
+    def is_open(self) -> bool:
+        """Whether numbers beyond 1 keep their value in it."""
+        return not self.word.bits and storage_kind(self._storage) >= HALF
+
+    @property
+    def _is_signed_depth(self) -> str:
+        return "true" if self.layout.depth_encoding.signed else "false"
+
+    @property
+    def is_carrier(self) -> bool:
+        """Whether it carries a number of the normal's code as its sign, other than by a signed depth."""
+        return bool(self.word.sign) and not self.is_depth
+
+    @property
+    def _carries_in_half(self) -> bool:
+        """Whether a number under a sign lies in the format as half of 1 more."""
+        return bool(self.word.bits) or storage_kind(self._storage) in (UNORM, SMALL)
+
+    def carried_text(self, x: str, sign: str) -> str:
+        """A share of [0, 1] under a sign, as texels hold it: kept off 0, so that rounding leaves the sign."""
+        bits = self.word.bits or self._storage.bits[self.word.first]
+        least = glsl_value(least_carried(self._storage, bits))
+        number = f"sign_not_zero({sign}) * clamp({x}, {least}, 1.0)"
+        return f"{number} * 0.5 + 0.5" if self._carries_in_half else number
+
+    @property
     def _is_packed_as_said(self) -> bool:
         """Whether the layout's packing is for it."""
         return self._is_normal and levels_of(self.layout.encoding)["xyz".index(self.word.component[-1])] == 0
@@ -70,6 +101,10 @@ class Number:
         scale = self._scale
         if self.is_whole:
             return f"{x} & {scale}u"
+        if self.is_depth:
+            return f"fixed_code({x}, {scale}.0, {self._is_signed_depth})"
+        if self.is_carrier:
+            return f"uint(floor({x} * {scale}.0 + 0.5))"
         if self._is_around_zero:
             one = f"{scale // 2}.0"
             held = f"{x} * 0.5 + 0.5" if self._is_unit else x
@@ -83,6 +118,10 @@ class Number:
         """The number of an unsigned integer, a name."""
         if self.is_whole:
             return integer
+        if self.is_depth:
+            return f"from_fixed_code({integer}, {self._scale}.0, {self._is_signed_depth})"
+        if self.is_carrier:
+            return f"float({integer}) / {self._scale}.0 * 2.0 - 1.0"
         if self._is_around_zero:
             one = f"{self._scale // 2}.0"
             value = f"(float({integer}) - {one}) * (1.0 / {one})"
@@ -92,6 +131,8 @@ class Number:
     def channel_text(self, x: str, is_float: bool = False) -> str:
         """What is written to a channel of its own, which the format converts."""
         kind = storage_kind(self._storage)
+        if self.is_depth and self.layout.depth_encoding.signed and kind < HALF:
+            return f"float(fixed_code({x}, {self._scale}.0, true)) / {self._scale}.0"
         if self.is_whole and not is_float:
             return f"float({x} & {self._scale}u) / {self._scale}.0" if kind in (UNORM, SNORM) else f"float({x})"
         is_halved = self._is_unit or (self._is_signed and kind in (UNORM, SMALL))
@@ -100,6 +141,10 @@ class Number:
     def channel_value(self, x: str, is_float: bool = False) -> str:
         """The number of what a channel of its own reads."""
         kind = storage_kind(self._storage)
+        if self.is_depth and self.layout.depth_encoding.signed and kind < HALF:
+            return f"from_fixed_code(uint({x} * {self._scale}.0 + 0.5), {self._scale}.0, true)"
+        if self.is_carrier:
+            return f"{x} * 2.0 - 1.0" if self._carries_in_half else x
         if self.is_whole and not is_float:
             return f"uint({x} * {self._scale}.0 + 0.5)" if kind in (UNORM, SNORM) else f"uint({x} + 0.5)"
         is_halved = self._is_unit or (self._is_signed and kind in (UNORM, SMALL))

@@ -39,13 +39,15 @@ def main(words: list[str]) -> None:
     """Run both functions. Raises whatever they raise."""
     children.limit_this_process()
     place, prefix, surface, targets = Path(words[0]), words[1], words[2].split(","), words[3].split(",")
+    settings = [kind for kind in words[4].split(",") if kind]
     module, rows = imported(place / "code.py"), np.ascontiguousarray(np.load(place / "given.npy"))
-    width = sum(map(size_of, surface))
+    width, end = sum(map(size_of, surface)), sum(map(size_of, (*surface, *targets)))
+    behind = fields_of(np.ascontiguousarray(rows[:, end:]), settings)
     packed = getattr(module, f"{prefix}_pack")(
-        getattr(module, f"{prefix}_surface")(*fields_of(np.ascontiguousarray(rows[:, :width]), surface))
+        getattr(module, f"{prefix}_surface")(*fields_of(np.ascontiguousarray(rows[:, :width]), surface)), *behind
     )
     unpacked = getattr(module, f"{prefix}_unpack")(
-        getattr(module, f"{prefix}_targets")(*fields_of(np.ascontiguousarray(rows[:, width:]), targets))
+        getattr(module, f"{prefix}_targets")(*fields_of(np.ascontiguousarray(rows[:, width:end]), targets)), *behind
     )
     made = [rows_of(packed, targets, len(rows)), rows_of(unpacked, surface, len(rows))]
     np.save(place / "made.npy", np.concatenate(made, axis=1))

@@ -1,6 +1,10 @@
 #version 430
 // What the renderer makes of a surface's numbers and of texels: `gbuffer.glsl` without a camera. A row is a normal, the
-// NUMBERS numbers, and TARGETS texels; what is made of it is TARGETS texels, a normal, and numbers.
+// NUMBERS numbers, TARGETS texels, the place in view space, and the near and the far plane; what is made of it is TARGETS
+// texels, a normal, and numbers.
+vec2 depth_range;
+vec3 place;
+#define DEPTH_RANGE depth_range
 #include "code.glsl"
 #include "words.glsl"
 #include CURVES
@@ -21,8 +25,11 @@ void write_texels(uint from, uint to) {
     vec3 n = vec3(uintBitsToFloat(given[from]), uintBitsToFloat(given[from + 1u]), uintBitsToFloat(given[from + 2u]));
     float numbers[NUMBERS];
     for (int i = 0; i < NUMBERS; ++i) numbers[i] = uintBitsToFloat(given[from + 3u + uint(i)]);
-    vec4 code = widen(encoded(direction_or_forward(n), vec3(0.0), scales, NORMAL_BIASED != 0));
+    vec4 code = widen(encoded(direction_or_forward(n), place, scales, NORMAL_BIASED != 0));
     for (int i = 0; i < DEPTH; ++i) numbers[i] = code[i];
+#if SIGN_IN_DEPTH
+    numbers[DEPTH] *= code[SIGN_NUMBER];
+#endif
     vec3 emission = vec3(numbers[EMISSION], numbers[EMISSION + 1], numbers[EMISSION + 2]);
     TO_CURVES
 #if EMISSION_CODED
@@ -53,14 +60,21 @@ void read_texels(uint from, uint to) {
     for (int i = 0; i < 3; ++i) numbers[EMISSION + i] = light[i];
 #endif
     vec4 code = vec4(numbers[0], numbers[1], numbers[2], 0.0);
-    vec3 n = DECODE(CODE(code), vec3(0.0));
+#if SIGN_IN_DEPTH
+    code[SIGN_NUMBER] = sign_bit(numbers[DEPTH]) ? -1.0 : 1.0;
+#endif
+    numbers[DEPTH] = abs(numbers[DEPTH]);
+    vec3 n = DECODE(CODE(code), place);
     for (int i = 0; i < 3; ++i) made[to + uint(i)] = floatBitsToUint(n[i]);
     for (int i = 0; i < NUMBERS; ++i) made[to + 3u + uint(i)] = floatBitsToUint(numbers[i]);
 }
 
 void main() {
-    uint row = uint(3 + NUMBERS + 4 * TARGETS), i = gl_GlobalInvocationID.x;
+    uint made_row = uint(3 + NUMBERS + 4 * TARGETS), row = made_row + 5u, i = gl_GlobalInvocationID.x;
     if (i >= uint(given.length()) / row) return;
-    write_texels(i * row, i * row);
-    read_texels(i * row + uint(3 + NUMBERS), i * row + uint(4 * TARGETS));
+    uint from = i * row, to = i * made_row, at = from + made_row;
+    place = vec3(uintBitsToFloat(given[at]), uintBitsToFloat(given[at + 1u]), uintBitsToFloat(given[at + 2u]));
+    depth_range = vec2(uintBitsToFloat(given[at + 3u]), uintBitsToFloat(given[at + 4u]));
+    write_texels(from, to);
+    read_texels(from + uint(3 + NUMBERS), to + uint(4 * TARGETS));
 }

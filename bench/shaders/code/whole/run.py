@@ -20,37 +20,66 @@ from ..run import c, hlsl, opengl, wgsl
 from ..run.sources import compile_with, folder, run_apart
 from .emit import GBufferCode
 from .fields import surface_leaves, target_leaves
+from .surfaces import PLACES
 
 HERE = Path(__file__).parent
 GROUP = 64
 # Rows that are run at once: it bounds a run's memory, and the files that C and Python may write.
 BLOCK = 2**15
 MAIN = "run_main"
+# A number of a row and a vector of three, by language.
+ARGUMENTS = {
+    "glsl": ("uintBitsToFloat(run_given[from + {}u])", "vec3({numbers})"),
+    "hlsl": ("asfloat(run_given[from + {}u])", "float3({numbers})"),
+    "wgsl": ("bitcast<f32>(run_given[start + {}u])", "vec3f({numbers})"),
+    "c": ("given[{}]", "({prefix}_vec3){{{numbers}}}"),
+}
 
 
-def run(code: GBufferCode, rows: np.ndarray) -> np.ndarray:
+def run(code: GBufferCode, rows: np.ndarray, settings: np.ndarray) -> np.ndarray:
     """What a file's functions give.
 
     Args:
         rows: uint32 of shape (count, numbers of a surface and of the targets), floats by their bits: what `pack` is
             given, then what `unpack` is given.
+        settings: what both are given besides, as `surfaces.settings` has it.
 
     Returns:
-        uint32 of that shape: what `pack` gives, then what `unpack` gives.
+        uint32 of the shape of `rows`: what `pack` gives, then what `unpack` gives.
 
     Raises:
         MissingError: a tool is missing; what to install.
         ShaderError: it does not compile or run.
         NoDeviceError: there is no GL device.
     """
-    parts = [RUNS[code.language](code, rows[at : at + BLOCK]) for at in range(0, len(rows), BLOCK)]
+    given = np.concatenate([rows, *(settings[:, PLACES[name]] for name in code.settings)], axis=1)
+    parts = [RUNS[code.language](code, given[at : at + BLOCK]) for at in range(0, len(rows), BLOCK)]
     return np.concatenate(parts)
+
+
+def _made(code: GBufferCode) -> int:
+    """How many numbers both functions give."""
+    return len(surface_leaves(code.texts)) + len(target_leaves(code.texts))
 
 
 def _wrapped(name: str, code: GBufferCode) -> str:
     made = Environment(loader=FileSystemLoader(HERE), undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     surface, targets = surface_leaves(code.texts), target_leaves(code.texts)
-    return made.get_template(name).render(code=code.body, prefix=code.prefix, surface=surface, targets=targets)
+    count, (settings, given) = _made(code), _settings_text(code)
+    about = {"code": code.body, "prefix": code.prefix, "settings": settings, "given": given, "made": count}
+    return made.get_template(name).render(about, surface=surface, targets=targets)
+
+
+def _settings_text(code: GBufferCode) -> tuple[str, int]:
+    """The arguments behind the first one of both functions, and how many numbers a row has with them."""
+    number, vector = ARGUMENTS.get(code.language, ("", ""))
+    text, at = "", _made(code)
+    for name in code.settings:
+        size = PLACES[name].stop - PLACES[name].start
+        numbers = ", ".join(number.format(at + one) for one in range(size))
+        text += f", {vector.format(prefix=code.prefix, numbers=numbers) if size > 1 else numbers}"
+        at += size
+    return text, at
 
 
 def dispatched(compute: Any, rows: np.ndarray, width: int) -> np.ndarray:
@@ -65,14 +94,15 @@ def dispatched(compute: Any, rows: np.ndarray, width: int) -> np.ndarray:
         return np.frombuffer(made.read(), np.uint32).reshape(count, width)
 
 
-def _run_text(text: str, rows: np.ndarray) -> np.ndarray:
+def _run_text(text: str, code: GBufferCode, rows: np.ndarray) -> np.ndarray:
     with ExitStack() as stack:
         compute = device().owned(stack, opengl.compiled(text, str))
-        return dispatched(compute, rows, rows.shape[1])
+        opengl.bind_tables(compute, code.tables, stack)
+        return dispatched(compute, rows, _made(code))
 
 
 def _glsl(code: GBufferCode, rows: np.ndarray) -> np.ndarray:
-    return _run_text(_wrapped("run_glsl.j2", code), rows)
+    return _run_text(_wrapped("run_glsl.j2", code), code, rows)
 
 
 def _hlsl(code: GBufferCode, rows: np.ndarray) -> np.ndarray:
@@ -81,7 +111,7 @@ def _hlsl(code: GBufferCode, rows: np.ndarray) -> np.ndarray:
         given = place / "code.hlsl"
         given.write_text(_wrapped("run_hlsl.j2", code), encoding="utf-8")
         compile_with([spirv.COMPILER, "-D", *hlsl.OPTIONS, "-o", str(place / "code.spv"), str(given)])
-        return _run_text(hlsl.glsl_of(place / "code.spv"), rows)
+        return _run_text(hlsl.glsl_of(place / "code.spv"), code, rows)
 
 
 def _wgsl(code: GBufferCode, rows: np.ndarray) -> np.ndarray:
@@ -89,45 +119,62 @@ def _wgsl(code: GBufferCode, rows: np.ndarray) -> np.ndarray:
     import wgpu
 
     usage = wgpu.BufferUsage.STORAGE | wgpu.BufferUsage.COPY_SRC
+    tables = wgsl.TableGroup(gpu, code.tables)
+    kinds = ("read-only-storage", "storage")
+    seen = wgpu.ShaderStage.COMPUTE
+    entries = [{"binding": at, "visibility": seen, "buffer": {"type": kind}} for at, kind in enumerate(kinds)]
+    layout = gpu.create_bind_group_layout(entries=entries)
     try:
         module = gpu.create_shader_module(code=_wrapped("run_wgsl.j2", code))
-        program = gpu.create_compute_pipeline(layout="auto", compute={"module": module, "entry_point": MAIN})
+        groups = gpu.create_pipeline_layout(bind_group_layouts=[tables.layout, layout])
+        program = gpu.create_compute_pipeline(layout=groups, compute={"module": module, "entry_point": MAIN})
     except wgpu.GPUError as error:
         raise ShaderError(f"{code.name}: {' '.join(str(error).split())[:400]}") from error
     data = np.ascontiguousarray(rows)
-    buffers = [gpu.create_buffer_with_data(data=data, usage=usage), gpu.create_buffer(size=data.nbytes, usage=usage)]
+    size = len(rows) * _made(code) * data.itemsize
+    buffers = [gpu.create_buffer_with_data(data=data, usage=usage), gpu.create_buffer(size=size, usage=usage)]
     bound = [{"binding": at, "resource": {"buffer": buffer}} for at, buffer in enumerate(buffers)]
     commands = gpu.create_command_encoder()
     compute = commands.begin_compute_pass()
     compute.set_pipeline(program)
-    compute.set_bind_group(0, gpu.create_bind_group(layout=program.get_bind_group_layout(0), entries=bound))
+    compute.set_bind_group(0, tables.group)
+    compute.set_bind_group(1, gpu.create_bind_group(layout=layout, entries=bound))
     compute.dispatch_workgroups(-(-len(rows) // GROUP))
     compute.end()
     gpu.queue.submit([commands.finish()])
-    return np.frombuffer(gpu.queue.read_buffer(buffers[1]), np.uint32).reshape(rows.shape)
+    return np.frombuffer(gpu.queue.read_buffer(buffers[1]), np.uint32).reshape(len(rows), -1)
 
 
 def _c(code: GBufferCode, rows: np.ndarray) -> np.ndarray:
     with folder() as place:
-        (place / "code.h").write_text(code.body, encoding="utf-8")
+        _write_files(code, place, "code.h")
         (place / "rows.c").write_text(_wrapped("run_c.j2", code), encoding="utf-8")
         np.ascontiguousarray(rows).tofile(place / "given.bin")
-        sizes = {"RUN_GIVEN": rows.shape[1], "RUN_MADE": rows.shape[1]}
+        sizes = {"RUN_GIVEN": rows.shape[1], "RUN_MADE": _made(code)}
         options = ("-std=c99", "-D_GNU_SOURCE", "-iquote", str(place), *c.EXACT, *c.macros(c.LIMITS | sizes))
         command = [c.compiler(), *options, str(place / "rows.c"), str(c.MAIN), "-lm"]
         program = c.compiled(command, place / "code", {})
         run_apart(place / "code.h", [str(program), str(place), str(len(rows))])
-        return np.fromfile(place / "made.bin", np.uint32).reshape(rows.shape)
+        return np.fromfile(place / "made.bin", np.uint32).reshape(len(rows), -1)
 
 
 def _python(code: GBufferCode, rows: np.ndarray) -> np.ndarray:
     with folder() as place:
-        (place / "code.py").write_text(code.body, encoding="utf-8")
+        _write_files(code, place, "code.py")
         np.save(place / "given.npy", rows)
         kinds = (_kinds((field.name, field.kind) for field in code.texts.contents.fields),)
         kinds += (_kinds((target.name, target.kind) for target in code.texts.targets),)
-        run_apart(place / "code.py", children.python(f"{__package__}.python_child", str(place), code.prefix, *kinds))
+        kinds += (",".join("vec3" if name == "view" else "float" for name in code.settings),)
+        words = (str(place), code.prefix, *kinds)
+        run_apart(place / "code.py", children.python(f"{__package__}.python_child", *words))
         return np.load(place / "made.npy")
+
+
+def _write_files(code: GBufferCode, place: Path, name: str) -> None:
+    """The file under a name, and its tables."""
+    for own, data in code.files([]).items():
+        (place / own).write_bytes(data)
+    (place / name).write_text(code.body, encoding="utf-8")
 
 
 def _kinds(named: Any) -> str:

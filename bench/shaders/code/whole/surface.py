@@ -42,7 +42,7 @@ class Contents:
     """What a layout holds.
 
     Raises:
-        UsageError: it holds what is not written: a depth, a sign on a quantity, and others; one line.
+        UsageError: it holds what is not written, such as a normal that is rounded by the shader; one line.
     """
 
     layout: Layout
@@ -91,16 +91,10 @@ class Contents:
 def _unwritten(layout: Layout) -> str:
     """What of a layout is not written, in words; empty where all is."""
     encoding, components = layout.encoding, layout.components - {"power"}
-    if "depth" in components or layout.has_signed_depth:
-        return "a depth in a target; normalbench code --of depth writes its code"
-    if layout.carrier:
-        return f"a sign that {layout.carrier.component} carries"
+    if layout.has_signed_depth and "depth" not in components:
+        return f"a sign of {encoding.name} that no depth in a target carries"
     if layout.rounding != "nearest" or encoding.is_precise:
         return f"a normal that is rounded by the shader ({encoding.name}, {layout.rounding})"
-    if encoding.tables():
-        return f"the look-up table of {encoding.name}"
-    if encoding.domain == "view":
-        return f"{encoding.name}, which needs the place of each pixel"
     if {"power", "roughness"} <= {word.component for word in layout.words}:
         return "a power and a roughness in one layout"
     for name, (_, numbers) in NUMBERS.items():

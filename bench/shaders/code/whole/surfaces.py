@@ -7,12 +7,15 @@ from collections.abc import Iterator
 import numpy as np
 
 from ....ground.directions import directions
+from ..kinds.depth import FAR, NEAR
 from .surface import Contents, Field
 
 # Light up to this, and how far beyond its range a quantity goes.
 BRIGHT, BEYOND = 64.0, 1.125
 # A number in so many is an end of its range.
 ENDS = 16
+# Where what functions are given besides lies in a row.
+PLACES = {"view": slice(0, 3), "near": slice(3, 4), "far": slice(4, 5)}
 
 
 def surfaces(contents: Contents, count: int, seed: int = 0) -> np.ndarray:
@@ -22,14 +25,26 @@ def surfaces(contents: Contents, count: int, seed: int = 0) -> np.ndarray:
         uint32 of shape (count, numbers), in the order of the structure; floats by their bits.
     """
     random = np.random.default_rng(seed)
-    return np.concatenate([part for field in contents.fields for part in _numbers(contents, field, random, count)], 1)
+    view = settings(count, seed)[:, PLACES["view"]].view(np.float32)
+    return np.concatenate([part for field in contents.fields for part in _numbers(contents, field, random, view)], 1)
 
 
-def _numbers(contents: Contents, field: Field, random: np.random.Generator, count: int) -> Iterator[np.ndarray]:
+def settings(count: int, seed: int = 0) -> np.ndarray:
+    """What each surface's functions may be given besides: where it lies in view space, and the planes of the depth.
+
+    Returns:
+        uint32 of shape (count, 5), in the order of PLACES; floats by their bits.
+    """
+    view = np.random.default_rng(seed).uniform((-1.0, -1.0, -3.0), (1.0, 1.0, -0.5), (count, 3))
+    planes = np.broadcast_to([NEAR, FAR], (count, 2))
+    return np.concatenate([view, planes], axis=1).astype(np.float32).view(np.uint32)
+
+
+def _numbers(contents: Contents, field: Field, random: np.random.Generator, view: np.ndarray) -> Iterator[np.ndarray]:
     if field.name == "normal":
-        yield _normals(contents, random, count).astype(np.float32).view(np.uint32)
+        yield _normals(contents, random, view).astype(np.float32).view(np.uint32)
         return
-    size = len(field.components)
+    size, count = len(field.components), len(view)
     if field.kind == "uint":
         yield random.integers(0, 2 ** _bits(contents, field), (count, 1), np.uint32)
         return
@@ -37,6 +52,11 @@ def _numbers(contents: Contents, field: Field, random: np.random.Generator, coun
     share = random.uniform(0.0, 1.0, (count, size)) * BEYOND
     at_end = random.integers(0, ENDS, (count, size))
     share = np.where(at_end == 0, 0.0, np.where(at_end == 1, 1.0, share))
+    if any(word.sign for word in field.words):
+        # What carries a sign has no room beyond its range.
+        share = np.minimum(share, 1.0)
+    if field.name == "depth":
+        largest, share = 1.0, np.where(at_end == 0, 0.0, NEAR * (FAR / NEAR) ** share)
     if field.name == "motion":
         share *= random.choice([-1.0, 1.0], (count, size)) * 2.0 ** random.uniform(-12, 0, (count, 1))
     if field.name == "emission":
@@ -53,13 +73,15 @@ def _bits(contents: Contents, field: Field) -> int:
     return storage.float_form(word.first).mantissa
 
 
-def _normals(contents: Contents, random: np.random.Generator, count: int) -> np.ndarray:
+def _normals(contents: Contents, random: np.random.Generator, view: np.ndarray) -> np.ndarray:
     """Unit normals, those along axes and next to them first."""
-    made = random.normal(size=(count, 3))
+    made = random.normal(size=view.shape)
     made /= np.linalg.norm(made, axis=1, keepdims=True)
-    hard = directions()[: count // 2]
+    hard = directions()[: len(view) // 2]
     made[: len(hard)] = hard
     encoding = contents.layout.encoding
+    if encoding.domain == "view":
+        return np.where((made * view).sum(axis=1, keepdims=True) > 0, -made, made)
     if encoding.domain != "sphere":
         axis = "xyz".index(getattr(encoding, "axis", "z") or "z")
         made[:, axis] = np.abs(made[:, axis]) * (getattr(encoding, "sign", 1) or 1)

@@ -63,6 +63,10 @@ class Texts:
         names = {f"normal.{axis}": f"normal.{axis}" for axis in "xyz"}
         for field in self.contents.fields[1:]:
             yield from self._coded(field, names)
+            if field.words[0].component == "depth":
+                yield from self._depth_number(field.words[0], names)
+            elif Number(self._layout, field.words[0]).is_carrier:
+                yield self._carried(field.words[0], names)
         for at, target in enumerate(self.targets):
             yield from self._packed_target(at, target, names)
 
@@ -82,6 +86,29 @@ class Texts:
             for component, part in zip(field.components, parts, strict=True):
                 names[component] = _local(component)
                 yield f"float {_local(component)} = {encoding.name}_encode_curve({part}, {limit});"
+
+    def _depth_number(self, word: Word, names: dict[str, str]) -> Iterator[str]:
+        """Lines that make the number of a depth, which is under the sign that it carries."""
+        depth, names["depth"] = "s.depth", "depth_number"
+        if self._layout.has_signed_depth:
+            depth = "signed_depth"
+            yield f"float {depth} = {names[self._sign]} * s.depth;"
+        yield f"float depth_number = DEPTH_ENCODE(depth_or_far({depth}, far), near, {self._far(word)});"
+
+    def _far(self, word: Word) -> str:
+        """The far plane: floats may hold a depth in the scene's own units."""
+        return "1.0" if self._layout.depth_encoding.own_units and Number(self._layout, word).is_open else "far"
+
+    @property
+    def _sign(self) -> str:
+        """The number of the normal's code that is a sign: normal.z."""
+        return self._layout.carried or f"normal.{AXES[self._layout.encoding.components]}"
+
+    def _carried(self, word: Word, names: dict[str, str]) -> str:
+        name = f"signed_{_local(word.component)}"
+        made = Number(self._layout, word).carried_text(names[word.component], names[self._sign])
+        names[word.component] = name
+        return f"float {name} = {made};"
 
     def _whole_code(self, field: Field) -> str:
         assert field.kept
@@ -113,7 +140,7 @@ class Texts:
         if own:
             text = names.get(own.component) or f"s.{self._other_name(own)}"
             made = Number(self._layout, own).channel_text(text, self._is_float(own))
-            return ([], made) if len(made) <= SHORT else ([f"float {name} = {made};"], name)
+            return ([], made) if len(made) <= SHORT or made.isidentifier() else ([f"float {name} = {made};"], name)
         storage = self._layout.targets[at].storage
         size = storage.bits[channel]
         joined = packed_texts([(p, self._integer_name(p.word)) for p in parts_of(words, channel, storage)], size)
@@ -130,9 +157,27 @@ class Texts:
         names: dict[Word, str] = {}
         for at in range(len(self.targets)):
             yield from self._taken_words(at, names)
-        yield from self._normal_lines(names)
+        signs: dict[str, str] = {}
+        for word in names:
+            yield from self._signed_lines(word, names, signs)
+        yield from self._normal_lines(names, signs)
         for field in self.contents.fields[1:]:
             yield from self._field_lines(field, names)
+
+    def _signed_lines(self, word: Word, names: dict[Word, str], signs: dict[str, str]) -> Iterator[str]:
+        """Lines that make what carries a sign, and a depth; the sign's text is added to `signs`."""
+        name, number = f"signed_{_local(word.component)}", names[word]
+        if word.component == "depth":
+            decoded = f"DEPTH_DECODE({number}, near, {self._far(word)})"
+            names[word] = decoded
+            if self._layout.has_signed_depth:
+                names[word] = f"abs({name})"
+                # The sign bit, and not a comparison: a depth of zero has a sign too.
+                signs[self._sign] = f"sign_bit({name}) ? -1.0 : 1.0"
+                yield f"float {name} = {decoded};"
+        elif word.sign:
+            names[word], signs[word.sign] = f"abs({name})", f"sign_not_zero({name})"
+            yield f"float {name} = {number};"
 
     def _taken_words(self, at: int, names: dict[Word, str]) -> Iterator[str]:
         """Lines that take integers out of a target; each word's number is added to `names`."""
@@ -155,13 +200,13 @@ class Texts:
             else:
                 names[word] = number.channel_value(f"t.target_{at}.{AXES[word.first]}", self._is_float(word))
 
-    def _normal_lines(self, names: dict[Word, str]) -> Iterator[str]:
-        found = {word.component: names[word] for word in names if word.component.startswith("normal.")}
-        axes = "xyz"[: self._layout.encoding.components]
+    def _normal_lines(self, names: dict[Word, str], signs: dict[str, str]) -> Iterator[str]:
+        found = {word.component: names[word] for word in names if word.component.startswith("normal.")} | signs
+        axes = "xyz"[: self._layout.encoding.components + self._layout.encoding.sign_bits]
         for axis in axes:
             yield f"float code_{axis} = {found[f'normal.{axis}']};"
         code = ", ".join(f"code_{axis}" for axis in axes)
-        yield f"vec3 normal = DECODE(CODE({code}), vec3(0.0));"
+        yield f"vec3 normal = DECODE(CODE({code}), view);"
 
     def _field_lines(self, field: Field, names: dict[Word, str]) -> Iterator[str]:
         if not field.kept and len(field.words) == 1:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,8 +14,10 @@ from .....encodings.storages.rounding import store_texel, to_srgb
 from .....encodings.storages.storage import Storage
 from .....gbuffer.codecs.codec_passes import encoding_defines
 from .....gbuffer.codecs.depth.depth_passes import depth_defines
+from .....gbuffer.codecs.harness import uploaded
 from .....gbuffer.defines.layouts import curve_defines, curve_files, layout_defines
 from .....gbuffer.defines.materials import CONSTANTS
+from .....gbuffer.gl.device import bind, device
 from .....gbuffer.gl.shader import Source
 from .....gbuffer.layouts.layout import Layout
 from .....gbuffer.layouts.words import COMPONENTS, OTHER, Word
@@ -25,12 +28,10 @@ from .emit import GBufferCode
 from .fields import target_leaves
 from .run import BLOCK, dispatched, run
 from .surface import Contents
-from .surfaces import surfaces
+from .surfaces import settings, surfaces
 
 REFERENCE = Path(__file__).with_name("reference.comp")
 COUNT = 2**16
-# Of the depth that no layout here holds.
-DEPTH_RANGE = "vec2(0.1, 1000.0)"
 CHANNELS, NORMAL = 4, 3
 
 
@@ -79,9 +80,9 @@ def agreement(code: GBufferCode, count: int = COUNT, seed: int = 0) -> Agreement
         NoDeviceError: there is no GL device.
     """
     contents = code.texts.contents
-    given = surfaces(contents, count, seed)
-    expected = Expected(contents, given)
-    ran = run(code, np.concatenate([given, expected.read(code)], axis=1))
+    given, besides = surfaces(contents, count, seed), settings(count, seed)
+    expected = Expected(contents, given, besides)
+    ran = run(code, np.concatenate([given, expected.read(code)], axis=1), besides)
     width = len(target_leaves(code.texts))
     return _compared(expected, _stored(contents.layout, _texels(code, ran[:, :width])), ran[:, width:])
 
@@ -94,8 +95,8 @@ class Expected:
         surfaces: uint32 of shape (count, numbers), what comes back of that.
     """
 
-    def __init__(self, contents: Contents, given: np.ndarray):
-        self.contents, self._given = contents, given
+    def __init__(self, contents: Contents, given: np.ndarray, besides: np.ndarray):
+        self.contents, self._given, self._besides = contents, given, besides
         layout = contents.layout
         self._program = opengl.compiled(_reference_text(layout), str)
         rows = np.zeros((len(given), NORMAL + len(COMPONENTS) + CHANNELS * len(layout.targets)), np.uint32)
@@ -108,8 +109,11 @@ class Expected:
         self._program.release()
 
     def _made(self, rows: np.ndarray) -> np.ndarray:
-        parts = [rows[at : at + BLOCK] for at in range(0, len(rows), BLOCK)]
-        return np.concatenate([dispatched(self._program, part, rows.shape[1]) for part in parts])
+        given = np.concatenate([rows, self._besides], axis=1)
+        parts = [given[at : at + BLOCK] for at in range(0, len(rows), BLOCK)]
+        with ExitStack() as stack:
+            bind(self._program, uploaded(device(), stack, self.contents.layout.encoding.tables()))
+            return np.concatenate([dispatched(self._program, part, rows.shape[1]) for part in parts])
 
     def _columns(self) -> dict[str, int]:
         """Where each component's number lies in the rows of surfaces."""
@@ -167,7 +171,7 @@ def _reference_text(layout: Layout) -> str:
     defines: dict[str, object] = {**CONSTANTS, **depth_defines(depth), **encoding_defines(encoding)}
     defines |= {**layout_defines(layout, (0,) * len(layout.targets), True), **curve_defines(layout)}
     files: dict[str, Any] = {"ENCODING": encoding.glsl, "DEPTH_ENCODING": depth.glsl, "CURVES": curve_files(layout)}
-    return Source(REFERENCE, defines | {"DEPTH_RANGE": DEPTH_RANGE}, files).text
+    return Source(REFERENCE, defines, files).text
 
 
 def _texels(code: GBufferCode, packed: np.ndarray) -> np.ndarray:

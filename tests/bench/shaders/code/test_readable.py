@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+from pasted import LONGEST, loops_without_unrolling, names_in
 
 from normalbench.bench.shaders.code.emit import LANGUAGES
 from normalbench.bench.shaders.code.files import code_of
@@ -21,7 +22,6 @@ from normalbench.encodings.storages.storage import (
     STORAGES,
 )
 
-LONGEST = 24
 QUICK = ("hlsl", "c", "python")
 # Storages whose functions are the longest: bytes, bits across channels, floats, signed numbers, two words.
 SOME = "rg8,rgba8,rgb8_12_12,rg16f,rgba8_10_10_10_snorm"
@@ -35,20 +35,6 @@ def codecs_of(kind, name, storages):
         return found or [codec for codec in codecs_named(name, ",".join(STORAGES), "nearest") if codec.fits][:1]
     found = codecs_of_kind(kind, name, storages, ["nearest"])
     return [codec for codec in found if not (codec.misfit or getattr(codec.storage, "curved", 0))]
-
-
-def names_in(body: str, language: str) -> set[str]:
-    """The names in a text without its comments and the names of files."""
-    mark = re.escape(LANGUAGES[language].mark)
-    return set(re.findall(r"[A-Za-z_]\w*", re.sub(rf'{mark} .*|"[^"\n]*"', "", body)))
-
-
-def loops_without_unrolling(body: str) -> list[str]:
-    """The loops of HLSL that read an array of constants by their counter, and that nothing unrolls."""
-    arrays = "|".join(re.findall(r"const \w+ (\w+)\[\d+\]", body)) or "^"
-    found = re.findall(r"(.*)\n( *)for \(int (\w+) = .*\n((?:\2 .*\n)*)", body)
-    reads = ((above, text) for above, _, name, text in found if re.search(rf"\b(?:{arrays})\[[^\]]*\b{name}\b", text))
-    return [text for above, text in reads if above.strip() != "[unroll]"]
 
 
 def check(codecs, languages) -> None:

@@ -1,0 +1,82 @@
+"""`nb.pack` and `nb.unpack` give what the renderer's own GLSL and the formats make of surfaces and targets."""
+
+import numpy as np
+import pytest
+
+import normalbench as nb
+from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.shaders.code.whole.surface import Contents
+from normalbench.bench.shaders.code.whole.surfaces import settings, surfaces
+from normalbench.bench.shaders.code.whole.verify import Expected
+from normalbench.bench.subjects.codecs.layout_names import layouts_named
+from normalbench.gbuffer.layouts.presets import LAYOUTS
+
+COUNT = 2**10
+PLANES = """
+encoding = "octahedral"
+depth = "logarithmic"
+
+[[targets]]
+format = "rgba8"
+holds = "depth:24 normal.x:8"
+
+[[targets]]
+format = "r32_uint"
+holds = "normal.y:12 square_root(roughness):8 metalness:5 other:7"
+"""
+SURFACE = {"normal": [0, 0, 1], "base_colour": [1, 1, 1], "roughness": 0.5, "metalness": 1, "occlusion": 1}
+
+
+def fields_of(contents, rows) -> dict:
+    """Rows of surfaces by the names of their fields."""
+    found, at = {}, 0
+    for field in contents.fields:
+        size = len(field.components) or 3
+        part = rows[:, at : at + size] if size > 1 else rows[:, at]
+        found[field.name] = part if field.kind == "uint" else part.copy().view(np.float32)
+        at += size
+    return found
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("name", ["granite", "nrd", "planes"])
+def test_targets_hold_what_the_renderer_writes_and_come_back_as_it_reads(name, tmp_path):
+    """Floats, integers and bits across bytes; a sign in a roughness, and a depth between planes."""
+    (tmp_path / "planes.toml").write_text(PLANES)
+    layout = LAYOUTS[name] if name in LAYOUTS else layouts_named(str(tmp_path / "planes.toml"))[0]
+    contents, besides = Contents(layout), settings(COUNT)
+    expected = Expected(contents, surfaces(contents, COUNT), besides)
+    planes = {"near": 0.125, "far": 1024.0} if name == "planes" else {}
+    targets = nb.pack(layout, fields_of(contents, surfaces(contents, COUNT)), **planes)
+    for at, held in enumerate(targets):
+        assert held.shape == (COUNT, layout.targets[at].storage.channels if held.dtype == np.uint32 else 4)
+        wanted = expected.stored[:, at, : held.shape[1]]
+        np.testing.assert_array_equal(held, wanted if held.dtype == np.uint32 else wanted.view(np.float32))
+    back = nb.unpack(layout, targets, **planes)
+    for field, wanted in fields_of(contents, expected.surfaces).items():
+        np.testing.assert_allclose(back[field], wanted, rtol=1e-6, atol=1e-6)
+
+
+def test_arrays_may_have_any_shape():
+    surface = {name: np.broadcast_to(value, (2, 5, *np.shape(value))) for name, value in SURFACE.items()}
+    targets = nb.pack("granite", surface)
+    assert [held.shape for held in targets] == [(2, 5, 4)] * 3
+    assert nb.unpack("granite", targets)["normal"].shape == (2, 5, 3)
+    assert nb.pack("granite", SURFACE)[0].shape == (4,)
+
+
+@pytest.mark.parametrize(
+    "call, said",
+    [
+        (lambda: nb.pack("granite", {"normal": [0, 0, 1]}), "surface lacks base_colour, metalness"),
+        (lambda: nb.pack("granite", {**SURFACE, "depth": 1.0}), "surface has no depth; it has normal"),
+        (lambda: nb.pack("granite", SURFACE, near=0.1), "settings has no near; it has none"),
+        (lambda: nb.unpack("granite", [np.zeros(4)]), "has 3 targets, not 1"),
+        (lambda: nb.pack("granit", SURFACE), "did you mean granite?"),
+        (lambda: nb.pack("wicked_truncated", SURFACE), "rounded by the shader"),
+    ],
+)
+def test_what_is_wrong_is_one_line(call, said):
+    with pytest.raises(UsageError, match=said.replace("?", r"\?")) as found:
+        call()
+    assert "\n" not in str(found.value)
