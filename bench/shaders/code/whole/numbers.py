@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from .....encodings.storages.storage import ROUNDINGS
 from .....gbuffer.codecs.codec_passes import levels_of, storage_kind
 from .....gbuffer.gl.shader import glsl_value
 from .....gbuffer.layouts.layout import Layout
@@ -13,6 +14,14 @@ from .surface import WHOLE_NUMBERS
 # Floats of 32 bits have all whole numbers up to this many bits and a half.
 SURE_BITS = 22
 UNORM, SNORM, HALF, SMALL = range(4)
+
+
+def ways_of(layout: Layout) -> tuple[int, ...]:
+    """For each target 0 where its format rounds, else one more than how `storage.glsl` counts the way."""
+    homes = {word.target for word in layout.words if word.component.startswith("normal.")}
+    way = 0 if layout.rounding == "nearest" else ROUNDINGS.index(layout.rounding) + 1
+    plain = (target.storage.is_integer or target.storage.curved for target in layout.targets)
+    return tuple(0 if is_plain else way * (at in homes) for at, is_plain in enumerate(plain))
 
 
 @dataclass(frozen=True)
@@ -129,7 +138,21 @@ class Number:
         return self._unit_out.format(x=f"float({integer}) / {self._scale}.0")
 
     def channel_text(self, x: str, is_float: bool = False) -> str:
-        """What is written to a channel of its own, which the format converts."""
+        """What is written to a channel of its own: the format converts it, or it is rounded before."""
+        way = ways_of(self.layout)[self.word.target]
+        return self._rounded_text(self._plain_text(x, is_float), way - 1) if way else self._plain_text(x, is_float)
+
+    def _rounded_text(self, x: str, way: int) -> str:
+        """A number as the format keeps it, rounded in a way as `storage.glsl` counts them."""
+        kind, bits = storage_kind(self._storage), self._storage.bits[self.word.first]
+        if kind in (HALF, SMALL):
+            form = "5, 10, true" if kind == HALF else f"5, {bits - 5}, false"
+            return f"round_float({x}, {form}, {'true' if way else 'false'})"
+        least = "0.0" if kind == UNORM else "-1.0"
+        whole = f"round_whole(clamp({x}, {least}, 1.0), {self._scale}.0, {way}) / {self._scale}.0"
+        return whole if kind in (UNORM, SNORM) else x
+
+    def _plain_text(self, x: str, is_float: bool) -> str:
         kind = storage_kind(self._storage)
         if self.is_depth and self.layout.depth_encoding.signed and kind < HALF:
             return f"float(fixed_code({x}, {self._scale}.0, true)) / {self._scale}.0"

@@ -8,6 +8,7 @@ from functools import cached_property
 
 from .....encodings.catalogue import MOTION_ENCODINGS
 from .....encodings.codecs.light_encoding import LightEncoding
+from .....encodings.storages.storage import DITHERED
 from .....gbuffer.layouts.kept import COLOURS, MOTION, Kept
 from .....gbuffer.layouts.layout import Layout
 from .....gbuffer.layouts.words import COMPONENTS, OTHER, Word, all_placed
@@ -42,7 +43,7 @@ class Contents:
     """What a layout holds.
 
     Raises:
-        UsageError: it holds what is not written, such as a normal that is rounded by the shader; one line.
+        UsageError: it holds what is not written, such as a normal that is rounded with noise; one line.
     """
 
     layout: Layout
@@ -93,8 +94,9 @@ def _unwritten(layout: Layout) -> str:
     encoding, components = layout.encoding, layout.components - {"power"}
     if layout.has_signed_depth and "depth" not in components:
         return f"a sign of {encoding.name} that no depth in a target carries"
-    if layout.rounding != "nearest" or encoding.is_precise:
-        return f"a normal that is rounded by the shader ({encoding.name}, {layout.rounding})"
+    if encoding.is_precise or layout.rounding == DITHERED:
+        how = "precisely" if encoding.is_precise else "with noise"
+        return f"a normal that is rounded {how} ({encoding.name}, {layout.rounding})"
     if {"power", "roughness"} <= {word.component for word in layout.words}:
         return "a power and a roughness in one layout"
     for name, (_, numbers) in NUMBERS.items():

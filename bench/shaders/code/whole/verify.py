@@ -26,6 +26,7 @@ from ..verify import DECODED, MOST_SHARE
 from .bits import parts_of
 from .emit import GBufferCode
 from .fields import target_leaves
+from .numbers import ways_of
 from .run import BLOCK, dispatched, run
 from .surface import Contents
 from .surfaces import settings, surfaces
@@ -169,7 +170,7 @@ class Expected:
 def _reference_text(layout: Layout) -> str:
     encoding, depth = layout.codec.encoding, layout.depth_encoding
     defines: dict[str, object] = {**CONSTANTS, **depth_defines(depth), **encoding_defines(encoding)}
-    defines |= {**layout_defines(layout, (0,) * len(layout.targets), True), **curve_defines(layout)}
+    defines |= {**layout_defines(layout, ways_of(layout), True), **curve_defines(layout)}
     files: dict[str, Any] = {"ENCODING": encoding.glsl, "DEPTH_ENCODING": depth.glsl, "CURVES": curve_files(layout)}
     return Source(REFERENCE, defines, files).text
 

@@ -73,7 +73,6 @@ def test_arrays_may_have_any_shape():
         (lambda: nb.pack("granite", SURFACE, near=0.1), "settings has no near; it has none"),
         (lambda: nb.unpack("granite", [np.zeros(4)]), "has 3 targets, not 1"),
         (lambda: nb.pack("granit", SURFACE), "did you mean granite?"),
-        (lambda: nb.pack("wicked_truncated", SURFACE), "rounded by the shader"),
     ],
 )
 def test_what_is_wrong_is_one_line(call, said):
