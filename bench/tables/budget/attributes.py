@@ -233,8 +233,9 @@ EMISSION = Attribute(
 
 def _reflectances() -> Iterator[Code]:
     for bits in range(3, 9):
-        # The usual 0.04 lies on a code: one that it lies between is off everywhere, by half a step.
-        share = 2 ** (bits - 1) / (2**bits - 1)
+        # The usual 0.04 lies on a code: one that it lies between is off everywhere, by half a step. Engines' 0.08 is in
+        # the range.
+        share = (2 ** (bits - 1) - 1) / (2**bits - 1)
         yield _on_curve("specular", "reflectance", ITSELF, (bits,), limit=_short(DIELECTRIC / share))
 
 
@@ -252,8 +253,10 @@ SEEN: Mapping[str, Attribute] = MappingProxyType(
             Attribute(
                 "roughness",
                 (
-                    *_singles("roughness", (*range(6, 11), 16)),
-                    *_singles("roughness", range(6, 11), "square_root"),
+                    *_singles("roughness", range(6, 13)),
+                    *_singles("roughness", range(6, 13), "square_root"),
+                    # In a channel of its own: nobody splits 16 bits for it.
+                    replace(_on_curve("roughness", "roughness", ITSELF, (16,)), in_fields=False),
                 ),
                 8,
             ),

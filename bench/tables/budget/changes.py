@@ -9,7 +9,7 @@ from ....encodings.catalogue import ENCODINGS
 from ....gbuffer.layouts.layout import Layout
 from ....gbuffer.layouts.words import FREE, OTHER, Target, place_of, spelt_out
 from ...measures.metrics.totals import psnr_db
-from .solve import Solution
+from .solve import UNSEEN, Solution
 
 # How many changes are named, and the decibels that each brings at least: what rounds to less is no advice.
 MOST, LEAST_DB = 3, 0.1
@@ -96,7 +96,14 @@ def said(
         parts.append(f"{best} as {theirs[best][0]}, {psnr_db(_worst(now, classes)):.1f} dB")
     if not parts:
         return "no code of a proposal of as many bytes is better in the worst class"
-    return f"from {psnr_db(start):.1f} dB: {'; then '.join(parts)}"
+    less = [f"{name} as {theirs[name][0]}" for name in now if name in theirs and _is_less(mine[name], theirs[name][1])]
+    in_return = f". It keeps less of {', '.join(less)}" if less else ""
+    return f"predicted from {psnr_db(start):.1f} dB: {'; then '.join(parts)}{in_return}"
+
+
+def _is_less(mine: Mapping[str, float], theirs: Mapping[str, float]) -> bool:
+    """Whether a code loses more than a layout's own, and so much that it may be seen."""
+    return max(theirs.values(), default=0.0) > max(max(mine.values(), default=0.0), UNSEEN)
 
 
 def _worst(errors: Errors, classes: Sequence[str]) -> float:

@@ -27,6 +27,7 @@ from .cost import Slots, least, whole, within
 from .own import Own, own
 from .rates import FRAME, LEAST_PIXELS, PIPELINE, Exact, Stage, rates, rates_of_pair
 from .readers import Readers
+from .sentences import INVISIBLE
 from .solve import NOTHING, UNSEEN, Key, Pair, Problem, Rules, Solution, fewest_bytes, finalists
 from .table import TABLE
 from .written import layout_of
@@ -34,6 +35,8 @@ from .written import layout_of
 PROPOSAL, ENGINE, MINE, IMPROVED = "proposal", "engine", "mine", "improved"
 # Layouts that count as equal are drawn, so many of them; FLIP within so much is as good.
 FINALISTS, EQUAL_FLIP = 3, 0.005
+# Decibels that targets of whole numbers have to gain to be taken in place of others.
+INTEGER_DB = 3.0
 # Decibels from which a prediction is off, and the share of an error from which two codes are said to make it together.
 OFF_DB, LEAST_SHARE = 0.5, 0.05
 # By how many bytes more a limit is tried, to say what they would buy, and from how many decibels on that is said.
@@ -160,6 +163,18 @@ class Judged:
         return []
 
     def _kept(self, problem: Problem, count: int) -> list[Solution]:
+        """Up to so many of the best layouts: of whole numbers only where they gain much."""
+        plain = [one for one in problem.bins if not one.fields]
+        found = self._in_slots(replace(problem, bins=plain), count)
+        if len(plain) == len(problem.bins):
+            return found
+        worst = found[0].worst_of(problem.classes) if found else math.inf
+        others = self._in_slots(problem, count) if worst > UNSEEN else []
+        if not others or psnr_db(others[0].worst_of(problem.classes)) - psnr_db(worst) < INTEGER_DB:
+            return found
+        return others
+
+    def _in_slots(self, problem: Problem, count: int) -> list[Solution]:
         """Up to so many of the best layouts, whose code keeps to --most-instructions where that is asked."""
         most, best = self._question.most_instructions, partial(finalists, count=count)
         return best(problem) if most is None else within(problem, most, self._slots, best)
@@ -179,7 +194,8 @@ class Judged:
                 return None
             best = drawn[0]
             for one in drawn[1:]:
-                if (one[2]["flip_p99"] or 0.0) < (best[2]["flip_p99"] or 0.0) - EQUAL_FLIP:
+                flip = best[2]["flip_p99"] or 0.0
+                if flip > INVISIBLE and (one[2]["flip_p99"] or 0.0) < flip - EQUAL_FLIP:
                     best = one
             if not self._is_off(best[0], best[2]) or not self._measure_pairs(best[0]):
                 break
@@ -232,7 +248,7 @@ class Judged:
             yield self._empty(PROPOSAL, f"{rules.bytes} bytes") | {"limit": rules.bytes, "skipped": self._why(rules)}
             return
         found, layout, row = best
-        yield row | self._predicted(found) | self._next(rules, found) | {"limit": rules.bytes}
+        yield row | self._predicted(found, row) | self._next(rules, found) | {"limit": rules.bytes}
         self._tick(layout.name)
 
     def mine(self, layout: Layout) -> Iterator[Row]:
@@ -250,7 +266,9 @@ class Judged:
             return
         found, _, improved = best
         yield row | {"changes": self._changes(layout, found)}
-        yield improved | self._predicted(found) | {"kind": IMPROVED, "limit": layout.bytes_per_pixel}
+        unseen = dict.fromkeys(one.name.split()[0] for one in asked.attributes if not one.is_seen)
+        said = {"by_contract": ", ".join(unseen) or None}
+        yield improved | self._predicted(found, improved) | said | {"kind": IMPROVED, "limit": layout.bytes_per_pixel}
 
     def _next(self, rules: Rules, found: Solution) -> Row:
         """How many bytes more bring something, and what; empty where a few bring nothing."""
@@ -284,8 +302,9 @@ class Judged:
             f"{most} issue slots are too few: the cheapest layout of {problem.rules.bytes} bytes {slots} on {families}"
         )
 
-    def _predicted(self, found: Solution) -> Row:
-        worst = max(self.classes, key=lambda name: found.errors.get(name, 0.0))
+    def _predicted(self, found: Solution, row: Row) -> Row:
+        """What is predicted of a layout, and where the error of the class comes from that is worst in its image."""
+        worst = row["worst_class"] or max(self.classes, key=lambda name: found.errors.get(name, 0.0))
         total = found.errors[worst]
         shares = {one.code.attribute: self._errors.get(one.key, {}).get(worst, 0.0) for one in found.placed}
         for pair, beyond in self._together.items():
@@ -296,7 +315,7 @@ class Judged:
         frames = [e for name, e in found.errors.items() if name.endswith(f" {FRAME}")]
         return {
             "predicted_db": psnr_db(max(frames, default=0.0)),
-            "predicted_worst_db": psnr_db(total),
+            "predicted_worst_db": psnr_db(found.worst_of(self.classes)),
             "error_from": ", ".join(said) or None,
             "blends": ", ".join(one.code.attribute for one in found.placed if one.bin.blends) or None,
             "codes": "; ".join(f"{one.code.attribute} {one.code.name}" for one in found.placed),

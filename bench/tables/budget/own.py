@@ -12,8 +12,10 @@ from ....gbuffer.layouts.words import FREE, Target, Word, all_placed, place_of, 
 from .attributes import EMISSION, FLOAT, SEEN, SRGB, UNORM, Attribute, Code, in_halves
 from .bins import BINS, Bin
 from .changes import COMPONENTS
-from .solve import Rules
+from .solve import LARGE_BITS, READ_BYTES, Rules
 
+# What --hold calls the model of shading.
+MODEL = "id"
 # A target of signed numbers may as well be one of as many bits without a sign.
 SIGNED = "_snorm"
 
@@ -43,11 +45,22 @@ def own(layout: Layout, asked: Rules) -> Own:
         targets=len(layout.targets),
         blended=asked.blended & {one.name for one in attributes},
         together=tuple(together),
+        read=asked.read if _reads_little(layout, asked.read) else frozenset(),
         apart=frozenset(),
         formats=formats,
         webgpu=None,
     )
     return Own(attributes, [one for name, count in formats.items() for one in _bins(name, count)], rules)
+
+
+def _reads_little(layout: Layout, read: frozenset[str]) -> bool:
+    """Whether a layout itself keeps to the bytes that a pass may fetch."""
+    mine = {component for name in read for component in COMPONENTS.get(name, ())}
+    homes = {word.target for word in layout.words if word.component in mine}
+    beside = [word for word in layout.words if word.target in homes and word.component not in mine]
+    sizes = [word.bits or layout.targets[word.target].storage.bits[word.first] for word in beside]
+    is_large = any("." in word.component for word in beside) or max(sizes, default=0) >= LARGE_BITS
+    return not is_large and sum(layout.targets[at].storage.texel_bytes for at in homes) <= READ_BYTES * len(read)
 
 
 def _is_one(homes: Sequence[set[int]]) -> bool:
@@ -92,7 +105,8 @@ def _attributes(layout: Layout) -> Iterator[Attribute]:
         yield _as_it_is("motion", layout, motion)
     rest = [pair for pair in others if not pair[1].component.startswith(("motion.", EMISSION.name))]
     for at, pair in enumerate(rest):
-        yield _as_it_is(f"{pair[1].component} {at}", layout, [pair])
+        component = pair[1].component
+        yield _as_it_is(MODEL if component == "kind" else f"{component} {at}", layout, [pair])
 
 
 def _texts(layout: Layout, at: int, target: Target) -> Iterator[tuple[str, Word]]:

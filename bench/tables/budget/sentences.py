@@ -21,6 +21,7 @@ def told(row: Row) -> Iterator[str]:
         yield f"{row['skipped'].rstrip('.')}."
         return
     yield f"{_subject(row)}: {_answer(row)}"
+    yield _codes(row)
     yield _errors(row)
     yield _rules(row)
     yield _price(row)
@@ -33,9 +34,24 @@ def _subject(row: Row) -> str:
 
 
 def _answer(row: Row) -> str:
-    codes = ", ".join(_code(one) for one in row["codes"].split("; "))
-    fewer = f" It takes {row['bytes_per_pixel']} bytes." if row["bytes_per_pixel"] != row["limit"] else ""
-    return f"take {codes}.{fewer}"
+    """What to take, and what is seen of it."""
+    formats = " + ".join(target.partition(":")[0] for target in row["targets"].split("; "))
+    fewer = f" ({row['bytes_per_pixel']} bytes)" if row["bytes_per_pixel"] != row["limit"] else ""
+    return f"take {formats}{fewer}. {_seen(row['flip_p99'])}the worst surfaces have {row['worst_db']:.1f} dB."
+
+
+def _seen(flip: float | None) -> str:
+    if flip is None:
+        return "Of its errors, "
+    if flip <= INVISIBLE:
+        return "Its errors are not seen in a still picture; "
+    return f"Its errors are seen{' side by side' if flip <= ACCEPTABLE else ''}; "
+
+
+def _codes(row: Row) -> str:
+    codes = [_code(one) for one in row["codes"].split("; ") if not one.startswith("other ")]
+    rest = ", and the other bits as they are" if "; other " in row["codes"] and row["kind"] == "improved" else ""
+    return f"The codes are {', '.join(codes)}{rest}."
 
 
 def _code(text: str) -> str:
@@ -47,7 +63,7 @@ def _errors(row: Row) -> str:
     scene, _, name = row["worst_class"].rpartition(" ")
     said = [f"Worst are {name} surfaces of {scene}, {row['worst_db']:.1f} dB; the frame has {row['psnr_db']:.1f} dB."]
     if row["flip_p99"] is not None:
-        said.append(f"FLIP's 99th percentile is {row['flip_p99']:.3f}, {_verdict(row['flip_p99'])}.")
+        said.append(f"FLIP's 99th percentile is {row['flip_p99']:.3f}; up to {INVISIBLE:g} we call invisible.")
     if row["error_from"]:
         parts = [_code(one) for one in row["error_from"].split(", ")[:NAMED]]
         said.append(f"The error of the worst is of {', '.join(parts)}.")
@@ -57,17 +73,13 @@ def _errors(row: Row) -> str:
     return " ".join(said)
 
 
-def _verdict(flip: float) -> str:
-    if flip <= INVISIBLE:
-        return f"within {INVISIBLE:g}, which we call invisible in a still picture"
-    return f"within {ACCEPTABLE:g}, which is seen side by side" if flip <= ACCEPTABLE else "which is seen"
-
-
 def _rules(row: Row) -> str:
     blended = [_code(name) for name in (row["blends"] or "").split(", ") if name]
-    said = [f"Decals blend into {', '.join(blended)}." if blended else "Decals are applied before packing."]
+    said = [f"Decals blend into {', '.join(blended)}." if blended else "No decals are blended by hardware."]
+    if "_uint: " in row["targets"]:
+        said.append("Whole numbers gain 3 dB or more here, and are not blended, filtered or resolved.")
     said.append(
-        f"A frame moves {row['mb_1080p']:.0f} MB at 1080p and {row['mb_4k']:.0f} MB at 4K, without compression, "
+        f"The G-buffer moves {row['mb_1080p']:.0f} MB at 1080p and {row['mb_4k']:.0f} MB at 4K, without compression, "
         f"written {times(row['overdraw'])}, read {row['readers']}."
     )
     if row["in_tile"] is not None:

@@ -32,6 +32,8 @@ EQUAL_DB, MOST_SECONDS = 0.2, 20.0
 TIMED_OUT = 1
 # More bytes than any layout has.
 ANY_BYTES = 256
+# Bytes that a pass fetches for each attribute that it reads, and bits from which another one beside it is large.
+READ_BYTES, LARGE_BITS = 4, 16
 # Errors that are not seen in any class: 60 dB, half of a step of 8 bits.
 UNSEEN = 1e-6
 # Codes that are off by so little are exact: below what 8 bits of a display can show in any pixel, 120 dB.
@@ -47,7 +49,9 @@ class Rules:
         bytes: a pixel, of all targets.
         targets: at most so many.
         blended: attributes that decals blend into.
-        together: sets of attributes that lie in one target each, so that a pass reads one.
+        together: sets of attributes that lie in one target each.
+        read: what a pass reads by itself: of no more than READ_BYTES for each, from targets that hold nothing large
+            besides.
         apart: attributes whose target holds nothing else.
         formats: at most so many targets of each; empty where all may be of one.
         webgpu: what is left to the targets of WebGPU's bytes a sample; None where these do not count.
@@ -60,6 +64,7 @@ class Rules:
     webgpu: int | None = None
     apart: frozenset[str] = frozenset()
     formats: Mapping[str, int] = field(default_factory=dict)
+    read: frozenset[str] = frozenset()
 
 
 # A code by its attribute and its name, and two of them.
@@ -122,8 +127,8 @@ class Problem:
 
 
 class _Program:
-    """The integer program of a problem: variables are placements, then targets, then shared bytes, then pairs, then
-    t."""
+    """The integer program of a problem: variables are placements, then targets, then shared bytes, then targets that a
+    pass reads, then pairs, then t."""
 
     def __init__(self, problem: Problem):
         self.problem = problem
@@ -137,10 +142,11 @@ class _Program:
         ]
         keys = {code.key for code, *_ in self.choices}
         self.pairs = [pair for pair in problem.together if pair <= keys]
-        self.count = len(self.choices) + 2 * len(self.slots) + len(self.pairs) + 1
+        self.count = len(self.choices) + 3 * len(self.slots) + len(self.pairs) + 1
         self._rows: list[tuple[dict[int, float], float, float]] = []
         self._hold()
         self._fit()
+        self._fetch()
         self._pair()
 
     def used(self, slot: int) -> int:
@@ -149,8 +155,11 @@ class _Program:
     def shared(self, slot: int) -> int:
         return len(self.choices) + len(self.slots) + slot
 
+    def fetched(self, slot: int) -> int:
+        return len(self.choices) + 2 * len(self.slots) + slot
+
     def both(self, pair: int) -> int:
-        return len(self.choices) + 2 * len(self.slots) + pair
+        return len(self.choices) + 3 * len(self.slots) + pair
 
     def row(self, terms: Mapping[int, float], low: float, high: float) -> None:
         self._rows.append((dict(terms), low, high))
@@ -212,6 +221,28 @@ class _Program:
         """Of each choice; 0 where nobody asks."""
         cost = self.problem.cost
         return [cost(code, self.slots[at][0]) if cost else 0.0 for code, at, _ in self.choices]
+
+    def _fetch(self) -> None:
+        """What a pass reads by itself is in few bytes."""
+        read = self.problem.rules.read
+        if not read:
+            return
+        large = [
+            one.name
+            for one in self.problem.attributes
+            if one.name not in read and min(code.total_bits for code in one.codes) >= LARGE_BITS
+        ]
+        for slot in range(len(self.slots)):
+            here: dict[str, dict[int, float]] = {}
+            for i, (code, at, _) in enumerate(self.choices):
+                if at == slot:
+                    here.setdefault(code.attribute, {})[i] = 1.0
+            for name in here.keys() & read:
+                self.row({**here[name], self.fetched(slot): -1.0}, -np.inf, 0)
+            for name in here.keys() & {*large}:
+                self.row({**here[name], self.fetched(slot): 1.0}, -np.inf, 1)
+        sizes = {self.fetched(slot): float(one.bytes) for slot, (one, _) in enumerate(self.slots)}
+        self.row(sizes, 0, READ_BYTES * len(read))
 
     def _pair(self) -> None:
         """w = 1 where both codes of a pair are taken, and 0 where one of them is not."""

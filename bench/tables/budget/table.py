@@ -65,11 +65,12 @@ class BudgetOptions:
         None
     )
     read_alone: Annotated[
-        str | None,
+        str,
         Option(
-            "--read-alone", "What a pass reads from one target, or none. Default: normal,roughness without --blend."
+            "--read-alone",
+            "What a pass reads by itself: at most 4 bytes for each, with nothing of 16 bits beside it; or none.",
         ),
-    ] = None
+    ] = "normal,roughness"
     classes: Annotated[
         str, Option("--classes", "Classes of surfaces that judge: mirror, glossy, rough, emissive; or all.")
     ] = "all"
@@ -81,7 +82,7 @@ class BudgetOptions:
             "The passes that read the G-buffer, comma-separated: a number of passes that read all of it, and for each "
             "other pass its attributes, such as 1,normal+roughness.",
         ),
-    ] = "1"
+    ] = "1,normal+roughness"
     family: Families = "navi21"
     most_instructions: Annotated[
         int | None, Option("--most-instructions", "The most issue slots that packing and unpacking once may execute.")

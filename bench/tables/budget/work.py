@@ -34,8 +34,6 @@ from .written import file_of
 
 # A light buffer comes on top of the targets, and devices have eight.
 MOST_BYTES, MOST_TARGETS = 64, 7
-# What reflections and denoisers read.
-READ_ALONE = "normal,roughness"
 # Bytes between which the fewest for a threshold are looked for.
 LEAST_LIMIT, MOST_LIMIT = 4, 40
 TILES = (16, 32, 64)
@@ -70,7 +68,7 @@ def question(options: BudgetOptions) -> Question:
     names = [one.name for one in held]
     check_held(readers, names)
     blended = frozenset(names_held("--blend", options.blend, names))
-    together = [_read_alone(options.read_alone, names, blended), ONE_BYTE & {*names}]
+    together = ONE_BYTE & {*names}
     size, _ = checked_target(options.size, 1, 1, device)
     webgpu, tile = _limits(options)
     light = choose_one("light buffer", options.light, LIGHT_BUFFERS)
@@ -79,11 +77,12 @@ def question(options: BudgetOptions) -> Question:
     else:
         light_bytes = LIGHT_BUFFERS[light].bytes_per_pixel
         webgpu_left = WEBGPU_BYTES - _webgpu_cost(light) if webgpu else 0
-    sets = tuple(one for one in together if len(one) > 1)
+    sets = (together,) if len(together) > 1 else ()
     is_packed = PACKED in [word.strip() for word in options.hold.split(",")]
     apart = frozenset() if is_packed else frozenset({MOTION} & {*names})
     left = webgpu_left if webgpu else None
-    rules = [Rules(limit, options.targets, blended, sets, left, apart) for limit in sorted(sizes)]
+    alone = _read_alone(options.read_alone, names)
+    rules = [Rules(limit, options.targets, blended, sets, left, apart, read=alone) for limit in sorted(sizes)]
     judging = tuple(choose("class", options.classes, {name: name for name in CLASSES}))
     families = families_counted(options.family)
     if options.most_instructions is not None:
@@ -111,20 +110,9 @@ def question(options: BudgetOptions) -> Question:
     )
 
 
-def _read_alone(said: str | None, names: Sequence[str], blended: frozenset[str]) -> frozenset[str]:
-    """What lies in one target. Raises UsageError where decals blend into only a part of what somebody names."""
-    if said is not None and said.strip() == "none":
-        return frozenset()
-    found = frozenset(names_held("--read-alone", said or READ_ALONE, names))
-    if said is None:
-        # Decals leave a normal and a roughness no target that holds both.
-        return frozenset() if found & blended else found
-    if found & blended and not found <= blended:
-        apart = ", ".join(sorted(found - blended))
-        raise UsageError(
-            f"--read-alone {said}: decals blend into a part of it and not into {apart}; name all in --blend"
-        )
-    return found
+def _read_alone(said: str, names: Sequence[str]) -> frozenset[str]:
+    """What a pass reads by itself. Raises UsageError for what is not held."""
+    return frozenset() if said.strip() == "none" else frozenset(names_held("--read-alone", said, names))
 
 
 def _webgpu_cost(light: str) -> int:
@@ -221,7 +209,8 @@ def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
 
 def _target_row(at: int, text: str) -> Row:
     name, holds = text.split(": ", 1)
-    return {"target": f"{at}: {name}, {sum(TARGET_FORMATS[name].bits) // 8} bytes", "holds": holds}
+    size = TARGET_FORMATS[name].texel_bytes
+    return {"target": f"{at}: {name}, {size} byte{'s' * (size > 1)}", "holds": holds}
 
 
 def _failures(rows: Sequence[Row]) -> Iterator[str]:

@@ -33,7 +33,7 @@ from normalbench.reports.sheets import Role
 DEFAULT = attributes_held(BudgetOptions().hold, BudgetOptions().speed)
 # As `budget` asks where nobody says otherwise.
 USUAL = Rules(
-    16, 6, together=(frozenset({"normal", "roughness"}), frozenset({"id", "flags"})), apart=frozenset({"motion"})
+    16, 6, together=(frozenset({"id", "flags"}),), apart=frozenset({"motion"}), read=frozenset({"normal", "roughness"})
 )
 
 
@@ -171,12 +171,18 @@ def test_a_number_beside_an_unused_colour_lies_in_the_fourth_channel():
     assert word.first == 3
 
 
-def test_what_is_read_alone_lies_in_one_target():
-    found = solved(problem(USUAL))
+@pytest.mark.parametrize("limit", [12, 14, 16, 20])
+def test_what_is_read_alone_lies_in_few_bytes_with_nothing_large(limit):
+    """A normal and a roughness in at most 8 bytes without a colour; ids and flags in one target."""
+    found = solved(problem(replace(USUAL, bytes=limit)))
     assert found is not None
-    for first, second in (("normal", "roughness"), ("id", "flags")):
-        (home,) = [lying for lying in by_target(found).values() if any(p.code.attribute == first for p in lying)]
-        assert second in {p.code.attribute for p in home}, f"{first} and {second} lie apart"
+    homes = [
+        lying for lying in by_target(found).values() if {"normal", "roughness"} & {p.code.attribute for p in lying}
+    ]
+    assert sum(lying[0].bin.bytes for lying in homes) <= 8
+    assert not {"basecolor", "motion"} & {p.code.attribute for lying in homes for p in lying}
+    (home,) = [lying for lying in by_target(found).values() if any(p.code.attribute == "id" for p in lying)]
+    assert "flags" in {p.code.attribute for p in home}
 
 
 def test_webgpus_bytes_a_sample_are_the_specifications():
@@ -303,7 +309,7 @@ def test_codes_share_the_channels_of_ten_bits():
 def test_codes_share_the_channels_of_wide_targets(name):
     """Everything but motion lies in them; where there is room, no number lies across two channels."""
     bins = [BINS[f"{name}_fields"], BINS["rg16f"]]
-    found = solved(problem(replace(USUAL, bytes=20, together=()), bins=bins))
+    found = solved(problem(replace(USUAL, bytes=20, together=(), read=frozenset()), bins=bins))
     assert found is not None
     layout = layout_of("mine", found)
     assert {target.format for target in layout.targets} == {name, "rg16f"}
@@ -413,7 +419,7 @@ def test_wgpu_takes_the_targets_that_cost_32_bytes_and_refuses_more():
     [
         (["--bytes", "8"], "8 bytes are too few: the attributes need 96 bits, and the smallest layout has 12 bytes"),
         (["--hold", "normal,basecolor,roughness,metalness,specular,occlusion,id:17"], "takes 2 to 16 bits"),
-        (["--blend", "normal", "--read-alone", "normal,roughness"], "decals blend into a part of it"),
+        (["--read-alone", "normal,colour"], "--read-alone colour: not held"),
         (["--formats", "rgba16", "--limit", "webgpu"], "no target is left"),
         (["--targets", "8"], "--targets"),
         (["--bytes", "0"], "--bytes"),

@@ -152,7 +152,7 @@ def _possible(limit: int):
             for name, some in needs.items():
                 for need in some:
                     taken[name].update(need)
-                taken[name]["unorm", 8] += math.ceil(taken[name].pop(SHARED, 0))
+                taken[name]["unorm", BINS[name].part] += math.ceil(taken[name].pop(SHARED, 0))
             if all(n <= rooms[name].get(channel, 0) for name, held in taken.items() for channel, n in held.items()):
                 yield [Placed(code, home, 0) for code, home in zip(codes, homes, strict=True)]
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from .....gbuffer.defines.kernels import Operation
+from .....gbuffer.defines.packings import FAR, NEAR
 from .....gbuffer.gl.shader import ShaderError
 from .....gbuffer.layouts.layout import Layout
 from ....ground.output.errors import UsageError
@@ -34,6 +35,8 @@ def unpack_operation(layout: Layout) -> Operation:
 
 
 def _texts(layout: Layout) -> Texts:
+    if layout.encoding.domain == "view":
+        raise ShaderError(f"{layout.name}: what {layout.encoding.name} costs depends on where a pixel is")
     try:
         return Texts(Contents(layout))
     except UsageError as error:
@@ -49,12 +52,15 @@ def _operation(
         # Macros are of one line.
         "FUNCTIONS": " ".join(line for line in functions_text(texts).splitlines() if not line.startswith("//")),
         "KERNEL_FUNCTION": function,
+        "KERNEL_NEAR": NEAR,
+        "KERNEL_FAR": FAR,
         "KERNEL_FROM": given[0],
         "KERNEL_TO": made[0],
         "KERNEL_LOADS": " ".join(_load(at, leaf) for at, leaf in enumerate(given[1])),
         "KERNEL_STORES": " ".join(_store(at, leaf) for at, leaf in enumerate(made[1])),
     }
-    return Operation(FILE, len(given[1]), BESIDE, len(made[1]), defines | own, files, is_portable=False)
+    tables = texts.contents.layout.encoding.tables
+    return Operation(FILE, len(given[1]), BESIDE, len(made[1]), defines | own, files, tables, is_portable=False)
 
 
 def _load(at: int, leaf: Leaf) -> str:
