@@ -344,6 +344,16 @@ def test_a_layout_is_drawn_and_is_what_was_predicted(gl, run, tmp_path):
     assert not {name for name, value in figures.items() if value is not None and not isinstance(value, (int, float))}
 
 
+@pytest.mark.usefixtures("gl")
+def test_integer_targets_are_taken_where_no_others_are_allowed(run):
+    """Also where nothing else could hold it, so that there is nothing to gain on."""
+    asked = ["--scene", "ramps", "--size", "160x120", "--bytes", "20", "--read-alone", "none", "--format", "json"]
+    status, out, err = run("budget", *asked, "--formats", "rgba32_uint,rg16f")
+    assert status == 0, err
+    (row,) = json.loads(out)
+    assert row["targets"].startswith("rgba32_uint: ") and row["psnr_db"] > 50
+
+
 # What WebGPU calls the formats that it renders to.
 WEBGPU_NAMES = {
     "r8": "r8unorm",
