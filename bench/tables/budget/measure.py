@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from itertools import combinations
 from typing import Any
@@ -22,11 +22,11 @@ from ...ground.output.errors import UsageError
 from ...measures.metrics.totals import psnr_db
 from . import changes
 from .attributes import Attribute, usual
-from .bins import Bin, webgpu_cost
+from .bins import webgpu_cost
 from .cost import Slots, least, whole, within
 from .own import Own, own
-from .rates import FRAME, LEAST_PIXELS, PIPELINE, Exact, Stage, rates, rates_of_pair
-from .readers import Readers
+from .question import Question
+from .rates import FRAME, LEAST_PIXELS, PIPELINE, Exact, rates, rates_of_pair
 from .sentences import INVISIBLE
 from .solve import NOTHING, UNSEEN, Key, Pair, Problem, Rules, Solution, fewest_bytes, finalists
 from .table import TABLE
@@ -50,48 +50,6 @@ LACKS = {"motion": "motion.x", "id": "kind", "specular": "reflectance", "occlusi
 HD, UHD = 1920 * 1080, 3840 * 2160
 Row = dict[str, Any]
 Tick = Callable[[str], None]
-
-
-@dataclass(frozen=True)
-class Question:
-    """What is asked for.
-
-    Attributes:
-        stages: the scenes that judge.
-        attributes: what is stored.
-        bins: targets that there may be.
-        rules: for each limit.
-        overdraw, readers: how often a pixel is written, and the passes that fetch it.
-        against: layouts to compare with.
-        engines: whether engines' layouts of the same kind are measured as well.
-        tile: the bytes a pixel that a tile of a GPU has at full rate; None where nobody asks.
-        light_bytes: of the light buffer that is drawn with the G-buffer; 0 where the G-buffer holds emission.
-        threshold: of FLIP's 99th percentile, for which the fewest bytes are looked for; None to take the rules.
-        search: between which numbers of bytes.
-        judging: classes of surfaces of which the worst counts.
-        families: of GPUs that issue slots are counted for.
-        most_instructions: the issue slots that packing and unpacking once may take; None where nobody asks.
-    """
-
-    stages: Sequence[Stage]
-    attributes: Sequence[Attribute]
-    bins: Sequence[Bin]
-    rules: Sequence[Rules]
-    overdraw: float
-    readers: Readers
-    against: Sequence[Layout]
-    engines: bool
-    tile: int | None
-    light_bytes: int
-    threshold: float | None
-    search: tuple[int, int]
-    judging: Sequence[str]
-    families: Sequence[str]
-    most_instructions: int | None
-
-    @property
-    def scenes(self) -> str:
-        return ",".join(stage.maker.name for stage in self.stages)
 
 
 def measure(device: Device, question: Question, tick: Tick) -> list[Row]:
