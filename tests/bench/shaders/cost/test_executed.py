@@ -63,7 +63,8 @@ def test_a_loop_takes_its_slots_as_often_as_it_runs():
 @pytest.mark.usefixtures("gl", "radv")
 def test_a_search_over_128_lengths_is_priced_as_one():
     """A static count says 50 slots; it runs its 32 slots of the loop 128 times."""
-    found = measure.counted([ENCODINGS["best_fit_searched"], ENCODINGS["octahedral"]], "navi21", "fragment")
+    encodings = [ENCODINGS["best_fit_searched"], ENCODINGS["octahedral"]]
+    found = measure.counted(measure.cases(encodings, (), measure.OPERATIONS), "navi21", "fragment")
     search, plain = found["best_fit_searched", "encode"], found["octahedral", "encode"]
     assert plain["executed_slots"] == plain["issue_slots"] == 14
     per_turn = (search["executed_slots"] - search["issue_slots"]) / 127
