@@ -23,7 +23,7 @@ class Bin:
         channels: how many it has, by what they hold and in how many bits; none where all of its bits are shared.
         fields: bits that codes share in any sizes; 0 where each number has a channel.
         copies: how many there may be.
-        blends: whether decals blend into it; its last channel is then their factor and holds nothing.
+        blends: whether decals blend into it; a fourth channel is then their factor and holds nothing.
         fuss: what an engineer would rather do without: 0 for plain channels.
         shares: whether codes share its channels of the first one's size bit by bit.
         is_usual: whether it is tried where no formats are named.
@@ -147,7 +147,8 @@ LAST = {
 
 
 def _blended(one: Bin) -> Bin:
-    channels = {channel: count - (channel == LAST[one.format]) for channel, count in one.channels.items()}
+    # The factor is the shader's fourth number, which lies nowhere where there are fewer channels.
+    channels = {channel: count - (channel == LAST.get(one.format)) for channel, count in one.channels.items()}
     kept = {channel: count for channel, count in channels.items() if count}
     return replace(one, name=f"{one.name}_blended", channels=kept, blends=True, shares=False)
 
@@ -181,5 +182,5 @@ def webgpu_cost(formats: Sequence[str]) -> int | None:
 
 
 BINS: Mapping[str, Bin] = MappingProxyType(
-    {one.name: one for one in (*_PLAIN, *_WHOLE, *_FIELDS, *(_blended(one) for one in _PLAIN if one.format in LAST))}
+    {one.name: one for one in (*_PLAIN, *_WHOLE, *_FIELDS, *map(_blended, _PLAIN))}
 )

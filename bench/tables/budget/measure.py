@@ -248,12 +248,23 @@ class Judged:
         problem = Problem(q.attributes, self._errors, self.classes, q.bins, rules)
         least_bytes = fewest_bytes(problem)
         if least_bytes is None:
-            return "no targets hold this by these rules, whatever their bytes"
+            return self._why_never(rules)
         if least_bytes <= rules.bytes and q.most_instructions is not None:
             return self._why_too_dear(problem, q.most_instructions)
         bits = sum(min(code.total_bits for code in one.codes) for one in q.attributes)
         few = f"{rules.bytes} bytes are too few"
-        return f"{few}: the attributes need {bits} bits, and the smallest layout has {least_bytes} bytes"
+        return f"{few}: the attributes need {bits} bits, and by these rules the smallest layout has {least_bytes} bytes"
+
+    def _why_never(self, rules: Rules) -> str:
+        """What no target can hold, or that all of it together is too much."""
+        q = self._question
+        for one in q.attributes:
+            is_blended = one.name in rules.blended
+            if not any(home.blends == is_blended and home.need(code) for home in q.bins for code in one.codes):
+                codes = ", ".join(code.name for code in one.codes)
+                into = " that decals blend into" if is_blended else ""
+                return f"no target{into} of these formats holds {one.name} ({codes}); --formats names others"
+        return "no targets hold this by these rules, whatever their bytes; allow more --targets or --formats"
 
     def _why_too_dear(self, problem: Problem, most: int) -> str:
         found = least(problem, self._slots, partial(finalists, count=1))

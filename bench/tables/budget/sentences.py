@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ..table import Row
+from .bins import WEBGPU_BYTES
 from .readers import times
 
 # FLIP's 99th percentile that we call invisible, and acceptable: both are conventions (see `roughness`).
@@ -82,6 +83,10 @@ def _rules(row: Row) -> str:
         f"The G-buffer moves {row['mb_1080p']:.0f} MB at 1080p and {row['mb_4k']:.0f} MB at 4K, without compression, "
         f"written {times(row['overdraw'])}, read {row['readers']}."
     )
+    if row["webgpu_bytes"] is None:
+        said.append("WebGPU does not render to all of its formats.")
+    else:
+        said.append(f"WebGPU counts {row['webgpu_bytes']} of {WEBGPU_BYTES} bytes a sample for it.")
     if row["in_tile"] is not None:
         said.append("With the light buffer it fits the tile." if row["in_tile"] else "It takes tiles of half the size.")
     if row["by_contract"]:
