@@ -147,7 +147,7 @@ def budget(
         light: Format of the light buffer, which is drawn with the G-buffer: it counts for --limit.
         threshold: The fewest bytes whose FLIP (99th percentile) is at most this, in place of --bytes.
         blend: What decals blend into, such as basecolor,roughness,normal.
-        read_alone: What a pass reads by itself: at most 4 bytes for each, with nothing of 16 bits beside it; or none.
+        read_alone: What a pass reads by itself: at most 4 bytes for each, in targets with nothing else of 16 bits; or none.
         classes: Classes of surfaces that judge: mirror, glossy, rough, emissive; or all.
         overdraw: How often a pixel is written.
         readers: The passes that read the G-buffer, comma-separated: a number of passes that read all of it, and for each other pass its attributes, such as 1,normal+roughness.

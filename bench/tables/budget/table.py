@@ -68,7 +68,7 @@ class BudgetOptions:
         str,
         Option(
             "--read-alone",
-            "What a pass reads by itself: at most 4 bytes for each, with nothing of 16 bits beside it; or none.",
+            "What a pass reads by itself: at most 4 bytes for each, in targets with nothing else of 16 bits; or none.",
         ),
     ] = "normal,roughness"
     classes: Annotated[
