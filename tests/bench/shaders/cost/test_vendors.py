@@ -73,7 +73,7 @@ FAILING = [
 def test_a_compiler_that_fails_costs_its_own_rows(request, run, monkeypatch, vendor, code, reason):
     request.getfixturevalue(vendor.name)
     vendor.runs(monkeypatch, code)
-    monkeypatch.setattr(isa_process, "SECONDS", 4.0 if "sleep" in code else isa_process.SECONDS)
+    monkeypatch.setattr(isa_process, "SECONDS", 8.0 if "sleep" in code else isa_process.SECONDS)
     isa._loaded.cache_clear()
     family, stages = vendor.quick[-1], ",".join(vendor.stages)
     status, out, err = run(*EVERY, "--stage", stages, "--family", f"navi21,{family}")
