@@ -150,6 +150,11 @@ class Storage:
         """Bytes of a texel of the render target, used or not."""
         return sum(self.target.bits) // 8
 
+    @property
+    def field_bits(self) -> int:
+        """The bits of the first channels of one size, across which whole numbers may lie; 0 where none may."""
+        return self.bits.count(self.bits[0]) * self.bits[0] if self.kind == "unorm" else 0
+
     def scale(self, channel: int) -> int:
         """The integer that stands for 1 in a channel; 1 for float formats."""
         if self.kind == "float":

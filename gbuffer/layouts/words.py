@@ -167,12 +167,12 @@ def _word_parts(place: str, text: str) -> tuple[str, str, int, Kept | None]:
 
 def _check_packed(place: str, text: str, storage: Storage, bits: int, first: int) -> None:
     is_curved = first < sum(storage.bits[: storage.curved])
-    if storage.kind != "unorm" or is_curved or bits > MAX_PACKED_BITS:
+    if not storage.field_bits or is_curved or bits > MAX_PACKED_BITS:
         into = "channels of UNORM or of integers"
         raise LayoutError(f"{place}: {text}: up to {MAX_PACKED_BITS} bits may be packed, into {into}")
-    equal = storage.bits.count(storage.bits[0]) * storage.bits[0]
-    if equal < first + bits <= sum(storage.bits):
-        raise LayoutError(f"{place}: {text}: fields lie in the first {equal} bits, whose channels are of one size")
+    if storage.field_bits < first + bits <= sum(storage.bits):
+        within = f"the first {storage.field_bits} bits, whose channels are of one size"
+        raise LayoutError(f"{place}: {text}: fields lie in {within}")
 
 
 def _ends(storage: Storage) -> list[int]:

@@ -23,6 +23,17 @@ from ....gbuffer.scenes.metal_rough import DIELECTRIC
 
 # What a channel holds.
 UNORM, SRGB, FLOAT, RGB9E5 = "unorm", "srgb", "float", "rgb9e5"
+# The words of a layout that what an image shows lies in.
+COMPONENTS: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "normal": ("normal.x", "normal.y", "normal.z"),
+        "basecolor": ("albedo.r", "albedo.g", "albedo.b"),
+        "roughness": ("roughness",),
+        "metalness": ("metalness",),
+        "specular": ("reflectance",),
+        "occlusion": ("occlusion",),
+    }
+)
 # The curve that leaves numbers as they are.
 ITSELF = "linear"
 
@@ -138,12 +149,9 @@ def in_halves(attribute: str) -> Iterator[Code]:
     if attribute == "normal":
         yield _normal("octahedral", (16, 16), "rg16f", FLOAT)
         return
-    component = {"basecolor": "albedo", "specular": "reflectance"}.get(attribute, attribute)
-    codec = CurveCodec(CURVE_ENCODINGS[ITSELF], TARGET_FORMATS["r16f"], 1.0)
-    channels = 3 if attribute == "basecolor" else 1
-    words = tuple(f"{component}.{c}" for c in "rgb"[:channels]) if channels > 1 else (component,)
-    trip = partial(_curve_trip, attribute, (codec,) * channels)
-    yield Code(attribute, "in halves", words, (16,) * channels, FLOAT, True, False, trip=trip)
+    codec, words = CurveCodec(CURVE_ENCODINGS[ITSELF], TARGET_FORMATS["r16f"], 1.0), COMPONENTS[attribute]
+    trip = partial(_curve_trip, attribute, (codec,) * len(words))
+    yield Code(attribute, "in halves", words, (16,) * len(words), FLOAT, True, False, trip=trip)
 
 
 def _curved(curve: str, limit: float | None, component: str) -> str:

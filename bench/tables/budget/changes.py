@@ -9,19 +9,11 @@ from ....encodings.catalogue import ENCODINGS
 from ....gbuffer.layouts.layout import Layout
 from ....gbuffer.layouts.words import FREE, OTHER, Target, place_of, spelt_out
 from ...measures.metrics.totals import psnr_db
+from .attributes import COMPONENTS
 from .solve import UNSEEN, Solution
 
 # How many changes are named, and the decibels that each brings at least: what rounds to less is no advice.
 MOST, LEAST_DB = 3, 0.1
-# What an attribute lies in, and the layout's words of all the others in floats.
-COMPONENTS: Mapping[str, tuple[str, ...]] = {
-    "normal": ("normal.x", "normal.y", "normal.z"),
-    "basecolor": ("albedo.r", "albedo.g", "albedo.b"),
-    "roughness": ("roughness",),
-    "metalness": ("metalness",),
-    "specular": ("reflectance",),
-    "occlusion": ("occlusion",),
-}
 NUMBERS = ("metalness", "specular", "roughness", "occlusion")
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from ....reports.charts.chart import MUTED, Axis, Chart, Kind, Mark
 from ..charts import having
 from ..table import Row
-from .measure import PROPOSAL
+from .table import PROPOSAL
 
 # Layouts that are farther below the proposals are not drawn: they would press the others together.
 NEAR_DB = 30.0

@@ -21,7 +21,7 @@ from ....gbuffer.render import check
 from ...ground.output.errors import UsageError
 from ...measures.metrics.totals import psnr_db
 from . import changes
-from .attributes import Attribute, usual
+from .attributes import COMPONENTS, Attribute, usual
 from .bins import webgpu_cost
 from .cost import Slots, least, whole, within
 from .own import Own, own
@@ -29,14 +29,11 @@ from .question import Question
 from .rates import FRAME, LEAST_PIXELS, PIPELINE, Exact, rates, rates_of_pair
 from .sentences import INVISIBLE
 from .solve import NOTHING, UNSEEN, Key, Pair, Problem, Rules, Solution, fewest_bytes, finalists
-from .table import TABLE
+from .table import ENGINE, IMPROVED, MINE, PROPOSAL, TABLE
 from .written import layout_of
 
-PROPOSAL, ENGINE, MINE, IMPROVED = "proposal", "engine", "mine", "improved"
 # Layouts that count as equal are drawn, so many of them; FLIP within so much is as good.
 FINALISTS, EQUAL_FLIP = 3, 0.005
-# How often it is solved at most: once more with pairs of codes.
-PASSES = 2
 # Decibels that targets of whole numbers have to gain to be taken in place of others.
 INTEGER_DB = 3.0
 # Decibels from which a prediction is off, and the share of an error from which two codes are said to make it together.
@@ -141,23 +138,23 @@ class Judged:
         return best(problem) if most is None else within(problem, most, self._slots, best)
 
     def _best(self, name: str, asked: Own, depth: DepthEncoding | None = None) -> tuple[Solution, Layout, Row] | None:
-        """Of the layouts that count as equal the one whose FLIP is least, drawn whole; the plainest where that is as
-        good. Where the images are not what was predicted, the pairs of codes that make it are measured, and it is
-        solved anew with them."""
+        """The best layout, drawn whole. Where its image is not what was predicted, the pairs of codes that make it are
+        measured, and it is solved anew with them."""
+        best = self._best_drawn(name, asked, depth)
+        if best and self._is_off(best[0], best[2]) and self._measure_pairs(best[0]):
+            return self._best_drawn(name, asked, depth)
+        return best
+
+    def _best_drawn(self, name: str, asked: Own, depth: DepthEncoding | None) -> tuple[Solution, Layout, Row] | None:
+        """Of the layouts that count as equal the one whose FLIP is least; the plainest where that is as good."""
         best = None
-        for _ in range(PASSES):
-            best = None
-            for found in self._finalists(asked, FINALISTS):
-                layout = _with_depth(layout_of(name, found), depth)
-                row = self.row_of(PROPOSAL, layout)
-                if best is None or (row["flip_p99"] or math.inf) < best[2]["flip_p99"] - EQUAL_FLIP:
-                    best = found, layout, row
-                # What nobody sees, or nobody can tell, is not compared.
-                if (row["flip_p99"] or 0.0) <= INVISIBLE:
-                    break
-            if best is None:
-                return None
-            if not self._is_off(best[0], best[2]) or not self._measure_pairs(best[0]):
+        for found in self._finalists(asked, FINALISTS):
+            layout = _with_depth(layout_of(name, found), depth)
+            row = self.row_of(PROPOSAL, layout)
+            if best is None or (row["flip_p99"] or math.inf) < best[2]["flip_p99"] - EQUAL_FLIP:
+                best = found, layout, row
+            # What nobody sees, or nobody can tell, is not compared.
+            if (row["flip_p99"] or 0.0) <= INVISIBLE:
                 break
         return best
 
@@ -338,7 +335,7 @@ class Judged:
     def _changes(self, layout: Layout, found: Solution) -> str:
         """What of a proposal would bring a layout most."""
         whole, mine = changes.completed(layout), {}
-        for name in changes.COMPONENTS:
+        for name in COMPONENTS:
             # A number that carries a sign of the normal does not stand alone.
             with suppress(*UNMEASURABLE):
                 mine[name] = self._errors_alone(whole, name)

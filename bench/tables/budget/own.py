@@ -9,9 +9,8 @@ from dataclasses import dataclass, replace
 from ....encodings.storages.storage import Storage
 from ....gbuffer.layouts.layout import Layout
 from ....gbuffer.layouts.words import FREE, Target, Word, all_placed, place_of, spelt_out
-from .attributes import EMISSION, FLOAT, SEEN, SRGB, UNORM, Attribute, Code, in_halves
+from .attributes import COMPONENTS, EMISSION, FLOAT, SEEN, SRGB, UNORM, Attribute, Code, in_halves
 from .bins import BINS, Bin
-from .changes import COMPONENTS
 from .solve import LARGE_BITS, READ_BYTES, Rules
 
 # What --hold calls the model of shading.
@@ -79,7 +78,7 @@ def _bins(name: str, count: int) -> Iterator[Bin]:
         return
     storage = Target(name, FREE).storage
     channels = Counter((_kind(storage, at), bits) for at, bits in enumerate(storage.bits))
-    yield Bin(name, name, sum(storage.bits) // 8, channels, copies=count)
+    yield Bin(name, name, storage.texel_bytes, channels, copies=count)
 
 
 def _kind(storage: Storage, channel: int) -> str:

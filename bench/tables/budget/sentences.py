@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from ..table import Row
 from .bins import WEBGPU_BYTES
 from .readers import times
+from .table import IMPROVED
 
 # FLIP's 99th percentile that we call invisible, and acceptable: both are conventions (see `roughness`).
 INVISIBLE, ACCEPTABLE = 0.05, 0.1
@@ -29,7 +30,7 @@ def told(row: Row) -> Iterator[str]:
 
 
 def _subject(row: Row) -> str:
-    if row["kind"] == "improved":
+    if row["kind"] == IMPROVED:
         return f"The same attributes in the same formats, {row['layout']}"
     return f"{row['limit']} bytes a pixel"
 
@@ -51,7 +52,7 @@ def _seen(flip: float | None) -> str:
 
 def _codes(row: Row) -> str:
     codes = [_code(one) for one in row["codes"].split("; ") if not one.startswith("other ")]
-    rest = ", and the other bits as they are" if "; other " in row["codes"] and row["kind"] == "improved" else ""
+    rest = ", and the other bits as they are" if "; other " in row["codes"] and row["kind"] == IMPROVED else ""
     return f"The codes are {', '.join(codes)}{rest}."
 
 

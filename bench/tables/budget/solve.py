@@ -70,6 +70,8 @@ class Rules:
 # A code by its attribute and its name, and two of them.
 Key = tuple[str, str]
 Pair = frozenset[Key]
+# Variables of the program, by what each counts in a sum.
+Terms = Mapping[int, float]
 
 
 @dataclass(frozen=True)
@@ -206,7 +208,7 @@ class _Program:
                 # Of equal targets the first ones are used.
                 self.row({self.used(slot): 1.0, self.used(slot - 1): -1.0}, -np.inf, 0)
         every = range(len(self.slots))
-        self.row({self.used(slot): float(self.slots[slot][0].bytes) for slot in every}, 0, rules.bytes)
+        self.row(self.bytes(), 0, rules.bytes)
         self.row({self.used(slot): 1.0 for slot in every}, 0, rules.targets)
         for name, most in rules.formats.items():
             self.row({self.used(slot): 1.0 for slot in every if self.slots[slot][0].format == name}, 0, most)
@@ -215,12 +217,7 @@ class _Program:
             costs = {self.used(slot): float(WEBGPU[self.slots[slot][0].format][0]) for slot in every}
             self.row(costs, 0, rules.webgpu)
         if self.problem.most_cost < math.inf:
-            self.row(dict(enumerate(self._costs())), 0, self.problem.most_cost)
-
-    def _costs(self) -> list[float]:
-        """Of each choice; 0 where nobody asks."""
-        cost = self.problem.cost
-        return [cost(code, self.slots[at][0]) if cost else 0.0 for code, at, _ in self.choices]
+            self.row(self.costs(), 0, self.problem.most_cost)
 
     def _fetch(self) -> None:
         """What a pass reads by itself is in few bytes."""
@@ -258,14 +255,27 @@ class _Program:
         terms = {i: 1.0 for i, (code, *_) in enumerate(self.choices) if code.key in codes}
         self.row(terms, -np.inf, len(codes) - 1)
 
-    def solved(
-        self, unit: float, most: float | None = None, is_smallest: bool = False, is_cheapest: bool = False
-    ) -> np.ndarray | None:
-        """The variables of the least t in units; where `most` is given, of the plainest layout up to that t; or of
-        the layout of the fewest bytes, or of the least cost. None where there is none.
+    def bytes(self) -> Terms:
+        """The bytes of the targets that are used."""
+        return {self.used(slot): float(one.bytes) for slot, (one, _) in enumerate(self.slots)}
+
+    def costs(self) -> Terms:
+        """What the codes cost by themselves; 0 where nobody asks."""
+        cost = self.problem.cost
+        return {i: cost(code, self.slots[at][0]) if cost else 0.0 for i, (code, at, _) in enumerate(self.choices)}
+
+    def fusses(self) -> Terms:
+        """What an engineer would rather do without."""
+        codes = {i: fuss(code, self.slots[at][0]) for i, (code, at, _) in enumerate(self.choices)}
+        return codes | {self.used(slot): one.fuss + TARGET_FUSS for slot, (one, _) in enumerate(self.slots)}
+
+    def solved(self, unit: float, most: float | None = None, least: Terms | None = None) -> np.ndarray | None:
+        """The variables where a sum is least; None where there are none.
 
         Args:
             unit: the error that is 1.
+            most: the largest t in units; any where None.
+            least: the sum, of variables by what each counts; t where None.
 
         Raises:
             UsageError: none was found in time.
@@ -278,17 +288,8 @@ class _Program:
             }
             rows.append(({**{i: d for i, d in terms.items() if d}, last: -1.0}, -np.inf, 0.0))
         cost = np.zeros(self.count)
-        if is_smallest:
-            for slot, (one, _) in enumerate(self.slots):
-                cost[self.used(slot)] = one.bytes
-        elif is_cheapest:
-            cost[: len(self.choices)] = self._costs()
-        elif most is None:
-            cost[last] = 1.0
-        else:
-            cost[: len(self.choices)] = [fuss(code, self.slots[at][0]) for code, at, _ in self.choices]
-            for slot, (one, _) in enumerate(self.slots):
-                cost[self.used(slot)] = one.fuss + TARGET_FUSS
+        for i, value in ({last: 1.0} if least is None else least).items():
+            cost[i] = value
         upper = np.ones(self.count)
         upper[len(self.choices) + len(self.slots) : len(self.choices) + 2 * len(self.slots)] = 4
         upper[last] = np.inf if most is None else most
@@ -306,14 +307,14 @@ class _Program:
         # SciPy takes arrays for bounds; its types name numbers alone.
         lows: Any = np.array([low for _, low, _ in rows])
         highs: Any = np.array([high for *_, high in rows])
-        least: Any = np.zeros(self.count)
+        none: Any = np.zeros(self.count)
         most_of_each: Any = upper
         # HiGHS prints lines that are for its authors.
         with without_their_output():
             found = milp(
                 cost,
                 integrality=integral,
-                bounds=Bounds(least, most_of_each),
+                bounds=Bounds(none, most_of_each),
                 constraints=LinearConstraint(matrix, lows, highs),
                 options={"time_limit": MOST_SECONDS, "mip_rel_gap": 1e-3},
             )
@@ -381,7 +382,7 @@ def finalists(problem: Problem, count: int) -> list[Solution]:
     allowed = max(best.worst_of(problem.classes) * 10 ** (EQUAL_DB / 10), UNSEEN)
     found: list[Solution] = []
     while len(found) < count:
-        plain = program.solved(allowed, most=1.0)
+        plain = program.solved(allowed, most=1.0, least=program.fusses())
         if plain is None:
             break
         found.append(program.solution(plain))
@@ -392,7 +393,7 @@ def finalists(problem: Problem, count: int) -> list[Solution]:
 def fewest_bytes(problem: Problem) -> int | None:
     """The bytes of the smallest layout that keeps to the other rules; None where none does."""
     program = _Program(replace(problem, rules=replace(problem.rules, bytes=ANY_BYTES)))
-    values = program.solved(1.0, is_smallest=True)
+    values = program.solved(1.0, least=program.bytes())
     if values is None:
         return None
     return sum(one.bytes for slot, (one, _) in enumerate(program.slots) if values[program.used(slot)] > 0.5)
@@ -401,5 +402,5 @@ def fewest_bytes(problem: Problem) -> int | None:
 def cheapest(problem: Problem) -> Solution | None:
     """The layout whose codes cost least together; None where none keeps to the rules."""
     program = _Program(problem)
-    values = program.solved(1.0, is_cheapest=True)
+    values = program.solved(1.0, least=program.costs())
     return None if values is None else program.solution(values)

@@ -11,6 +11,8 @@ from .. import shared_columns as shared
 from ..table import Column, Group, Role, Section, Table
 
 KEY, HOW = Role.KEY, Role.HOW
+# The kinds of rows.
+PROPOSAL, ENGINE, MINE, IMPROVED = "proposal", "engine", "mine", "improved"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,10 +10,10 @@ from ...ground.output.errors import tell
 from ...ground.output.writing import check_folder, write_text
 from ..table import Measured, Row, Sheet, Step, Tick, Work
 from .charts import charts
-from .measure import IMPROVED, MINE, PROPOSAL, in_order, measure
+from .measure import in_order, measure
 from .question import question
 from .sentences import told
-from .table import TABLE, BudgetOptions, BudgetOutputs
+from .table import IMPROVED, MINE, PROPOSAL, TABLE, BudgetOptions, BudgetOutputs
 from .written import file_of
 
 # The rows whose layouts are this table's own.

@@ -2,7 +2,6 @@
 
 import itertools
 import json
-import math
 import os
 import subprocess
 import sys
@@ -11,12 +10,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from fitting import fit
 from languages import require_runner
 
 from normalbench.bench.ground.machine.vulkan import adapters
 from normalbench.bench.tables.budget import attributes as held
 from normalbench.bench.tables.budget import changes
-from normalbench.bench.tables.budget.bins import BINS, SHARED, WEBGPU, WEBGPU_BYTES, Bin, webgpu_cost
+from normalbench.bench.tables.budget.bins import BINS, WEBGPU, WEBGPU_BYTES, webgpu_cost
 from normalbench.bench.tables.budget.contract import KNOWN, attributes_held
 from normalbench.bench.tables.budget.own import own
 from normalbench.bench.tables.budget.solve import Placed, Problem, Rules, Solution, fewest_bytes, finalists, solved
@@ -66,21 +66,6 @@ def by_target(found) -> dict:
     return lying
 
 
-def _holds(one: Bin, codes) -> bool:
-    """Whether codes fit a target together: in its bits, or in its channels and bytes that they share bit by bit."""
-    needs = [one.need(code) for code in codes]
-    if None in needs:
-        return False
-    if one.fields:
-        return sum(code.total_bits for code in codes) <= one.fields
-    taken: dict = {}
-    for need in needs:
-        for channel, count in need.items():
-            taken[channel] = taken.get(channel, 0) + count
-    taken["unorm", one.part] = taken.get(("unorm", one.part), 0) + math.ceil(taken.pop(SHARED, 0))
-    return all(count <= one.channels.get(channel, 0) for channel, count in taken.items())
-
-
 def test_the_program_finds_what_exhaustive_search_finds():
     """Of three attributes with codes of several sizes, in targets of unequal ones, for 50 random limits and errors."""
     attributes = [
@@ -92,7 +77,7 @@ def test_the_program_finds_what_exhaustive_search_finds():
     possible = []
     for codes in itertools.product(*(one.codes for one in attributes)):
         for homes in itertools.product(bins, repeat=len(codes)):
-            if all(_holds(home, [c for c, at in zip(codes, homes, strict=True) if at is home]) for home in set(homes)):
+            if fit(codes, homes):
                 possible.append((codes, sum(home.bytes for home in set(homes))))
     assert len(possible) > 100
     rng = np.random.default_rng(7)

@@ -2,20 +2,19 @@
 
 import itertools
 import json
-import math
 import re
-from collections import Counter
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from fitting import fit
 
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.shaders.code.whole.kernel import pack_operation, unpack_operation
 from normalbench.bench.shaders.isa import isa
 from normalbench.bench.tables.budget import attributes as held
 from normalbench.bench.tables.budget import cost
-from normalbench.bench.tables.budget.bins import BINS, BITS, SHARED
+from normalbench.bench.tables.budget.bins import BINS
 from normalbench.bench.tables.budget.contract import attributes_held
 from normalbench.bench.tables.budget.readers import read_readers
 from normalbench.bench.tables.budget.sentences import told
@@ -142,18 +141,7 @@ def _possible(limit: int):
     """Every way to place the codes of FEW in HOMES within some bytes."""
     for codes in itertools.product(*(one.codes for one in FEW)):
         for homes in itertools.product(HOMES, repeat=len(codes)):
-            needs: dict = {}
-            for code, home in zip(codes, homes, strict=True):
-                needs.setdefault(home.name, []).append(home.need(code))
-            if sum(home.bytes for home in set(homes)) > limit or any(None in some for some in needs.values()):
-                continue
-            rooms = {home.name: home.channels or {BITS: home.fields} for home in homes}
-            taken = {name: Counter() for name in needs}
-            for name, some in needs.items():
-                for need in some:
-                    taken[name].update(need)
-                taken[name]["unorm", BINS[name].part] += math.ceil(taken[name].pop(SHARED, 0))
-            if all(n <= rooms[name].get(channel, 0) for name, held in taken.items() for channel, n in held.items()):
+            if sum(home.bytes for home in set(homes)) <= limit and fit(codes, homes):
                 yield [Placed(code, home, 0) for code, home in zip(codes, homes, strict=True)]
 
 

@@ -108,8 +108,7 @@ def _unwritten(layout: Layout) -> str:
 
 def _unwritten_other(layout: Layout) -> str:
     for at, target in enumerate(layout.targets):
-        storage = target.storage
-        equal = storage.bits.count(storage.bits[0]) * storage.bits[0] if storage.kind == "unorm" else 0
+        equal = target.storage.field_bits
         for word in all_placed(layout.name, at, target):
             if word.component == OTHER and word.bits and word.first + word.bits > equal:
                 return f"other:{word.bits} within {target.format}, whose first {equal} bits hold fields"
