@@ -18,9 +18,11 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
+import scipy
 from scipy.optimize import Bounds, LinearConstraint, milp
 from scipy.sparse import csr_array
 
+from ...ground.output import cache
 from ...ground.output.errors import UsageError
 from ...ground.output.quiet import without_their_output
 from .attributes import UNORM, Attribute, Code
@@ -28,6 +30,8 @@ from .bins import SHARED, WEBGPU, Bin
 
 # Decibels within which layouts are equal, and how long HiGHS may look, in seconds.
 EQUAL_DB, MOST_SECONDS = 0.2, 20.0
+# Of the least cost, within which a solution is the best.
+GAP = 1e-3
 # What SciPy says of a program whose time is over.
 TIMED_OUT = 1
 # More bytes than any layout has.
@@ -304,23 +308,8 @@ class _Program:
         matrix = csr_array(
             ([v for *_, v in at], ([r for r, *_ in at], [i for _, i, _ in at])), shape=(len(rows), self.count)
         )
-        # SciPy takes arrays for bounds; its types name numbers alone.
-        lows: Any = np.array([low for _, low, _ in rows])
-        highs: Any = np.array([high for *_, high in rows])
-        none: Any = np.zeros(self.count)
-        most_of_each: Any = upper
-        # HiGHS prints lines that are for its authors.
-        with without_their_output():
-            found = milp(
-                cost,
-                integrality=integral,
-                bounds=Bounds(none, most_of_each),
-                constraints=LinearConstraint(matrix, lows, highs),
-                options={"time_limit": MOST_SECONDS, "mip_rel_gap": 1e-3},
-            )
-        if found.x is None and found.status == TIMED_OUT:
-            raise UsageError(f"no layout was found within {MOST_SECONDS:g} s; name fewer --formats or fewer --targets")
-        return found.x
+        lows, highs = np.array([low for _, low, _ in rows]), np.array([high for *_, high in rows])
+        return _least(cost, matrix, lows, highs, upper, integral)
 
     def solution(self, values: np.ndarray) -> Solution:
         chosen = [self.choices[i] for i in range(len(self.choices)) if values[i] > 0.5]
@@ -332,6 +321,42 @@ class _Program:
             if pair <= keys:
                 errors = {name: e + self.problem.together[pair].get(name, 0.0) for name, e in errors.items()}
         return Solution(placed, errors)
+
+
+def _least(
+    cost: np.ndarray, matrix: csr_array, lows: np.ndarray, highs: np.ndarray, upper: np.ndarray, integral: np.ndarray
+) -> np.ndarray | None:
+    """The variables from 0 to ``upper`` where ``cost`` is least and ``matrix`` times them lies between bounds; None
+    where there are none. What was solved once is kept.
+
+    Raises:
+        UsageError: none was found in time.
+    """
+    arrays = cost, matrix.data, matrix.indices, matrix.indptr, lows, highs, upper, integral
+    key = cache.key_of(f"milp {scipy.__version__} {GAP}", *(np.ascontiguousarray(one).tobytes() for one in arrays))
+
+    if known := cache.read(key):
+        return np.array(known["values"]) if known["values"] else None
+    # SciPy takes arrays for bounds; its types name numbers alone.
+    none: Any = np.zeros(len(cost))
+    most: Any = upper
+    low: Any = lows
+    high: Any = highs
+    # HiGHS prints lines that are for its authors.
+    with without_their_output():
+        found = milp(
+            cost,
+            integrality=integral,
+            bounds=Bounds(none, most),
+            constraints=LinearConstraint(matrix, low, high),
+            options={"time_limit": MOST_SECONDS, "mip_rel_gap": GAP},
+        )
+    # What was found in haste is not the answer of another day.
+    if found.status != TIMED_OUT:
+        cache.write(key, {"values": [] if found.x is None else found.x.tolist()})
+    elif found.x is None:
+        raise UsageError(f"no layout was found within {MOST_SECONDS:g} s; name fewer --formats or fewer --targets")
+    return found.x
 
 
 # One target more is worth half a target of shared bits; a number of bits that is no byte's a tenth, and one that is
