@@ -32,7 +32,7 @@ from ..shaders.languages.source_options import in_names
 from ..subjects.codecs.kinds.codecs import NAMED, codecs_of_kind, kinds_named
 from ..subjects.codecs.names import codecs_named, fitting
 from .code_figures import DIFFERS, NOT_RUN, VERIFIED, figures, head, rounding_of
-from .gbuffer_command import LAYOUT, gbuffer_command, is_of_layouts
+from .gbuffer_command import LAYOUT, check_no_layout, gbuffer_command, is_of_layouts
 
 Row = dict[str, Any]
 SHIPPED = "rgba8,rg8,rgb10a2,rgb8_12_12,rg16,rg16f"
@@ -55,6 +55,7 @@ def code_command(options: CodeOptions, format: str, output: Path | None) -> int:
     languages = choose("language", options.to, {name: name for name in LANGUAGES})
     if is_of_layouts(options):
         return gbuffer_command(options, languages, format, output)
+    check_no_layout(options)
     codecs = _codecs(options)
     if options.prefix and len(codecs) > 1 and not options.check:
         raise UsageError(f"--prefix {options.prefix}: names of {len(codecs)} codecs would collide; name one codec")

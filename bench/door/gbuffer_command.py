@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from ...encodings.catalogue import ENCODINGS
 from ...gbuffer.gl.device import NoDeviceError
 from ...gbuffer.gl.shader import ShaderError
 from ...gbuffer.layouts.layout import Layout
+from ...gbuffer.layouts.presets import LAYOUTS
 from ..ground.options.code import CodeOptions
 from ..ground.output.errors import MissingError, UsageError, tell
 from ..ground.output.progress import progress
@@ -19,6 +22,7 @@ from ..shaders.code.whole.emit import GBufferCode, gbuffer_code
 from ..shaders.code.whole.head import head
 from ..shaders.code.whole.run import NOT_RUN as NEVER_RUN
 from ..shaders.code.whole.verify import agreement
+from ..shaders.translator.writer import identifier
 from ..subjects.codecs.layout_names import layouts_named
 from .code_figures import DIFFERS, NOT_RUN, VERIFIED
 
@@ -34,6 +38,13 @@ def is_of_layouts(options: CodeOptions) -> bool:
     return options.of == LAYOUT or (not options.of and all(word.endswith(ENDING) for word in words))
 
 
+def check_no_layout(options: CodeOptions) -> None:
+    """Raises UsageError where the name of a layout stands among those of encodings."""
+    for word in map(str.strip, options.codec.split(",")):
+        if not options.of and word in LAYOUTS and word not in ENCODINGS:
+            raise UsageError(f"{word} is a layout: normalbench code {word} --of {LAYOUT}")
+
+
 def gbuffer_command(options: CodeOptions, languages: Sequence[str], format: str, output: Path | None) -> int:
     """Write the files, or with `check` the table of what was verified how. Exit status: 1 where code differs.
 
@@ -43,7 +54,11 @@ def gbuffer_command(options: CodeOptions, languages: Sequence[str], format: str,
     if options.storage:
         raise UsageError("--storage: a layout says its formats itself")
     layouts = layouts_named(options.codec)
-    made = [gbuffer_code(layout, language, options.prefix) for layout in layouts for language in languages]
+    if options.prefix and len(layouts) > 1 and not options.check:
+        raise UsageError(f"--prefix {options.prefix}: names of {len(layouts)} layouts would collide; name one layout")
+    # Layouts that lie in one folder may be used together.
+    prefixes = {one.name: options.prefix or (identifier(one.name) if len(layouts) > 1 else "") for one in layouts}
+    made = [gbuffer_code(layout, language, prefixes[layout.name]) for layout in layouts for language in languages]
     if options.check:
         return _check(made, format, output)
     check_is_folder(output, "code writes into")
@@ -51,7 +66,9 @@ def gbuffer_command(options: CodeOptions, languages: Sequence[str], format: str,
         check_folder(output)
     elif len(made) > 1:
         raise UsageError("several files are written into a folder: name one with -o")
-    return max(_write_layout(layout, made, options, output) for layout in layouts)
+    return max(
+        _write_layout(layout, made, replace(options, prefix=prefixes[layout.name]), output) for layout in layouts
+    )
 
 
 def _write_layout(layout: Layout, made: Sequence[GBufferCode], options: CodeOptions, output: Path | None) -> int:

@@ -27,7 +27,8 @@ COMPONENTS = (
     *("emission.r", "emission.g", "emission.b", "emission.a", "kind", "instance", "motion.x", "motion.y"),
 )
 FREE = "-"
-# What engines keep and this renderer does not use: it takes its bits. There may be several.
+# What engines keep and this renderer does not use: it takes its bits. There may be several, and each may have a name
+# of its own: `other.flags:4`.
 OTHER = "other"
 # What may carry a sign: quantities that are not negative.
 CARRIERS = ("depth", "power", "roughness")
@@ -41,7 +42,7 @@ LEAST_BITS = {"kind": 2, "instance": 8, "motion.x": 2, "motion.y": 2}
 # How far from 0 a carried sign keeps its number, in steps: NRD.hlsli has 1.5 / 512 of 10 bits.
 SIGN_STEPS = 1.5
 WORD = re.compile(
-    r"(?:(?P<curve>\w+)(?::(?P<range>[^()\s]*))?\((?P<curved>[a-z.]+)\)|(?P<name>[a-z.]+|-))"
+    r"(?:(?P<curve>\w+)(?::(?P<range>[^()\s]*))?\((?P<curved>[a-z.]+)\)|(?P<name>other\.[a-z][a-z0-9_]*|[a-z.]+|-))"
     r"(?:\*(?P<sign>normal\.[xyz]))?(?::(?P<bits>\d{1,2}))?"
 )
 
@@ -53,7 +54,8 @@ class LayoutError(Exception):
 @dataclass(frozen=True)
 class Word:
     """One component in a target. `first` counts channels if `bits` is 0, and bits otherwise. `sign` is the number of
-    the normal's code that it carries as its sign, or empty; `kept` the curve or the code that it lies in, or None."""
+    the normal's code that it carries as its sign, or empty; `kept` the curve or the code that it lies in, or None;
+    `label` what an `other` is called, or empty."""
 
     component: str
     target: int
@@ -61,6 +63,7 @@ class Word:
     bits: int
     sign: str = ""
     kept: Kept | None = None
+    label: str = ""
 
 
 @dataclass(frozen=True)
@@ -97,6 +100,7 @@ def all_placed(layout: str, index: int, target: Target) -> Iterator[Word]:
     """
     place, storage, bit = place_of(layout, index, target), target.storage, 0
     for text in spelt_out(place, target):
+        label = text.removeprefix(f"{OTHER}.").partition(":")[0] if text.startswith(f"{OTHER}.") else ""
         name, sign, bits, kept = _word_parts(place, text)
         if bits and name != OTHER:
             _check_packed(place, text, storage, bits, bit)
@@ -115,7 +119,7 @@ def all_placed(layout: str, index: int, target: Target) -> Iterator[Word]:
             raise LayoutError(f"{place}: {text}: {storage.title} keeps colours by a curve of its own")
         bits = taken if storage.is_integer else bits
         if name != FREE:
-            yield Word(name, index, bit if bits else channel, bits, sign, kept)
+            yield Word(name, index, bit if bits else channel, bits, sign, kept, label)
         bit += taken
 
 
@@ -146,6 +150,7 @@ def _word_parts(place: str, text: str) -> tuple[str, str, int, Kept | None]:
     """The component of a word, the sign that it carries, its bits, and the curve that it lies on."""
     found = WORD.fullmatch(text)
     name = (found["curved"] or found["name"]) if found else ""
+    name = OTHER if name.startswith(f"{OTHER}.") else name
     if not found or name not in (*COMPONENTS, OTHER, FREE):
         if not found and set(text) & set("()"):
             raise LayoutError(f"{place}: {text}: a curve is said as squared(roughness) or linear:0.08(reflectance):6")

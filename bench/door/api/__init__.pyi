@@ -138,19 +138,19 @@ def budget(
         scene: Metal/rough scenes that judge: ramps, studio, and glTF files; comma-separated.
         environment: What they reflect: studio, sky, strips, lamp, or an .hdr or .exr file.
         hold: What is stored: normal, basecolor, roughness, metalness, specular, occlusion, tangent; motion in a target of its own, or motion:packed; id:BITS, flags:BITS, or either as id:stencil; shadow:BITS, custom:BITS, other:BITS; emission, or emission:light where the light buffer has it.
-        speed: Pixels a frame at 1920 x 1080 up to which motion must be within 1/16 pixel.
+        speed: Pixels a frame at 1920 x 1080 up to which motion must be within 1/16 pixel, 0 to 500.
         targets: The most render targets that there may be.
         formats: Formats that targets may have, comma-separated, or all.
         fields: Allow several numbers to share a channel as bit fields.
         integers: Allow integer targets.
-        limit: webgpu: its 32 bytes a sample and its formats; tile:BYTES: a GPU's bytes a pixel in tiles.
+        limit: webgpu: its 32 bytes a sample and its formats; tile:16, tile:32, tile:64: a GPU's bytes a pixel in tiles.
         light: Format of the light buffer, which is drawn with the G-buffer: it counts for --limit.
         threshold: The fewest bytes whose FLIP (99th percentile) is at most this, in place of --bytes.
         blend: What decals blend into, such as basecolor,roughness,normal.
         read_alone: What a pass reads by itself: at most 4 bytes for each, in targets with nothing else of 16 bits; or none.
         classes: Classes of surfaces that judge: mirror, glossy, rough, emissive; or all.
         overdraw: How often a pixel is written.
-        readers: The passes that read the G-buffer, comma-separated: a number of passes that read all of it, and for each other pass its attributes, such as 1,normal+roughness.
+        readers: The passes that read the G-buffer, comma-separated: a number of passes that read all of it, or all for one of them, and for each other pass its attributes, such as 1,normal+roughness.
         family: GPU families that issue slots are counted for, comma-separated; the dearest counts.
         most_instructions: The most issue slots that packing and unpacking once may execute.
         size: WIDTHxHEIGHT of the image.

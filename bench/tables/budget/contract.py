@@ -12,14 +12,14 @@ from .attributes import EMISSION, MOST_PART, SEEN, Attribute, exact_bits, motion
 EXACT: Mapping[str, str] = MappingProxyType(
     {
         "id": "kind",
-        "flags": "other",
-        "shadow": "other",
-        "custom": "other",
+        "flags": "other.flags",
+        "shadow": "other.shadow",
+        "custom": "other.custom",
         "other": "other",
     }
 )
 # A frame of a tangent: an angle around the normal and a hand.
-TANGENT = exact_bits("tangent", "other", 8)
+TANGENT = exact_bits("tangent", "other.tangent", 8)
 MOTION, PACKED, IN_LIGHT, STENCIL = "motion", "motion:packed", "emission:light", "stencil"
 MOST_BITS = 64
 # What hardware can test before shading.
@@ -66,6 +66,11 @@ def _attribute(word: str, speed: float) -> Attribute | None:
     if layout_word == "kind" and not 2 <= int(size) <= MOST_PART:
         raise UsageError(f"--hold {word}: a model of shading takes 2 to {MOST_PART} bits")
     return exact_bits(name, layout_word, int(size))
+
+
+def held_in_stencil(words: str) -> list[str]:
+    """The attributes that comma-separated words put into the stencil."""
+    return [name for word in words.split(",") for name in IN_STENCIL if word.strip() == f"{name}:{STENCIL}"]
 
 
 def names_held(option: str, words: str | None, held: Sequence[str]) -> list[str]:

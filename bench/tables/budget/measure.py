@@ -298,7 +298,7 @@ class Judged:
             "bytes_per_pixel": layout.bytes_per_pixel,
             "contract_bytes": self._contract_bytes(layout),
             "webgpu_bytes": webgpu_cost([target.format for target in layout.targets]),
-            "in_tile": self._in_tile(layout),
+            **self._in_tile(layout),
             "holds": layout.reflects_by or None,
             **self._traffic(layout),
             **self._slots.columns(layout, self._question.overdraw, self._question.readers.full),
@@ -346,9 +346,9 @@ class Judged:
         found = [(judge, judge.of_layout(only).errors) for judge in self._judges]
         return {_class_of(judge, n): e for judge, errors in found for n, e in errors.items()}
 
-    def _in_tile(self, layout: Layout) -> bool | None:
-        q = self._question
-        return None if q.tile is None else layout.bytes_per_pixel + q.light_bytes <= q.tile
+    def _in_tile(self, layout: Layout) -> Row:
+        q, taken = self._question, layout.bytes_per_pixel + self._question.light_bytes
+        return {"in_tile": taken <= q.tile, "tile_bytes": taken} if q.tile is not None else {}
 
     def _traffic(self, layout: Layout) -> Row:
         q = self._question

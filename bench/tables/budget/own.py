@@ -104,7 +104,7 @@ def _attributes(layout: Layout) -> Iterator[Attribute]:
         yield _as_it_is("motion", layout, motion)
     rest = [pair for pair in others if not pair[1].component.startswith(("motion.", EMISSION.name))]
     for at, pair in enumerate(rest):
-        component = pair[1].component
+        component = pair[1].label or pair[1].component
         yield _as_it_is(MODEL if component == "kind" else f"{component} {at}", layout, [pair])
 
 

@@ -19,7 +19,7 @@ from ...subjects.codecs.layout_names import layouts_named
 from ...subjects.environments.scenes_under import scenes_under
 from .attributes import EMISSION, UP_TO_PIXELS, Attribute
 from .bins import BINS, WEBGPU, WEBGPU_BYTES, Bin
-from .contract import MOTION, PACKED, attributes_held, names_held
+from .contract import MOTION, PACKED, attributes_held, held_in_stencil, names_held
 from .cost import check_compilers, families_counted
 from .rates import CLASSES, Stage
 from .readers import MOST, Readers, check_held, read_readers
@@ -88,7 +88,7 @@ def question(options: BudgetOptions) -> Question:
     in_range("--speed", options.speed, 0.0, max(UP_TO_PIXELS.values()))
     held = attributes_held(options.hold, options.speed)
     names = [one.name for one in held]
-    check_held(readers, names)
+    check_held(readers, names, held_in_stencil(options.hold))
     blended = frozenset(names_held("--blend", options.blend, names))
     together = ONE_BYTE & {*names}
     size, _ = checked_target(options.size, 1, 1, device)

@@ -72,9 +72,11 @@ def read_readers(words: str) -> Readers:
     return Readers(full, tuple(parts))
 
 
-def check_held(readers: Readers, held: Collection[str]) -> None:
-    """Raises UsageError where a pass reads what is not held."""
+def check_held(readers: Readers, held: Collection[str], stencil: Collection[str]) -> None:
+    """Raises UsageError where a pass reads what is not held, or lies in the stencil."""
     for name in (name for part in readers.parts for name in part):
+        if name in stencil:
+            raise UsageError(f"--readers {name}: it lies in the stencil, whose bytes are not counted")
         if name not in held:
             raise UsageError(f"--readers {name}: not held; held: {', '.join(name for name in held if name in WORDS)}")
 

@@ -77,7 +77,8 @@ def _errors(row: Row) -> str:
 
 def _rules(row: Row) -> str:
     blended = [_code(name) for name in (row["blends"] or "").split(", ") if name]
-    said = [f"Decals blend into {', '.join(blended)}." if blended else "No decals are blended by hardware."]
+    into = f"Decals blend into {', '.join(blended)}; the fourth channel of a target there is the blend factor."
+    said = [into if blended else "No decals are blended by hardware."]
     if "_uint: " in row["targets"]:
         said.append("Whole numbers gain 3 dB or more here, and are not blended, filtered or resolved.")
     said.append(
@@ -89,7 +90,8 @@ def _rules(row: Row) -> str:
     else:
         said.append(f"WebGPU counts {row['webgpu_bytes']} of {WEBGPU_BYTES} bytes a sample for it.")
     if row["in_tile"] is not None:
-        said.append("With the light buffer it fits the tile." if row["in_tile"] else "It takes tiles of half the size.")
+        fits = ", which fit the tile" if row["in_tile"] else ": it takes tiles of half the size"
+        said.append(f"With the light buffer it takes {row['tile_bytes']} bytes in a tile{fits}.")
     if row["by_contract"]:
         said.append(f"By contract, not measured: {', '.join(_code(name) for name in row['by_contract'].split(', '))}.")
     return " ".join(said)

@@ -44,7 +44,7 @@ class BudgetOptions:
     ] = "normal,basecolor,roughness,metalness,specular,occlusion,id:4,flags:4,motion,emission:light"
     speed: Annotated[
         float,
-        Option("--speed", "Pixels a frame at 1920 x 1080 up to which motion must be within 1/16 pixel."),
+        Option("--speed", "Pixels a frame at 1920 x 1080 up to which motion must be within 1/16 pixel, 0 to 500."),
     ] = 64.0
     targets: Annotated[int, Option("--targets", "The most render targets that there may be.")] = 6
     formats: Annotated[str, Option("--formats", "Formats that targets may have, comma-separated, or all.")] = "all"
@@ -54,7 +54,10 @@ class BudgetOptions:
     integers: Annotated[bool, Option("--integers/--no-integers", "Allow integer targets.")] = True
     limit: Annotated[
         str | None,
-        Option("--limit", "webgpu: its 32 bytes a sample and its formats; tile:BYTES: a GPU's bytes a pixel in tiles."),
+        Option(
+            "--limit",
+            "webgpu: its 32 bytes a sample and its formats; tile:16, tile:32, tile:64: a GPU's bytes a pixel in tiles.",
+        ),
     ] = None
     light: Annotated[
         str, Option("--light", "Format of the light buffer, which is drawn with the G-buffer: it counts for --limit.")
@@ -81,8 +84,8 @@ class BudgetOptions:
         str,
         Option(
             "--readers",
-            "The passes that read the G-buffer, comma-separated: a number of passes that read all of it, and for each "
-            "other pass its attributes, such as 1,normal+roughness.",
+            "The passes that read the G-buffer, comma-separated: a number of passes that read all of it, or all for "
+            "one of them, and for each other pass its attributes, such as 1,normal+roughness.",
         ),
     ] = "1,normal+roughness"
     family: Families = "navi21"
@@ -183,6 +186,7 @@ COLUMNS = (
         drops=10,
     ),
     Column("in_tile", "Whether targets and light buffer fit the tile of --limit tile:BYTES.", HOW, drops=2),
+    Column("tile_bytes", "Bytes a pixel of targets and light buffer in a tile, where --limit names one.", HOW, drops=2),
     Column("overdraw", "How often a pixel is written.", HOW, drops=11),
     Column("readers", "How many passes read all of it, and what others read of it.", HOW, drops=11),
     Column("size", "Width and height of the image in pixels.", HOW, drops=11),

@@ -13,10 +13,14 @@ from .....gbuffer.layouts.kept import COLOURS, MOTION, Kept
 from .....gbuffer.layouts.layout import Layout
 from .....gbuffer.layouts.words import COMPONENTS, OTHER, Word, all_placed
 from ....ground.output.errors import UsageError
+from ...translator.writer import BUILTINS
+from ..emit import LANGUAGES
 
 # The types of fields of several numbers.
 NUMBERS = {**dict.fromkeys(COLOURS, ("vec3", "rgb")), MOTION: ("vec2", "xy")}
 WHOLE_NUMBERS = ("kind", "instance")
+# What no field is called, so that it has the same name in every language.
+WORDS_OF_LANGUAGES = BUILTINS.union(*(one.writer.reserved for one in LANGUAGES.values()))
 
 
 @dataclass(frozen=True)
@@ -82,10 +86,13 @@ class Contents:
 
     def _other_fields(self) -> Iterator[Field]:
         others = [word for word in self.words if word.component == OTHER]
+        labels = [word.label for word in others]
+        taken = {one.name for one in self._material_fields()} | {"normal", OTHER}
         for number, word in enumerate(others, 1):
             storage = self.layout.targets[word.target].storage
             is_whole = word.bits or (storage.kind == "unorm" and word.first >= storage.curved)
-            name = f"other_{number}"
+            is_free = word.label and labels.count(word.label) == 1 and word.label not in taken | WORDS_OF_LANGUAGES
+            name = word.label if is_free else f"{word.label or OTHER}_{number}"
             yield Field(name, "uint" if is_whole else "float", (name,), (word,))
 
 

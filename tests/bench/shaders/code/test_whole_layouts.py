@@ -254,6 +254,17 @@ def test_a_width_in_the_file_changes_both_functions(tmp_path):
         assert "255.0" in parts[0] and "127.0" in parts[1] and parts[0] != parts[1]
 
 
+def test_what_a_layout_calls_by_a_name_is_called_so(tmp_path):
+    """Unless the name is a word of some language, another field's, or there twice: it then has a number."""
+    require_runner("c")
+    words = "other.flags:4 other.half:4 other.roughness:4 other.lit:2 other.lit:2"
+    (tmp_path / "mine.toml").write_text(WORDS.replace("occlusion other kind:4 other:12", f"occlusion {words} kind:8"))
+    (layout,) = layouts_named(str(tmp_path / "mine.toml"))
+    names = [field.name for field in Contents(layout).fields if field.components[0] == field.name]
+    assert {"flags", "half_4", "roughness_5", "lit_6", "lit_7", "other_1", "other_2"} <= {*names}, names
+    assert (found := agreement(gbuffer_code(layout, "c"), FEW)).differing == 0, found.says
+
+
 def test_words_that_cross_channels_come_back():
     """Integers across channels of 8 and of 16 bits: what is put is what is taken, and nothing else is touched."""
     words = [Word("a", 0, 0, 11), Word("b", 0, 11, 10), Word("c", 0, 21, 11)]
@@ -324,6 +335,13 @@ def test_the_command_writes_files_and_checks_them(run, tmp_path, monkeypatch):
     status, out, _ = run("code", "unreal4", "--of", "layout", "--check", "--to", "c", "--format", "json")
     (row,) = json.loads(out)
     assert status == 0 and row["verdict"] == "verified"
+    status, _, err = run("code", "unreal4")
+    assert status != 0 and "unreal4 is a layout: normalbench code unreal4 --of layout" in err
+    # Two in one folder may be used together.
+    assert run("code", "mine.toml,bevy", "--of", "layout", "--to", "c", "-o", "two")[0] == 0
+    assert "mine_pack" in Path("two/mine.h").read_text() and "bevy_pack" in Path("two/bevy.h").read_text()
+    status, _, err = run("code", "mine.toml,bevy", "--of", "layout", "--prefix", "my", "-o", "two")
+    assert status != 0 and "names of 2 layouts would collide" in err
     status, _, err = run("code", "mine.toml", "--storage", "rg8")
     assert status != 0 and "a layout says its formats itself" in err
 
