@@ -84,12 +84,12 @@ def to_csv(rows: Sequence[dict[str, Any]]) -> str:
 
 def _no_formula(value: Any) -> Any:
     """A spreadsheet shows text behind an apostrophe, and computes nothing."""
-    storable = _storable(value)
-    is_formula = isinstance(storable, str) and storable.startswith(FORMULA) and not NUMBER.fullmatch(storable)
-    return f"'{storable}" if is_formula else storable
+    text = storable(value)
+    is_formula = isinstance(text, str) and text.startswith(FORMULA) and not NUMBER.fullmatch(text)
+    return f"'{text}" if is_formula else text
 
 
-def _storable(value: Any) -> Any:
+def storable(value: Any) -> Any:
     """A value; of text, half characters, which a file's name may have, as escapes: no file could hold them."""
     return value.encode(errors="backslashreplace").decode() if isinstance(value, str) else value
 
@@ -106,7 +106,7 @@ def write_parquet(rows: Sequence[dict[str, Any]], path: Path) -> None:
     import pyarrow.parquet as pq
 
     names = dict.fromkeys(column for row in rows for column in row)
-    columns = {name: [_storable(row.get(name)) for row in rows] for name in names}
+    columns = {name: [storable(row.get(name)) for row in rows] for name in names}
     for name, values in columns.items():
         if any(isinstance(value, int) and abs(value) >= LARGEST_WHOLE for value in values):
             columns[name] = [None if value is None else float(value) for value in values]

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import base64
-import gzip
+import zlib
 
 
 def packed(text: str) -> str:
-    """Text as base64 of gzip, the same each time."""
-    return base64.b64encode(gzip.compress(text.encode(), mtime=0)).decode("ascii")
+    """Text as base64 of raw DEFLATE, the same each time."""
+    packer = zlib.compressobj(level=9, wbits=-zlib.MAX_WBITS)
+    return base64.b64encode(packer.compress(text.encode()) + packer.flush()).decode("ascii")

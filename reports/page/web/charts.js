@@ -1,10 +1,6 @@
 "use strict";
 
-// Charts by Vega-Lite: packed, unpacked when the first one comes into view. What they say is read without `eval`.
-async function unpacked(id) {
-  return new Response(new Blob([bytesOf(document.querySelector(id).textContent)]).stream().pipeThrough(new DecompressionStream("gzip"))).text();
-}
-
+// Charts by Vega-Lite, unpacked when the first one comes into view. What they say is read without `eval`.
 const charts = { views: [] };
 
 function library() {

@@ -1,12 +1,6 @@
 "use strict";
 
 // Figures of several runs: one column of a table at a time, what differs marked.
-function textOf(value) {
-  if (value === null) return "";
-  if (typeof value !== "number" || Number.isInteger(value)) return String(value);
-  return Math.abs(value) < 1e-3 && value ? value.toExponential(2) : value.toPrecision(4);
-}
-
 function showFigures(part, data) {
   const select = part.querySelector("[data-figure]"), only = part.querySelector("[data-only]");
   const body = part.querySelector("tbody"), heads = Array.from(part.querySelectorAll("thead th.n"));
@@ -18,7 +12,7 @@ function showFigures(part, data) {
   const rows = data.columns[select.value].map(([name, values]) => {
     const known = values.filter((value) => value !== null), differs = known.some((value) => value !== known[0]);
     const row = element("tr", differs ? { class: "differs" } : {}, element("th", { scope: "row" }, name));
-    for (const value of values) row.append(element("td", { class: "n", "data-v": value ?? "" }, textOf(value)));
+    for (const value of values) row.append(element("td", { class: "n", "data-v": value ?? "" }, textOf(value, !Number.isInteger(value))));
     row.hidden = only.checked && !differs;
     return row;
   });

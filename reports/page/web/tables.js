@@ -16,6 +16,12 @@ function bytesOf(text) {
   return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
 }
 
+// The text of an element that holds it packed, as packing.py does.
+async function unpacked(id) {
+  const packed = new Blob([bytesOf(document.querySelector(id).textContent)]);
+  return new Response(packed.stream().pipeThrough(new DecompressionStream("deflate-raw"))).text();
+}
+
 function element(tag, attributes, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
@@ -79,18 +85,36 @@ function shownOf(table, read) {
   return [titles, ...rows.map((row) => cellsOf(row).map(read))];
 }
 
-function asMarkdown(table) {
-  const [titles, ...rows] = shownOf(table, (cell) => cell.textContent.trim());
+// A figure with four digits, as tables.py shows it.
+function textOf(value, isFloat) {
+  if (value === null) return "";
+  if (!isFloat || !Number.isFinite(value)) return String(value).replace("Infinity", "inf");
+  const text = Math.abs(value) < 1e-3 && value ? value.toExponential(2) : value.toPrecision(4);
+  return text.replace(/e([+-])(\d)$/, "e$10$2");
+}
+
+function markdownOf(titles, numeric, rows) {
   const line = (texts) => `| ${texts.map((text) => text.replace(/([|\\`*_<>[\]])/g, "\\$1")).join(" | ")} |`;
-  const rule = cellsOf(table.tHead.rows[0]).map((cell) => (cell.classList.contains("n") ? "---:" : "---"));
+  const rule = numeric.map((is) => (is ? "---:" : "---"));
   return [line(titles), `| ${rule.join(" | ")} |`, ...rows.map(line)].join("\n") + "\n";
 }
 
+function asMarkdown(table) {
+  const [titles, ...rows] = shownOf(table, (cell) => cell.textContent.trim());
+  return markdownOf(titles, cellsOf(table.tHead.rows[0]).map((cell) => cell.classList.contains("n")), rows);
+}
+
+// A spreadsheet shows text behind an apostrophe, and computes nothing. What it takes for a number is harmless.
+function safeInSheets(text) {
+  return /^[=+\-@\t\r]/.test(text) && !/^([-+]?(\d+(\.\d*)?(e[-+]?\d+)?( ?%)?|inf))$/.test(text) ? `'${text}` : text;
+}
+
+function quotedInCsv(text) {
+  return /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+}
+
 function asCsv(table) {
-  // A spreadsheet shows text behind an apostrophe, and computes nothing.
-  const safe = (text) => (/^[=+\-@\t\r]/.test(text) && !/^-?[\d.]+(e[+-]?\d+)?$/i.test(text) ? `'${text}` : text);
-  const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
-  const line = (texts) => texts.map((text) => quoted(safe(text))).join(",");
+  const line = (texts) => texts.map((text) => quotedInCsv(safeInSheets(text))).join(",");
   return shownOf(table, (cell) => valueOf(cell).trim()).map(line).join("\n") + "\n";
 }
 
