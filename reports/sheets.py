@@ -76,6 +76,18 @@ def undefined(name: str) -> Column:
     return Column(name, "")
 
 
+class View(StrEnum):
+    """What a reader of the page is at; one is shown at a time, in this order."""
+
+    CHOOSE = "choose"  # what to take
+    COMPARE = "compare"  # two codecs' pictures
+    SEE = "see"  # the laboratory
+    CODECS = "codecs"  # what each code of normals does and costs
+    LAYOUTS = "layouts"  # whole G-buffers
+    MORE = "more"  # all other subjects
+    DATA = "data"  # every row, and how it was measured
+
+
 @dataclass(frozen=True)
 class Section:
     """A table's part of the page.
@@ -87,8 +99,8 @@ class Section:
         method: how it is measured, in sentences.
         parts: a column; rows that differ in it are shown as tables of their own.
         extras: what the page's template shows beside the tables.
-        leads: whether it is the page's first screen.
-        follows: whether it comes right behind that, before the page's pictures.
+        view: where it is shown.
+        leads: whether it is the page's answer.
     """
 
     title: str
@@ -97,8 +109,8 @@ class Section:
     method: str
     parts: str = ""
     extras: tuple[str, ...] = ()
+    view: View = View.MORE
     leads: bool = False
-    follows: bool = False
 
 
 @dataclass(frozen=True)

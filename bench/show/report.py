@@ -131,7 +131,8 @@ def write_report(
         failed.append(f"These pictures cannot be read: {'; '.join(gallery.damaged)}.")
     _write_beside(target.parent / pictures, gallery.files)
     with whole_file(target) as partial:
-        made = page.html(run.with_remarks(failed), gallery, specs, _library() if specs else "")
+        files = {path.name for path in folder.iterdir()} if target.parent.resolve() == folder.resolve() else set()
+        made = page.html(run.with_remarks(failed), gallery, specs, _library() if specs else "", files)
         partial.write_text(made, encoding="utf-8")
     return target
 
@@ -232,7 +233,7 @@ def _others(tables: Mapping[str, Sequence[Row]]) -> frozenset[str]:
 
 def _section(folder: Path, found: Found, done: Done, table: Table, remarks: list[str]) -> TableSection:
     """A table as the page shows it."""
-    rows = found.tables.get(table.name, ())
+    rows = _finished(done, table) if table.name in found.tables else ()
     return TableSection(
         key=table.name,
         about=table.section,

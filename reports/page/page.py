@@ -15,7 +15,7 @@ from typing import Any
 from .. import tables
 from ..charts import spheres
 from ..charts.drawings import Drawing, rows_of
-from ..sheets import Column, Row, Sheet, undefined
+from ..sheets import Column, Row, Sheet, View, undefined
 from . import embedded, live
 from .codec_key import CodecKey
 from .found import Found
@@ -24,13 +24,17 @@ from .sections import TableSection, whole
 from .verdict import is_number
 
 WEB = Path(__file__).parent / "web"
-SCRIPTS = ("tables.js", "pictures.js", "charts.js", "opener.js")
+SCRIPTS = ("tables.js", "state.js", "data.js", "pictures.js", "charts.js", "opener.js")
 # Text of more letters than this may break into lines.
 WRAPPED = 24
 
 
 # What the navigation calls a section's extras that have a heading of their own.
 EXTRAS = {"angles": "Angles", "sphere": "Sphere"}
+# What the navigation calls the views.
+TITLES = {view: view.capitalize() for view in View}
+# More remarks than these are folded: the answer is what is read first.
+MOST_REMARKS = 2
 
 
 @dataclass(frozen=True)
@@ -163,20 +167,41 @@ class Part:
     @property
     def is_there(self) -> bool:
         """Whether the run has anything of it."""
-        return bool(self.tables)
+        return bool(self.section.rows)
 
 
-def navigation(found: Found, has_pictures: bool) -> list[tuple[str, str]]:
-    """Anchors and their names, in the order of the page; what leads is on top of it."""
-    made = [(section.key, section.about.short) for section in found.sections if section.about.follows]
-    made += [("pictures", "Pictures")] if has_pictures else []
+@dataclass(frozen=True)
+class Shown:
+    """A view that the page has something for: its name, and the anchors and names of its parts."""
+
+    view: View
+    title: str
+    parts: Sequence[tuple[str, str]]
+
+
+def views(found: Found, has_pictures: bool) -> list[Shown]:
+    """What a reader may look at, in the order of the page."""
+    parts: dict[View, list[tuple[str, str]]] = {view: [] for view in View}
     for section in found.sections:
-        if section.about.leads or section.about.follows:
-            continue
-        made.append((section.key, section.about.short))
-        made += [(extra, EXTRAS[extra]) for extra in section.about.extras if extra in EXTRAS]
-    made += [("live", "Your GPU")] if found.live else []
-    return [*made, ("measured", "Measured")]
+        mine = parts[section.about.view]
+        mine.append((section.key, section.about.short))
+        mine += [(extra, EXTRAS[extra]) for extra in section.about.extras if extra in EXTRAS]
+    parts[View.COMPARE] += [("pictures", "Pictures")] if has_pictures else []
+    parts[View.SEE] += [("live", "Your GPU")] if found.live else []
+    parts[View.DATA] += [("rows", "Every row"), ("measured", "Measured")]
+    return [Shown(view, TITLES[view], mine) for view, mine in parts.items() if mine]
+
+
+def beginning(parts: Sequence[Part], names: Sequence[str]) -> dict[str, Any]:
+    """What the script begins with: every codec; which are A and B until a reader says, the answer and what stands next
+    to it; and the view of what was measured first, an answer before all."""
+    measured = sorted((part for part in parts if part.is_there), key=lambda part: not part.section.about.leads)
+    leading = [part for part in measured if part.section.about.leads]
+    answers = (table for part in leading for table in part.tables if table.said)
+    shown = dict.fromkeys(line.codec for table in list(answers)[:1] for line in table.rows if line.codec in {*names})
+    first, second = [*shown, "", ""][:2]
+    view = measured[0].section.about.view if measured else View.DATA
+    return {"codecs": list(names), "a": first, "b": second, "view": view}
 
 
 def drawings(found: Found) -> list[Drawing]:
@@ -215,6 +240,7 @@ def html(
     gallery: embedded.Gallery,
     specs: Mapping[str, Sequence[Row]],
     library_script: str,
+    files: Container[str] = (),
 ) -> str:
     """The page.
 
@@ -223,24 +249,31 @@ def html(
         gallery: its pictures.
         specs: its charts, by the names of their drawings; one that is missing is not shown.
         library_script: what draws them.
+        files: names of those that lie beside the page.
     """
     laboratory = live.script() if found.live else ""
     parts = [_part(found, section, specs) for section in found.sections]
-    maps = found.extras.get("maps", ())
+    names, leading = codecs(found, specs), [part for part in parts if part.section.about.leads and part.is_there]
+    maps, begins = found.extras.get("maps", ()), beginning(parts, names)
     return template("page.html.j2").render(
         found=found,
         remarks=remarks(found),
-        nav=navigation(found, bool(gallery.subjects)),
+        most_remarks=MOST_REMARKS,
+        views=views(found, bool(gallery.subjects)),
         agreement=found.extras.get("agreement", ""),
         parts=parts,
-        leading=[part for part in parts if part.section.about.leads and part.is_there],
+        leading=leading,
         spheres=spheres.globes(maps),
         directions=maps[0].directions if maps else 0,
         cells=maps[0].mean_deg.shape[-1] if maps else 0,
         strip=spheres.colour_strip(),
         gallery=gallery,
         picture_data=data_block(gallery.data) if gallery.subjects else "",
-        codecs=codecs(found, specs),
+        codecs=names,
+        begins=begins,
+        begins_data=data_block(begins),
+        listings=packed(_listings(found)) if found.extras.get("listings") else "",
+        files=files,
         library=packed(library_script) if specs else "",
         specs=packed(json.dumps(specs)) if specs else "",
         live=found.live,
@@ -248,6 +281,12 @@ def html(
         live_data=packed(found.live.data(about(found))) if found.live else "",
         **base(SCRIPTS, [library_script, laboratory], is_beside=bool(gallery.files)),
     )
+
+
+def _listings(found: Found) -> str:
+    """Disassemblies as data.js reads them."""
+    listings = found.extras["listings"]
+    return json.dumps({name: {"text": one.text, "source": one.source} for name, one in listings.items()})
 
 
 def base(names: Sequence[str], unpacked: Sequence[str] = (), is_beside: bool = False) -> dict[str, Any]:
@@ -280,8 +319,7 @@ def sources_of(scripts: Sequence[str], is_beside: bool = False) -> str:
 
 
 def _part(found: Found, section: TableSection, specs: Mapping[str, Sequence[Row]]) -> Part:
-    sheets = section.sheets(found.domains)
     encodings = found.encodings
-    shown = [_table(sheet, section.column, encodings) for sheet in sheets]
+    shown = [_table(sheet, section.column, encodings) for sheet in section.sheets]
     charts = [Chart(drawing, len(specs[drawing.name])) for drawing in section.drawings if drawing.name in specs]
     return Part(section, charts, shown, section.measured())

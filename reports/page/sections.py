@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from ..charts.drawings import Drawing
 from ..sheets import Column, Role, Row, Section, Sheet, column_called, undefined
+from .data import block
 
 
 @dataclass(frozen=True)
@@ -40,24 +41,15 @@ class TableSection:
         known = column_called(name, (*self.columns, *self.also))
         return replace(known, name=name) if known else undefined(name)
 
-    def sheets(self, domains: Mapping[str, str]) -> Iterator[Sheet]:
-        """Its tables: those that people look at first, then every row."""
-        for sheet in self.summary:
-            if sheet.rows:
-                yield replace(sheet, rows=whole(sheet.rows))
-        rows = whole(self.rows)
-        by = self.about.parts
-        for value in dict.fromkeys(row.get(by) for row in rows) if by else (None,):
-            part = [row for row in rows if not by or row.get(by) == value]
-            if part:
-                name = f"{self.key}, {value}" if by else self.key
-                yield Sheet(f"Every row of {name}", with_domain(domains, self._worth_showing(part)), folded=True)
+    @property
+    def sheets(self) -> Iterator[Sheet]:
+        """Its tables that people look at first."""
+        return (replace(sheet, rows=whole(sheet.rows)) for sheet in self.summary if sheet.rows)
 
-    def _worth_showing(self, rows: Sequence[Row]) -> list[Row]:
-        """Less the columns that are empty in every row, and those that only a program reads."""
-        hidden = {column.name for column in self.columns if column.role is Role.RAW}
-        kept = [c for c in rows[0] if c not in hidden and any(row[c] is not None for row in rows)]
-        return [{column: row[column] for column in kept} for row in rows]
+    @property
+    def data(self) -> str:
+        """Every row, packed."""
+        return block(whole(self.rows), self.columns)
 
     def measured(self) -> list[tuple[str, str]]:
         """The conditions: what each column says in these rows."""
@@ -84,13 +76,3 @@ def whole(rows: Sequence[Row]) -> list[Row]:
     """Rows that all have the same columns, in the order in which these come up."""
     columns = dict.fromkeys(column for row in rows for column in row)
     return [{column: row.get(column) for column in columns} for row in rows]
-
-
-def with_domain(domains: Mapping[str, str], rows: Sequence[Row]) -> list[Row]:
-    """What an encoding is made for next to its name, where there are encodings of normals."""
-    if not any(row.get("encoding") in domains for row in rows):
-        return list(rows)
-    return [
-        {"encoding": row["encoding"], "domain": domains.get(row["encoding"])} | row if "encoding" in row else dict(row)
-        for row in rows
-    ]

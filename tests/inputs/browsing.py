@@ -53,10 +53,13 @@ class Opened:
             self.said.clear()
         self.is_new = False
 
-    def come_to(self, selector: str, until: str) -> None:
-        """Scroll there, and wait for what is drawn when it comes into view."""
-        self.page.locator(selector).first.scroll_into_view_if_needed()
-        self.page.wait_for_selector(until)
+    def come_to(self, selector: str, until: str = "") -> None:
+        """Show its view, scroll there, and wait for what is drawn when it comes into view."""
+        place = self.page.locator(selector).first
+        place.evaluate("place => change({ view: place.closest('.view')?.dataset.view ?? state.view })")
+        place.scroll_into_view_if_needed()
+        if until:
+            self.page.wait_for_selector(until)
 
     def says(self, selector: str, text) -> None:
         """Wait until it says that, a text or a pattern; without `eval`, which the page's policy forbids."""
@@ -135,7 +138,7 @@ RESET = """({ controls, unfolded, pixel }) => {
   live.own.run();
   live.inspect.at = pixel;
   live.see.change();
-  document.querySelector(".laboratory > summary").focus({ preventScroll: true });
+  document.querySelector("nav [data-to=see]").focus({ preventScroll: true });
   root.scrollIntoView();
 }"""
 
@@ -151,7 +154,7 @@ class Laboratory(Opened):
 
     def open(self) -> None:
         if "#" not in self.address:
-            self.page.locator(".laboratory > summary").click()
+            self.page.locator("nav [data-to=see]").click()
         self.page.wait_for_selector("#live[data-ready]")
         self.page.evaluate("live.root.scrollIntoView()")
         self.settle()

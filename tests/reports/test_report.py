@@ -1,10 +1,12 @@
 """The report: what it holds, of runs that are whole, partial, old, stopped or hostile."""
 
+import base64
 import hashlib
 import json
 import math
 import re
 import time
+import zlib
 from dataclasses import replace
 from html.parser import HTMLParser
 from importlib import import_module
@@ -40,6 +42,17 @@ def quality_row(encoding: str, **more) -> dict:
     figures = {"psnr_db": 50.0, "psnr_article_db": 49.0, "angle_mean_deg": 0.3, "angle_p99_deg": 0.6}
     figures |= {"angle_max_deg": 0.9, "effective_bits": None, "angle_counts": "0.25:3 0.28125:1"}
     return TABLES["quality"].empty() | about | {"backend": "jax", "bits": 16} | figures | more
+
+
+def text_of_page(folder: Path) -> str:
+    return (folder / "report.html").read_text(encoding="utf-8")
+
+
+def packed_text(page_text: str, key: str) -> str:
+    """What an element of a page holds packed."""
+    found = re.search(rf'id="{key}">([^<]*)</script>', page_text)
+    assert found, key
+    return zlib.decompress(base64.b64decode(found[1]), wbits=-zlib.MAX_WBITS).decode()
 
 
 def a_run(folder: Path, tables: dict[str, list], **facts) -> Path:
@@ -185,7 +198,7 @@ def test_rows_without_figures_make_no_table_of_their_own(run, tmp_path):
     for said in (read.text, text):
         assert "playground, rgba8: dB by back end" in said and "None normals" not in said
         assert "playground, rg8" not in said and status == 0
-    assert "no twin" in read.text
+    assert "no twin" in packed_text(text_of_page(folder), "data-quality")
 
 
 def test_a_column_that_is_infinite_for_several_has_no_star_and_the_articles_is_left_out(run, tmp_path):
@@ -193,13 +206,17 @@ def test_a_column_that_is_infinite_for_several_has_no_star_and_the_articles_is_l
     best = {"psnr_db": math.inf, "psnr_article_db": math.inf, "angle_mean_deg": 0.1}
     rows = [quality_row("xyz", **best), quality_row("octahedral", **best), quality_row("xy")]
     text, _ = reported(run, a_run(tmp_path / "run", {"quality": rows}))
-    shown = text[text.index('id="quality-1-caption"') : text.index("Every row of quality")]
+    shown = text[
+        text.index('id="quality-1-caption"') : text.index("How this was measured", text.index('id="quality-1-caption"'))
+    ]
     assert "psnr article" not in shown and '<td class="n">inf</td>' in shown
     assert shown.count('class="n best"') == 2, "the mean angle, of the two"
     rows[0] |= {"psnr_db": 60.0, "psnr_article_db": 55.0}
     rows[1] |= {"psnr_article_db": 60.0}
     text, _ = reported(run, a_run(tmp_path / "run", {"quality": rows}))
-    shown = text[text.index('id="quality-1-caption"') : text.index("Every row of quality")]
+    shown = text[
+        text.index('id="quality-1-caption"') : text.index("How this was measured", text.index('id="quality-1-caption"'))
+    ]
     assert "psnr article" in shown and '<td class="n best">inf</td>' in shown
 
 
@@ -214,7 +231,7 @@ def test_an_encoding_without_a_twin_has_its_place_in_charts_and_tables(run, tmp_
     folder = a_run(tmp_path / "run", {"quality": rows})
     text, read = reported(run, folder)
     assert "Angles on playground, by jax or glsl" in read.text
-    assert text.count('data-codec="mine rgba8"') >= 2 and "<option>mine rgba8</option>" in text
+    assert 'data-codec="mine rgba8"' in text and text.count("<option>mine rgba8</option>") == 2
 
 
 def test_a_run_of_another_version_says_how_to_measure_it_again(run, tmp_path):
@@ -297,7 +314,10 @@ def test_reading_leaves_the_run_as_it_is_and_run_has_written_the_same_report(run
     assert status == 0, err
     assert time.process_time() - begin < 60, "seconds of all cores"
     assert {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()} == before
-    assert (tmp_path / "page.html").read_bytes() == before[folder / "report.html"]
+    # Elsewhere the files of rows are not beside the page.
+    links = re.compile(rb' <a href="\w+\.(csv|json|parquet)">[^<]*</a>')
+    assert links.search(before[folder / "report.html"]) and not links.search((tmp_path / "page.html").read_bytes())
+    assert (tmp_path / "page.html").read_bytes() == links.sub(b"", before[folder / "report.html"])
     names = {path.name for path in (tmp_path / "page-charts").iterdir()}
     assert {"angles-0.png", "angles-0.svg", "sphere-16-bits.png", "sphere-16-bits.svg"} <= names
 
@@ -308,7 +328,8 @@ def test_the_page_is_small_fetches_nothing_and_answers_first(results):
     assert len(text) < 4e6
     assert "default-src 'none'" in next(a["content"] for a in read.all("meta") if a.get("http-equiv"))
     fetched = [a[n] for _, a in read.tags for n in ("src", "href", "xlink:href", "srcset", "action") if n in a]
-    assert fetched and all(f.startswith(("data:", "#")) for f in fetched)
+    beside = {path.name for path in results[0].iterdir()}
+    assert fetched and all(f.startswith(("data:", "#")) or f in beside for f in fetched)
     assert not re.search(r"@import|url\((?!#)", text)
     assert read.text.index("JAX and GLSL agree within 0.0") < read.text.index("How it was measured")
 
@@ -325,7 +346,9 @@ def test_the_page_says_why_costs_are_in_another_order_than_the_articles(run, tmp
     (folder / "disassembly" / "source" / "spherical.glsl").write_text("// <b>spherical</b>\n")
     text, read = reported(run, a_run(folder, {"cost": rows}))
     assert "the other way round: per_pixel_view and spherical" in read.text
-    assert "// <b>spherical</b>" in read.text and "<b>spherical" not in text, "the GLSL stands beside its kernel"
+    kernels = json.loads(packed_text(text, "data-listings"))
+    assert "// <b>spherical</b>" in [one["source"] for one in kernels.values()], "the GLSL stands beside its kernel"
+    assert "<b>spherical" not in text
     for name, said in (
         ("per_pixel_view", "30 instructions for 17 slots, of them 2"),
         ("spherical", "24 instructions for 26 slots, of them 1"),

@@ -121,35 +121,41 @@ def test_the_lens_shows_the_pixels_at_the_pointer_and_says_what_they_are(opened,
 
 
 CHOSEN = """() => ({
-  rows: Array.from(document.querySelectorAll("tr.picked"), (row) => row.dataset.codec),
-  charts: charts.views.map((view) => view.signal("picked")),
-  right: document.querySelector("#right").selectedOptions[0]?.textContent,
-  choice: document.querySelector("#choice").value,
+  rows: Array.from(document.querySelectorAll("tr[data-codec]"))
+    .filter((row) => getComputedStyle(row).getPropertyValue("--side")).map((row) => row.dataset.codec),
+  charts: charts.views.map(({ view }) => view.signal("picked")),
+  pictures: ["left", "right"].map((side) => document.querySelector(`#${side}`).selectedOptions[0]?.textContent),
+  sides: CODECS.map((side) => document.querySelector(`#side-${side}`).value),
 })"""
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("by", ["a row", "the keyboard", "the list", "a chart", "a picture"])
-def test_a_codec_chosen_anywhere_is_highlighted_everywhere(opened, by):
+def test_a_codec_chosen_anywhere_is_that_everywhere(opened, by):
+    """As A; by a picture, which is put to the right, as B."""
     viewed(opened)
     opened.come_to("figure[data-chart]", "figure[data-chart] .plot svg")
     opened.page.wait_for_timeout(500)
     if by == "the list":
-        opened.page.locator("#choice").select_option("spheremap rgba8")
+        opened.page.locator("#side-a").select_option("spheremap rgba8")
     elif by == "a picture":
+        opened.come_to("#viewer")
         opened.page.locator(".thumbs button", has_text="spheremap rgba8").click()
     elif by == "a chart":
         opened.page.locator("figure[data-chart] .plot path[aria-label*='spheremap rgba8']").last.dispatch_event("click")
     else:
+        opened.come_to(TABLE)
         button = opened.page.locator(f"{TABLE} >> tr[data-codec='spheremap rgba8'] .pick")
         button.focus()
         button.click() if by == "a row" else opened.page.keyboard.press("Enter")
     opened.page.wait_for_timeout(500)
+    side = "ab".index("b" if by == "a picture" else "a")
     found = opened.page.evaluate(CHOSEN)
     assert set(found["rows"]) == {"spheremap rgba8"} and len(found["rows"]) >= 3
-    assert found["charts"] and set(found["charts"]) == {"spheremap rgba8"}
-    assert found["right"] == found["choice"] == "spheremap rgba8"
-    opened.page.locator("#choice").select_option("")
+    assert found["pictures"][side] == found["sides"][side] == "spheremap rgba8"
+    if by != "a picture":
+        assert found["charts"] and set(found["charts"]) == {"spheremap rgba8"}
+    opened.page.locator(f"#side-{'ab'[side]}").select_option("")
     assert opened.page.evaluate(CHOSEN)["rows"] == []
 
 
@@ -186,7 +192,7 @@ def test_the_answers_pictures_open_the_viewer_at_its_own_scene(browser, run, tmp
         page.page.locator("#subject").select_option(index=index)
     page.page.wait_for_timeout(500)
     assert drawn(page, "left").max() > 0 and page.texts("[data-pixel=left]")[0].endswith("off by 2 of 255")
-    page.page.locator("#choice").select_option("xy rgb10a2")
+    page.page.locator("#side-b").select_option("xy rgb10a2")
     page.page.wait_for_timeout(300)
     assert page.page.locator("#right option:checked").text_content() == "xy rgb10a2" and page.said == []
     page.context.close()

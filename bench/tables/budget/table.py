@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
+from ....reports.sheets import View
 from ...ground.options.option import Families, Option, Plot, Size
 from .. import shared_columns as shared
 from ..table import Column, Group, Role, Section, Table
@@ -210,6 +211,7 @@ TABLE = Table(
     section=Section(
         title="The whole G-buffer",
         short="Budget",
+        view=View.LAYOUTS,
         intro="How few bytes a pixel does an image bear, and what lies in them?",
         method="Each code of each attribute is measured by itself: the error of the displayed image, by class of "
         "surfaces. An integer program finds the layout whose worst class is best in a number of bytes, and the "

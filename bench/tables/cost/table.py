@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
+from ....reports.sheets import View
 from ...ground.options.gpu_families import CHOICES, titled
 from ...ground.options.option import Arithmetics, Encodings, Option, Plot, Seed
 from ...shaders.languages.source_options import SourceOptions
@@ -261,6 +262,7 @@ TABLE = Table(
     section=Section(
         title="What it costs",
         short="Cost",
+        view=View.CODECS,
         intro="What a current compiler makes of each encoder and decoder, and whether it is worth it.",
         method="A kernel around the encoding's own GLSL is compiled by Mesa's drivers for GPUs that need not be there, "
         "less an empty kernel that moves the same numbers, so that doing nothing costs exactly 0. Counts hold for one "

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Annotated
 
+from ....reports.sheets import View
 from ...ground.options.option import Backends, Encodings, Normals, Option, Plot, Reading, Seed, StorageNames
 from ...shaders.languages.source_options import SourceOptions
 from .. import shared_columns as shared
@@ -248,6 +249,7 @@ TABLE = Table(
     section=Section(
         title="Can a code be filtered, blended or resolved?",
         short="Mixing",
+        view=View.CODECS,
         intro="Texture filters, mip levels, multisample resolves and alpha blending average stored codes: what do they "
         "decode to?",
         method="Patches of 4 x 4 normals lie about the directions of a set, turned at random, so that seams pass "

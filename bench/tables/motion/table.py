@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
+from ....reports.sheets import View
 from ...ground.options.option import Encodings, Images, Lights, Option, Plot, Roundings, Seed, Size, StorageNames
 from ...shaders.languages.source_options import SourceOptions
 from .. import shared_columns as shared
@@ -172,6 +173,7 @@ TABLE = Table(
     section=Section(
         title="What wobbles when the camera turns",
         short="Motion",
+        view=View.CODECS,
         intro="A code in view space changes while the camera turns, and highlights wobble. How much, and how much "
         "less in world space?",
         method="Normals that are fixed on surfaces are encoded in each frame of a turn, stored and decoded; the error "

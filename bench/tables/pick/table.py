@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Annotated
 
+from ....reports.sheets import View
 from ...ground.options.option import (
     Count,
     Effects,
@@ -262,6 +263,7 @@ TABLE = Table(
     section=Section(
         title="Which code should I take?",
         short="Answer",
+        view=View.CHOOSE,
         intro="The best code for each storage, what it costs, and what to take instead.",
         method="Codes that do not meet the constraints are left out. A code whose error nobody sees is enough: of "
         "those that cost little the cheapest is taken. Of others a code may cost twice as much if it is 3 dB better, "

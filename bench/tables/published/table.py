@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
+from ....reports.sheets import View
 from ...ground.options.option import Option
 from ..table import Column, Role, Section, Table
 
@@ -54,6 +55,7 @@ TABLE = Table(
     section=Section(
         title="Published figures, measured anew",
         short="Published",
+        view=View.CODECS,
         intro="What do articles and engines claim, and what is measured here?",
         method="Each figure is measured as its source describes it. It is reproduced if the two agree within the "
         "printed digits and the scatter of samples. A maximum that was found by sampling lies below the supremum, "

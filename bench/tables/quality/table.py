@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
+from ....reports.sheets import View
 from ...ground.options.counts import DEFAULT_COUNT
 from ...ground.options.option import (
     Arithmetics,
@@ -283,6 +284,7 @@ TABLE = Table(
     section=Section(
         title="What normals lose",
         short="Normals",
+        view=View.CODECS,
         intro="Every encoding in its storage, on a scene and on uniform directions: how far is the decoded normal from "
         "the one that went in?",
         method="Each normal is encoded, stored as the render target stores it, decoded, and compared with itself. JAX "

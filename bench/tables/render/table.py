@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Annotated
 
+from ....reports.sheets import View
 from ...ground.options.option import (
     Effects,
     Images,
@@ -223,6 +224,7 @@ TABLE = Table(
     section=Section(
         title="What the image says",
         short="Image",
+        view=View.LAYOUTS,
         intro="The same codes in the G-buffer of a renderer that is exact otherwise: how far is the final image, as "
         "displayed, from one in 32-bit floats?",
         method="Each codec's image against that of the same pipeline with every target in 32-bit floats, clipped and "

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
+from ....reports.sheets import View
 from ...ground.options.option import Encodings, Option, Plot, StorageNames
 from ...shaders.languages.source_options import SourceOptions
 from .. import shared_columns as shared
@@ -102,6 +103,7 @@ TABLE = Table(
     section=Section(
         title="Bytes against instructions",
         short="Roofline",
+        view=View.CODECS,
         intro="Is a smaller code worth its instructions?",
         method="Instructions are counted for the GPU's family: of encoding with packing, of unpacking with decoding. A "
         "frame encodes and writes each pixel's normal `overdraw` times. Each pass reads and decodes it once. Bytes "

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
+from ....reports.sheets import View
 from ...ground.options.option import Encodings, Option, Plot, Roundings, Size, StorageNames
 from ...shaders.languages.source_options import SourceOptions
 from .. import shared_columns as shared
@@ -121,11 +122,11 @@ TABLE = Table(
     section=Section(
         title="What reflections need",
         short="Roughness",
+        view=View.CHOOSE,
         intro="A mirror shows each step of a normal's code as a band; a dull surface hides them. From which roughness "
         "on does a code carry reflections?",
         method="A sphere and two slowly turning panels of a perfect metal fill the picture one by one, under each "
         "environment. The picture with the code's normals is compared with the one of exact normals, as displayed, at "
         "24 roughnesses. The least roughness of a code is found to 0.01 by drawing at the crossing.",
-        follows=True,
     ),
 )

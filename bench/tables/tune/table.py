@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
+from ....reports.sheets import View
 from ...ground.options.option import Option, Reading, Seed
 from .. import shared_columns as shared
 from ..table import Column, Group, Role, Section, Table
@@ -71,6 +72,7 @@ TABLE = Table(
     section=Section(
         title="What tuning gains",
         short="Tuning",
+        view=View.CODECS,
         intro="Parameters fitted to one half of a set: what do they gain on the other half?",
         method="Tuning starts with gradient descent on a smooth model of the quantisation error, then refines with a "
         "search on the measured error. Images are split into two halves at random, by pixel; for look-up tables, by "

@@ -34,9 +34,9 @@ async function draw(figure) {
   const plots = Array.from(figure.querySelectorAll(".plot"));
   for (const [at, spec] of all[figure.dataset.chart].entries()) {
     const { view } = await vegaEmbed(plots[at], spec, OPTIONS);
-    charts.views.push(view);
-    if (picked.name) view.signal("picked", picked.name).runAsync();
-    view.addEventListener("click", (_, item) => item?.datum?.codec && picked.pick(item.datum.codec));
+    charts.views.push({ view, spec });
+    highlight(view, spec);
+    view.addEventListener("click", (event, item) => item?.datum?.codec && choose(codecNamed(item.datum.codec), event.shiftKey));
     const said = typeof spec.title?.text === "string" ? spec.title.text : spec.description;
     const title = element("span", { class: "visually-hidden" }, `: ${said}`);
     const button = element("button", { type: "button", "data-png": "" }, "Save as PNG", title);
@@ -45,6 +45,12 @@ async function draw(figure) {
     shown.push(view);
   }
   if (all[figure.dataset.chart][0].usermeta?.switch) figure.prepend(control(all[figure.dataset.chart][0], shown));
+}
+
+// A stands out where the chart has it.
+function highlight(view, spec) {
+  const has = JSON.stringify(spec).includes(JSON.stringify(state.a));
+  view.signal("picked", has ? state.a : "").runAsync();
 }
 
 // One control for all charts of a figure, which sets a parameter that each of them has.
@@ -64,8 +70,8 @@ async function png(spec, shown, width, name) {
   made.finalize();
 }
 
-picked.listeners.push((name) => {
-  for (const view of charts.views) view.signal("picked", name).runAsync();
+shows.push((state, before) => {
+  if (state.a !== before.a) for (const { view, spec } of charts.views) highlight(view, spec);
 });
 
 const coming = new IntersectionObserver((entries) => {

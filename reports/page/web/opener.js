@@ -1,25 +1,22 @@
 "use strict";
 
-// The laboratory is unpacked and run when it is opened, or when the address names a part of it.
+// The laboratory is unpacked and run when its view is shown.
 const laboratory = document.querySelector("#live");
+if (laboratory && !window.WebGL2RenderingContext) laboratory.querySelector("[data-live=said]").textContent = "This browser has no WebGL2, which the laboratory needs.";
 if (laboratory && window.WebGL2RenderingContext) {
-  laboratory.hidden = false;
-  for (const link of document.querySelectorAll("nav [href='#live']")) link.parentNode.hidden = false;
-  const details = laboratory.querySelector(".laboratory"), said = laboratory.querySelector("[data-live=said]");
   let opening = null;
   const open = async () => {
     const [script, data] = await Promise.all([unpacked("#live-script"), unpacked("#live-data")]);
     document.head.append(element("script", {}, script));
     await openLaboratory(laboratory, JSON.parse(data));
   };
-  details.addEventListener("toggle", () => {
-    if (details.open) opening ||= open().catch((error) => (said.textContent = `The laboratory cannot be opened: ${error.message}.`));
+  shows.push(({ view }) => {
+    if (view !== laboratory.closest(".view").dataset.view) return;
+    opening ||= open().catch((error) => (laboratory.querySelector("[data-live=said]").textContent = `The laboratory cannot be opened: ${error.message}.`));
   });
-  const shared = () => {
-    if (!location.hash.startsWith("#live=")) return;
-    details.open = true;
-    laboratory.scrollIntoView();
-  };
-  window.addEventListener("hashchange", shared);
-  shared();
 }
+
+// Everything that follows the state is there.
+window.addEventListener("popstate", readAddress);
+window.addEventListener("hashchange", readAddress);
+readAddress();

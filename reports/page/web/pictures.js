@@ -235,7 +235,7 @@ class Viewer {
   listen() {
     this.one("#subject").addEventListener("change", () => this.begin());
     for (const side of SIDES) {
-      this.side(side).addEventListener("change", () => this.show());
+      this.side(side).addEventListener("change", () => this.chosen(side));
     }
     for (const id of ["view", "scale", "colours"]) this.one(`#${id}`).addEventListener("input", () => this.show());
     this.one("#divider").addEventListener("input", () => this.divide(this.one("#divider").value));
@@ -257,7 +257,7 @@ class Viewer {
       field.addEventListener("input", () => this.goTo({ [axis]: Number(field.value) || 0 }));
       field.addEventListener("change", () => (field.value = this.place[axis]));
     }
-    picked.listeners.push((name) => this.follow(name));
+    shows.push((state) => this.follow(state));
   }
 
   // A subject from its start: the best codec against the next one, or against the exact pixels.
@@ -269,8 +269,7 @@ class Viewer {
     const note = subject.step > 1 ? `One pixel of ${subject.step} × ${subject.step} is shown.` : "Every pixel is shown.";
     this.one("[data-step]").textContent = note;
     this.fillThumbs();
-    const at = this.find(picked.name);
-    if (at >= 0) this.side("right").value = at;
+    this.take(state);
     try {
       const both = await Promise.all(SIDES.map((side) => this.planes(this.side(side).value)));
       if (turn !== this.turn) return;
@@ -439,22 +438,37 @@ class Viewer {
     return name ? this.subject.codecs.findIndex((one) => one.codec && agrees(one.codec, name)) : -1;
   }
 
-  // What is highlighted on the page stands to the right.
-  follow(name) {
-    const at = this.isReady ? this.find(name) : -1;
-    if (at < 0 || String(at) === this.side("right").value) return;
-    this.side("right").value = at;
+  // A stands to the left and B to the right, where there are pictures of them.
+  take(state) {
+    const before = SIDES.map((side) => this.side(side).value);
+    for (const [at, side] of SIDES.entries()) {
+      const found = this.find(state[CODECS[at]]);
+      if (found >= 0) this.side(side).value = found;
+    }
+    return SIDES.some((side, at) => this.side(side).value !== before[at]);
+  }
+
+  follow(state) {
+    if (this.isReady && this.take(state)) this.show();
+  }
+
+  // What a reader chose: a codec of the page is A or B everywhere.
+  chosen(side) {
+    const name = this.subject.codecs[this.side(side).value]?.codec;
+    if (name && known.codecs.includes(name)) change({ [CODECS[SIDES.indexOf(side)]]: name });
     this.show();
   }
 
   // One codec of a subject against the next one, brought into view.
   async open(subject, codec, view) {
+    const a = known.codecs.includes(codec.codec) ? codec.codec : state.a;
+    change({ view: this.root.closest(".view").dataset.view, at: "pictures", a });
     this.one("#subject").value = this.data.subjects.indexOf(subject);
     this.begun = this.begin();
     await this.begun;
     const at = subject.codecs.indexOf(codec), count = subject.codecs.length;
     this.side("left").value = at;
-    this.side("right").value = count > 1 ? (at + 1) % count : ORIGINAL;
+    if (this.side("right").value === String(at)) this.side("right").value = count > 1 ? (at + 1) % count : ORIGINAL;
     this.one("#view").value = view;
     await this.show();
     this.root.scrollIntoView();
@@ -476,8 +490,7 @@ class Viewer {
       const button = element("button", { type: "button", "data-at": at }, picture, element("span", {}, codec.label));
       button.addEventListener("click", () => {
         this.side("right").value = at;
-        this.show();
-        if (codec.codec && picked.name !== codec.codec) picked.pick(codec.codec);
+        this.chosen("right");
       });
       seen.observe(button);
       return button;

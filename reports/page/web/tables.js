@@ -1,16 +1,5 @@
 "use strict";
 
-// The codec that is highlighted everywhere: tables, charts and pictures. Its name is "encoding storage", and a rounding
-// that is not the nearest.
-const picked = {
-  name: "",
-  listeners: [],
-  pick(name) {
-    this.name = name === this.name ? "" : name;
-    for (const listener of this.listeners) listener(this.name);
-  },
-};
-
 // Bytes of base64.
 function bytesOf(text) {
   return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
@@ -155,20 +144,6 @@ function addTools(sheet) {
   tools.append(markdown, csv, said);
 }
 
-// Rows of a codec are chosen by their first cell.
-function addPick(row) {
-  const cell = row.cells[0];
-  const button = element("button", { type: "button", class: "pick", "aria-pressed": "false" }, ...cell.childNodes);
-  button.addEventListener("click", () => picked.pick(row.dataset.codec));
-  cell.append(button);
-}
-
-// Names of codecs, or of encodings, which stand for each of their codecs.
-function agrees(one, other) {
-  const covers = (encoding, codec) => !encoding.includes(" ") && codec.startsWith(`${encoding} `);
-  return one === other || covers(one, other) || covers(other, one);
-}
-
 for (const sheet of document.querySelectorAll("[data-sheet]")) {
   for (const header of sheet.querySelectorAll("thead th")) {
     header.querySelector("button").addEventListener("click", () => sortBy(header));
@@ -177,27 +152,6 @@ for (const sheet of document.querySelectorAll("[data-sheet]")) {
   if (field) field.addEventListener("input", () => filter(sheet));
   addTools(sheet);
 }
-const codecRows = Array.from(document.querySelectorAll("tr[data-codec]"));
-codecRows.forEach(addPick);
-picked.listeners.push((name) => {
-  for (const row of codecRows) {
-    const is = Boolean(name) && agrees(row.dataset.codec, name);
-    row.classList.toggle("picked", is);
-    row.cells[0].firstChild.setAttribute("aria-pressed", String(is));
-  }
-});
-
-// The list of codecs in the navigation does the same.
-const choice = document.querySelector("#choice");
-if (choice) {
-  choice.parentNode.hidden = false;
-  choice.addEventListener("change", () => picked.pick(choice.value));
-  picked.listeners.push((name) => {
-    if (name && !Array.from(choice.options).some((option) => option.value === name)) choice.add(new Option(name, name));
-    choice.value = name;
-  });
-}
-
 // A link to each heading.
 for (const heading of document.querySelectorAll("section[id] > h2")) {
   const link = element("a", { class: "anchor", href: `#${heading.parentNode.id}` }, "#");

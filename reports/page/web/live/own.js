@@ -45,7 +45,7 @@ class OwnEncoder {
     run.addEventListener("click", () => this.run());
     share.addEventListener("click", () => this.share());
     keep.addEventListener("click", () => saveText("mine.glsl", text.value));
-    window.addEventListener("hashchange", () => this.read());
+    shows.push((state, before) => state.live !== before.live && this.read());
   }
 
   later() {
@@ -178,7 +178,7 @@ class OwnEncoder {
   async share() {
     const { text, storage, domain } = this.field;
     const packed = await deflated(JSON.stringify({ text: text.value, storage: storage.value, domain: domain.value }));
-    const link = `${location.href.split("#")[0]}#live=${packed}`;
+    const link = `${location.href.split("#")[0]}${hashOf({ ...state, view: "see", at: "", live: packed })}`;
     this.field.link.value = link;
     this.field.link.parentNode.hidden = false;
     copy(link, this.field.copied);
@@ -186,10 +186,9 @@ class OwnEncoder {
 
   // What a link brought; whether it brought anything. It is shown, and run when somebody asks for it.
   async read() {
-    if (!location.hash.startsWith("#live=")) return false;
-    const packed = location.hash.slice("#live=".length);
+    if (!state.live) return false;
     try {
-      const { text, storage, domain } = JSON.parse(await inflated(packed)) ?? {};
+      const { text, storage, domain } = JSON.parse(await inflated(state.live)) ?? {};
       if (typeof text !== "string") throw new Error("it holds no text");
       this.field.text.value = text;
       for (const [name, value] of [["storage", storage], ["domain", domain]]) {

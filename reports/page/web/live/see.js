@@ -26,6 +26,15 @@ class See {
     this.restore();
   }
 
+  // A stands to the left, and B or the exact normals to the right, where the laboratory has them.
+  take({ a, b }) {
+    const has = (name) => Array.from(this.control.left.options).some((option) => option.value === name);
+    if (!has(a)) return;
+    this.control.left.value = a;
+    this.control.right.value = has(b) ? b : EXACT;
+    this.change();
+  }
+
   fill() {
     const names = [EXACT, ...live.data.codecs.map(({ label }) => label)];
     for (const side of ["left", "right"]) this.control[side].append(...names.map((name) => element("option", {}, name)));
@@ -60,11 +69,8 @@ class See {
       this.change();
     });
     new ResizeObserver(() => this.resize()).observe(this.stage);
-    picked.listeners.push((name) => {
-      if (!live.byLabel.has(name)) return;
-      this.control.right.value = name;
-      this.change();
-    });
+    shows.push((state) => this.take(state));
+    this.take(state);
   }
 
   // Everything that was on the GPU is gone, or was never there.

@@ -1,0 +1,148 @@
+"""The page's state in a browser: its address, A and B, views, and every row from its packed block."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+STATES = 200
+KEYS = ("view", "a", "b", "at", "live")
+
+
+def random_states(opened) -> list[dict]:
+    """States of the page's own views, codecs and places, and of keys that another version may have written."""
+    rng = np.random.default_rng(7)
+    views = opened.page.eval_on_selector_all(".view", "all => all.map((one) => one.dataset.view)")
+    codecs = ["", *opened.page.evaluate("known.codecs")]
+    words = ["", "x=1&y", "ä ö", "%", "a#b?c", "50 %/2"]
+    made = []
+    for _ in range(STATES):
+        a, b = (codecs[i] for i in rng.choice(len(codecs), 2, replace=False))
+        others = [[f"key {i}", words[rng.integers(len(words))]] for i in range(rng.integers(3))]
+        made.append({"view": views[rng.integers(len(views))], "a": a, "b": b, "at": "", "live": "", "others": others})
+    return made
+
+
+def test_an_address_gives_its_state_back(opened):
+    """Keys of another version are kept, and what is as usual is left out."""
+    for state in random_states(opened):
+        address = opened.page.evaluate("hashOf", state)
+        found, unknown = opened.page.evaluate("stateOf", address)
+        assert found == state and unknown == [], address
+        assert opened.page.evaluate("hashOf", found) == address
+    assert opened.page.evaluate("hashOf({ ...DEFAULTS, others: [] })") == "#v1/codecs"
+
+
+def test_what_an_address_names_and_the_page_lacks_is_said(opened):
+    opened.page.evaluate("location.hash = '#v1/nowhere?a=nothing%20rg8&b=xy%20rgba8&zoom=3'")
+    opened.says(
+        "#unknown", "The address names the view nowhere and the codec nothing rg8, which this page does not have."
+    )
+    assert opened.page.evaluate("[state.view, state.a, state.b]") == ["codecs", "", "xy rgba8"]
+    assert opened.page.evaluate("location.hash") == "#v1/codecs?b=xy%20rgba8&zoom=3"
+    opened.page.evaluate("change({ b: '' })")
+    assert opened.page.evaluate("location.hash") == "#v1/codecs?zoom=3"
+
+
+def test_back_takes_a_step_and_one_view_is_shown(opened):
+    shown = "all => all.filter((one) => !one.hidden).map((one) => one.dataset.view)"
+    opened.page.locator("nav [data-to=data]").click()
+    opened.page.evaluate("choose('xy rgba8')")
+    opened.page.evaluate("choose('octahedral rgba8', true)")
+    assert opened.page.evaluate("location.hash") == "#v1/data?a=xy%20rgba8&b=octahedral%20rgba8"
+    # What is A and becomes B changes places.
+    opened.page.evaluate("choose('octahedral rgba8')")
+    assert opened.page.evaluate("[state.a, state.b]") == ["octahedral rgba8", "xy rgba8"]
+    for expected in (["xy rgba8", "octahedral rgba8"], ["xy rgba8", ""], ["", ""]):
+        opened.page.go_back()
+        assert opened.page.evaluate("[state.a, state.b]") == expected
+        assert opened.page.eval_on_selector_all(".view", shown) == ["data"]
+    opened.page.go_back()
+    assert opened.page.eval_on_selector_all(".view", shown) == ["codecs"]
+    assert opened.page.locator("nav [aria-current=page]").get_attribute("data-to") == "codecs"
+
+
+def test_a_place_in_another_view_is_gone_to(opened):
+    """By the anchors of headings, and by links to every row, which are opened."""
+    for key in opened.page.eval_on_selector_all("section[id], details[id]", "all => all.map((one) => one.id)"):
+        opened.page.evaluate("key => location.hash = key", key)
+        opened.page.locator(f"#{key}").wait_for(state="visible")
+        opened.page.wait_for_timeout(50)
+        top, room, end = opened.page.evaluate(
+            """key => [document.getElementById(key).getBoundingClientRect().top,
+              navigation.getBoundingClientRect().bottom,
+              document.documentElement.scrollHeight - innerHeight - scrollY]""",
+            key,
+        )
+        # At the end of a page there is nothing more to scroll.
+        assert -1 <= top - room <= 22 or end <= 1, (key, top, room)
+        if key.startswith("rows-"):
+            assert opened.page.locator(f"#{key} tbody tr").count() > 0
+
+
+def test_every_row_is_the_file_to_the_byte(opened, results):
+    """Each table's block gives the CSV file that lies beside the page; a filter leaves some of its lines."""
+    opened.page.locator("nav [data-to=data]").click()
+    tables = opened.page.eval_on_selector_all("details[data-table]", "all => all.map((one) => one.dataset.table)")
+    assert tables
+    for name in tables:
+        details = opened.page.locator(f"#rows-{name}")
+        details.locator("summary").first.click()
+        details.locator("tbody tr").first.wait_for()
+        expected = (results[0] / f"{name}.csv").read_text(encoding="utf-8")
+        with opened.page.expect_download() as download:
+            details.locator("[data-copy=csv]").click()
+        assert Path(download.value.path()).read_text(encoding="utf-8") == expected
+        details.locator("input[type=search]").fill("octahedral rgba8")
+        count = details.locator("[data-count]").text_content()
+        lines = [line for line in expected.splitlines()[1:] if "octahedral" in line and "rgba8" in line]
+        assert count == f"{len(lines)} of {len(expected.splitlines()) - 1} rows"
+        details.locator("summary").first.click()
+        opened.page.wait_for_timeout(50)
+        assert details.locator("*").count() == 1, "what is closed takes no elements"
+
+
+ODD = [
+    1e-7,
+    1e16,
+    123456789.0,
+    0.1,
+    -0.0,
+    0.0,
+    1.0,
+    5e-324,
+    1.7976931348623157e308,
+    0.0001,
+    0.00012345,
+    -3.5,
+    1e22,
+    2e15,
+]
+
+
+def test_numbers_are_written_as_python_writes_them(opened):
+    rng = np.random.default_rng(3)
+    values = [*ODD, *(rng.uniform(-1, 1, 300) * 10.0 ** rng.integers(-30, 30, 300)).tolist()]
+    assert opened.page.evaluate("all => all.map(exactText)", values) == list(map(repr, values))
+
+
+@pytest.mark.parametrize("name", ["octahedral", "octahedral rgba8"])
+def test_a_rule_covers_the_codecs_of_an_encoding(opened, name):
+    """A row of an encoding alone is that of each of its codecs; another encoding of that beginning is not."""
+    codes = ["octahedral", "octahedral rgba8", "octahedral rg8", "octahedral_precise rgba8", "xy rgba8"]
+    found = opened.page.evaluate(
+        """([name, codes]) => {
+          const style = element("style", {}, ruleOf(name, "a")), root = element("div", {}, style);
+          root.append(...codes.map((code) => element("i", { "data-codec": code })));
+          document.body.append(root);
+          const isSide = (one) => getComputedStyle(one).getPropertyValue("--side") !== "";
+          const all = Array.from(root.querySelectorAll("i"), (one) => [one.dataset.codec, isSide(one)]);
+          root.remove();
+          return all.map(([code, is]) => [code, is, agrees(code, name)]);
+        }""",
+        [name, codes],
+    )
+    of_all = {code for code in codes if code.startswith(f"{name} ")} if " " not in name else set()
+    expected = {name, "octahedral"} | of_all
+    for at in (1, 2):
+        assert {one[0] for one in found if one[at]} == expected, found
