@@ -24,7 +24,7 @@ from .sections import TableSection, whole
 from .verdict import is_number
 
 WEB = Path(__file__).parent / "web"
-SCRIPTS = ("tables.js", "state.js", "data.js", "pictures.js", "charts.js", "opener.js")
+SCRIPTS = ("tables.js", "state.js", "data.js", "choose.js", "pictures.js", "charts.js", "opener.js")
 # Text of more letters than this may break into lines.
 WRAPPED = 24
 
@@ -272,6 +272,7 @@ def html(
         codecs=names,
         begins=begins,
         begins_data=data_block(begins),
+        choices=packed(json.dumps(found.extras["choices"])) if "choices" in found.extras else "",
         listings=packed(_listings(found)) if found.extras.get("listings") else "",
         files=files,
         library=packed(library_script) if specs else "",

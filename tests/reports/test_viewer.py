@@ -180,8 +180,12 @@ def test_rendered_images_and_pictures_beside_the_page_are_shown(browser, run, tm
 def test_the_answers_pictures_open_the_viewer_at_its_own_scene(browser, run, tmp_path):
     assert run("report", str(answered_run(tmp_path / "run")))[0] == 0
     page = Opened(browser, tmp_path / "run/report.html")
-    page.page.wait_for_selector(".proof:not([hidden]) button:nth-child(2)")
-    assert page.page.locator(".proof:not([hidden])").count() == 2, "two storages"
+    page.page.wait_for_selector(".proof:not([hidden]) button:nth-child(4)")
+    said = page.texts(".proof button span")
+    assert said == [
+        *("A fine rg8: image", "B xy rg8: image"),
+        *(f"{side}: largest difference 2 of 255, above 2 in 0 % of the pixels" for side in ("A fine rg8", "B xy rg8")),
+    ]
     page.page.locator(".proof").first.locator("button").first.click()
     page.page.wait_for_selector(VIEWED)
     page.page.wait_for_timeout(300)
@@ -193,6 +197,7 @@ def test_the_answers_pictures_open_the_viewer_at_its_own_scene(browser, run, tmp
     page.page.wait_for_timeout(500)
     assert drawn(page, "left").max() > 0 and page.texts("[data-pixel=left]")[0].endswith("off by 2 of 255")
     page.page.locator("#side-b").select_option("xy rgb10a2")
+    page.page.locator(".proof button span", has_text="B xy rgb10a2: largest difference 0").wait_for(state="attached")
     page.page.wait_for_timeout(300)
     assert page.page.locator("#right option:checked").text_content() == "xy rgb10a2" and page.said == []
     page.context.close()

@@ -48,6 +48,10 @@ MOST_RUNGS = 2
 # Another storage of the same bytes is named where it is better by a bit of each component.
 MUCH_BETTER_DB = 6.0
 NO_FIGURE = "no figure for --aim"
+# Why codes are left out that an option may take.
+HOLE_SAID = f"a hole: the largest error is over {HOLE:g} times the least; --accept-holes takes it"
+LENGTH_SAID = "decodes are not of length 1, and light needs a normalise; --accept-lengths takes them"
+LOOPS_SAID = "how often its loops run is not known"
 # A code has no use for a storage that has so many more bits than it has codes for.
 WASTED_BITS = 8
 # How many figures behind the loss decide where codes are equal.
@@ -105,7 +109,7 @@ def decibels(angle: float | None) -> float:
     return math.inf if angle is None else 20 * math.log10(max(angle, 1e-12))
 
 
-def _image_loss(row: Row) -> float:
+def image_loss(row: Row) -> float:
     found = image_db(row)
     return math.inf if found is None else -min(found, INDISTINGUISHABLE_DB)
 
@@ -115,7 +119,7 @@ AIMS: Mapping[str, Callable[[Row], float]] = MappingProxyType(
     {
         "angle": lambda row: decibels(mean(row)),
         "worst": lambda row: decibels(largest_mixed(row)),
-        "image": _image_loss,
+        "image": image_loss,
         "cost": lambda row: decibels(mean(row)),
     }
 )
@@ -156,15 +160,15 @@ def order(row: Row) -> tuple[float, ...]:
     Of codes that are enough and cost little the one of fewest bits is first, then the cheapest, to a doubling. The
     others follow by loss + worth log2(price / floor), to half a decibel, and then by the price.
     """
-    ties = (_to_a_step(_image_loss(row)), price(row), _bits(row), row["slots"] or 0.0)
+    ties = (to_a_step(image_loss(row)), price(row), _bits(row), row["slots"] or 0.0)
     if row["aim"] == "cost":
         return (price(row), not is_enough(row), loss_db(row), *ties)
     if is_enough(row) and price(row) <= AFFORDABLE * floor(row):
         return (0, bool(row["table"]), _bits(row), round(doublings(row)), _to_a_tenth(loss_db(row)), *ties)
-    return (1, _to_a_step(loss_db(row) + row["worth"] * doublings(row)), price(row), loss_db(row), *ties)
+    return (1, to_a_step(loss_db(row) + row["worth"] * doublings(row)), price(row), loss_db(row), *ties)
 
 
-def _to_a_step(figure: float) -> float:
+def to_a_step(figure: float) -> float:
     """A score to the half decibel: nobody chooses by less."""
     return round(figure / STEP) * STEP if math.isfinite(figure) else figure
 
@@ -196,7 +200,7 @@ def why_unfit(row: Row) -> str:
     if not row["needs"] and row["lost_percent"]:
         return lost(row)
     if (row["length_share"] or 0) > LENGTH and not row["accept_lengths"]:
-        return "decodes are not of length 1, and light needs a normalise; --accept-lengths takes them"
+        return LENGTH_SAID
     if row["bits"] and row["code_bits"] and row["bits"] - row["code_bits"] > WASTED_BITS:
         return f"its codes are of {row['code_bits']:.0f} bits in any storage"
     return ""
@@ -271,7 +275,6 @@ def _place_text(row: Row, places: Sequence[str]) -> str | None:
 def _rows_with_holes(rows: Sequence[Row]) -> list[Row]:
     """The rows with the size of their hole, left out for it. The least error is that of all codes of the storage that
     could be asked for, whatever they cost and survive."""
-    said = f"a hole: the largest error is over {HOLE:g} times the least; --accept-holes takes it"
     least: dict[str, float] = {}
     for row in rows:
         if not why_unfit(row) and (found := largest(row)) is not None:
@@ -280,7 +283,7 @@ def _rows_with_holes(rows: Sequence[Row]) -> list[Row]:
     for row in rows:
         hole = _hole_text(row, least.get(row["storage"], math.inf))
         is_why = hole and (not row["left_out"] or str(row["left_out"]).startswith(NO_FIGURE))
-        made.append(row | {"hole": hole or None, "left_out": said if is_why else row["left_out"]})
+        made.append(row | {"hole": hole or None, "left_out": HOLE_SAID if is_why else row["left_out"]})
     return made
 
 
@@ -296,8 +299,7 @@ def _hole_text(row: Row, least: float) -> str:
 def _unpriced(rows: Sequence[Row]) -> list[Row]:
     """The rows, those without a price left out where others have one."""
     is_priced = any(row["slots"] is not None for row in rows if not row["left_out"])
-    said = "how often its loops run is not known"
-    return [row | {"left_out": said} if is_priced and _lacks_price(row) else row for row in rows]
+    return [row | {"left_out": LOOPS_SAID} if is_priced and _lacks_price(row) else row for row in rows]
 
 
 def _lacks_price(row: Row) -> bool:

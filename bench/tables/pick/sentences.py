@@ -73,11 +73,11 @@ def sentences(group: Sequence[Row]) -> list[str]:
 def told(group: Sequence[Row]) -> list[str]:
     """The same without what does not qualify."""
     best = next((row for row in group if BEST in places_of(row)), None)
-    where = f"{asked_of(group[0])}, {_on(group[0])}"
+    where = question(group[0])
     if best is None:
         return [f"{where}: no code qualifies{_constraints_text(group[0])}.", *_instead(group)]
-    others = [*_not_held(best), *(_elsewhere_text(row, best) for row in _much_better(group, best))]
-    made = [" ".join([f"{where}: take {_called(best)}.", *others])]
+    others = [*not_held(best), *(_elsewhere_text(row, best) for row in _much_better(group, best))]
+    made = [" ".join([f"{where}: take {called(best)}.", *others])]
     made += [
         f"{_error_sentences(best)} {_seen_sentences(best)}",
         f"{_price_sentence(best)} {_bits_sentence(best)}{_reservation_sentence(best)}",
@@ -88,13 +88,18 @@ def told(group: Sequence[Row]) -> list[str]:
     return made + [_rival_sentence(row, best) for row in group if row["against"] and row is not best]
 
 
+def question(row: Row) -> str:
+    """What was asked for, and what was measured on."""
+    return f"{asked_of(row)}, {_on(row)}"
+
+
 def _on(row: Row) -> str:
     """What was measured, in words; where the set stands for a domain, the domain as well."""
     on = f"on {row['normals']}"
     return f"for {MADE_FOR[row['needs']]}, {on}" if row["needs"] == "view" else on
 
 
-def _not_held(best: Row) -> Iterator[str]:
+def not_held(best: Row) -> Iterator[str]:
     """What images have that the answer does not hold, where that is much."""
     lost = best.get("image_lost_percent") or 0.0
     if lost >= MUCH_LOST:
@@ -119,11 +124,11 @@ def _instead(group: Sequence[Row]) -> Iterator[str]:
     if priced and (most := group[0]["most_instructions"]) is not None:
         nearest = min((row for row in priced if not row.get("hole")), key=_slots_once, default=None)
         if nearest:
-            said = f"{_called(nearest)}, with {_slots_once(nearest):g} issue slots"
+            said = f"{called(nearest)}, with {_slots_once(nearest):g} issue slots"
             yield f"Of codes without a hole the nearest is {said}."
         holed = min((row for row in priced if row.get("hole")), key=_slots_once, default=None)
         if holed and _slots_once(holed) <= most:
-            said = f"{_called(holed)}, with {_slots_once(holed):g} issue slots and a hole of {holed['hole']}"
+            said = f"{called(holed)}, with {_slots_once(holed):g} issue slots and a hole of {holed['hole']}"
             yield f"--accept-holes takes {said}."
 
 
@@ -138,16 +143,21 @@ def rungs(group: Sequence[Row], best: Row) -> Iterator[str]:
         yield from (f"{title}: {_rung_text(row, best)}" for row in group if place in places_of(row))
 
 
-def _called(row: Row) -> str:
+def called(row: Row) -> str:
     """A code's name, with its storage where another one was asked for."""
     return row["encoding"] if row["asked"] == row["storage"] else f"{row['encoding']} in {row['storage']}"
 
 
 def _constraints_text(row: Row) -> str:
+    said = constraints(row)
+    return f" ({', '.join(said)})" if said else ""
+
+
+def constraints(row: Row) -> list[str]:
+    """What a code must keep to, in words."""
     said = [f"at most {row['most_instructions']} issue slots"] if row["most_instructions"] is not None else []
     said += [f"for {row['needs']}"] if row["needs"] else []
-    said += [f"that survives {row['mixing'].replace(',', ', ')}"] if row["mixing"] else []
-    return f" ({', '.join(said)})" if said else ""
+    return said + ([f"that survives {row['mixing'].replace(',', ', ')}"] if row["mixing"] else [])
 
 
 def degrees(value: float | None) -> str:
@@ -278,7 +288,7 @@ def _gain_text(row: Row, best: Row) -> str:
 
 def _rung_text(row: Row, best: Row) -> str:
     """A rung of the ladder: what it gains, and for what price."""
-    said = f"{_called(row)}, {_gain_text(row, best)} ({_errors_text(row)})"
+    said = f"{called(row)}, {_gain_text(row, best)} ({_errors_text(row)})"
     return f"{said}, {_price_text(row, best)}{_bits_clause(row, best)}."
 
 
@@ -313,10 +323,15 @@ def _bits_clause(row: Row, best: Row) -> str:
 
 def _elsewhere_text(row: Row, best: Row) -> str:
     """Another storage of the same bytes that is much better."""
-    gain = loss_db(best) - loss_db(row)
+    begin, end = around_gain(row)
+    return f"{begin}{loss_db(best) - loss_db(row):.0f}{end}"
+
+
+def around_gain(row: Row) -> tuple[str, str]:
+    """What is said of a code of another storage, before its gain and behind it."""
     free = f"{row['free_bits']} bits stay free" if row["free_bits"] else "no bit stays free"
-    said = f"In {row['storage']}, of the same {best['bytes']} bytes, {row['encoding']} is {gain:.0f} dB better"
-    return f"{said} (mean {degrees(mean(row))}), and {free}."
+    begin = f"In {row['storage']}, of the same {row['bytes']} bytes, {row['encoding']} is "
+    return begin, f" dB better (mean {degrees(mean(row))}), and {free}."
 
 
 def _rival_sentence(row: Row, best: Row) -> str:
@@ -343,7 +358,7 @@ def _with_reason(rows: Sequence[Row], why: str) -> str:
     """The codes that are left out for a reason; where its details differ, those of the first."""
     # The example is the one that people would ask about.
     rows = sorted(rows, key=lambda row: (bool(row.get("hole")), loss_db(row)))
-    names = [f"{_called(row)} {row['hole']}" if row.get("hole") else _called(row) for row in rows]
+    names = [f"{called(row)} {row['hole']}" if row.get("hole") else called(row) for row in rows]
     detail = str(rows[0].get("cannot_mix") or "").partition(":")[2]
     if not detail:
         return f"{_names_text(names)} ({why})"

@@ -16,7 +16,7 @@ const IMAGE_VIEWS = { apart: "difference", final: "image", flip: "FLIP" };
 const ANGLE_SCALES = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 45, 90, 180];
 const APART_SCALES = [1, 2, 4, 8, 16, 32, 64, 128, 255];
 // Pixels that the lens shows on a side, and how large each is; how wide a small picture is; how many codecs are kept.
-const LENS = 11, CELL = 12, THUMB = 240, KEPT = 8;
+const LENS = 11, CELL = 12, THUMB = 240, KEPT = 8, SEEN = 2;
 
 function penOf(canvas) {
   return canvas.getContext("2d", { willReadFrequently: true });
@@ -110,6 +110,20 @@ class Planes {
     let most = 0;
     for (let c = 0; c < 3; c++) most = Math.max(most, Math.abs(this.final(i, c) - this.exact[4 * i + c]));
     return most;
+  }
+
+  // How far an image is off at most, and where that is to be seen.
+  offBy() {
+    if (this.off) return this.off;
+    let most = 0, seen = 0;
+    const count = this.subject.width * this.subject.height;
+    for (let i = 0; i < count; i++) {
+      const apart = this.difference(i);
+      most = Math.max(most, apart);
+      seen += apart > SEEN;
+    }
+    const share = Number(((100 * seen) / count).toPrecision(2));
+    return (this.off = { most, said: `largest difference ${most} of 255, above ${SEEN} in ${share} % of the pixels` });
   }
 
   // The colour of a pixel in a view; `scale` is what full colour stands for.
@@ -499,33 +513,54 @@ class Viewer {
   }
 }
 
-// The pictures of an answer: its image, and how far that is off.
-const ANSWER_SCALE = 32;
-
-async function showAnswer(place) {
-  const { answer, scene } = place.dataset, of = (subject) => subject.title.startsWith(`the answer on ${scene} at power `);
-  const subject = viewer.data.subjects.find((one) => of(one) && one.codecs.some((codec) => codec.codec === answer));
-  if (!subject) return;
-  const codec = subject.codecs.find((one) => one.codec === answer);
-  const exact = await pixelsOf(subject.original, subject.width, subject.height);
-  const planes = await Planes.of(subject, codec, exact);
-  for (const [view, title] of [["final", "image"], ["apart", `difference, full colour at ${ANSWER_SCALE} of 255`]]) {
-    const canvas = element("canvas", { "aria-hidden": "true" });
-    planes.drawSmall(canvas, view, ANSWER_SCALE, false, 2 * THUMB);
-    const name = element("span", {}, `${subject.title.replace("the answer on ", "")}: ${title}`);
-    const button = element("button", { type: "button" }, canvas, name);
-    button.addEventListener("click", () => viewer.open(subject, codec, view));
-    place.append(button);
+// A beside B as the answer's scene shows them: the image, and how far it is off, of both at one gain.
+class Pair {
+  constructor(place) {
+    Object.assign(this, { place, turn: 0, read: new Map() });
+    shows.push((state, before) => CODECS.some((side) => state[side] !== before[side]) && this.show(state));
+    this.show(state);
   }
-  place.hidden = false;
+
+  async show(state) {
+    const turn = ++this.turn, of = ({ title }) => title.split(" at power ")[0] === `the answer on ${this.place.dataset.proof}`;
+    const has = (subject, name) => name && subject.codecs.find(({ codec }) => codec === name);
+    const subject = viewer.data.subjects.find((one) => of(one) && CODECS.some((side) => has(one, state[side])));
+    const sides = subject ? CODECS.filter((side) => has(subject, state[side])) : [];
+    const planes = await Promise.all(sides.map((side) => this.planes(subject, has(subject, state[side]))));
+    if (turn !== this.turn) return;
+    const most = Math.max(1, ...planes.map((one) => one.offBy().most));
+    const views = [["final", () => "image"], ["apart", (one) => one.offBy().said]];
+    const buttons = views.flatMap(([view, said]) => planes.map((one, at) => this.button(subject, sides[at], one, view, most, said(one))));
+    const missing = CODECS.filter((side) => state[side] && !sides.includes(side)).map((side) => `${side.toUpperCase()}, ${state[side]}`);
+    const scene = subject ? subject.title.replace("the answer on ", "") : this.place.dataset.proof;
+    const note = missing.length ? `No picture on ${scene} is in this page of ${missing.join(" and of ")}.` : `On ${scene}; full colour at ${most} of 255.`;
+    this.place.replaceChildren(...buttons, element("p", { class: "note" }, note));
+    this.place.dataset.sides = sides.length;
+    this.place.hidden = false;
+  }
+
+  async planes(subject, codec) {
+    if (!this.read.has(codec)) {
+      const exact = await pixelsOf(subject.original, subject.width, subject.height);
+      this.read.set(codec, await Planes.of(subject, codec, exact));
+    }
+    return this.read.get(codec);
+  }
+
+  button(subject, side, planes, view, scale, said) {
+    const canvas = element("canvas", { "aria-hidden": "true" });
+    planes.drawSmall(canvas, view, scale, false, 2 * THUMB);
+    const name = element("span", {}, element("b", { class: `side-${side}` }, side.toUpperCase()), ` ${planes.codec.label}: ${said}`);
+    return element("button", { type: "button", onclick: () => viewer.open(subject, planes.codec, view) }, canvas, name);
+  }
 }
 
 let viewer = null;
 const viewerRoot = document.querySelector("#viewer");
 if (viewerRoot) {
   viewer = new Viewer(viewerRoot, JSON.parse(document.querySelector("#picture-data").textContent));
-  // Pictures that are missing leave the answer's words as they are.
-  for (const place of document.querySelectorAll("[data-answer]")) showAnswer(place).catch(() => {});
+  const place = document.querySelector("[data-proof]");
+  if (place) new Pair(place);
   const start = new IntersectionObserver((entries) => {
     if (!entries.some((entry) => entry.isIntersecting)) return;
     start.disconnect();

@@ -1,10 +1,12 @@
 "use strict";
 
-// The state of the whole page: which view is shown, the codecs A and B, and a place within the view. One object, one
+// The state of the whole page: which view is shown, what is asked of a code, the codecs A and B, a place in the view. One object, one
 // function that changes it, one that shows it, and the address, which holds it.
-const VERSION = "v1", CODECS = ["a", "b"], KEYS = ["a", "b", "at", "live"];
+const VERSION = "v1", CODECS = ["a", "b"], CONSTRAINTS = ["for", "most", "readers", "worth", "enough", "holes", "lengths"];
+const KEYS = [...CONSTRAINTS, "a", "b", "at", "live"];
 const views = Array.from(document.querySelectorAll(".view")), known = JSON.parse(document.querySelector("#beginning").textContent);
-const DEFAULTS = { view: known.view, a: known.a, b: known.b, at: "", live: "" };
+const NONE = Object.fromEntries(KEYS.map((key) => [key, ""]));
+const DEFAULTS = { ...NONE, view: known.view, a: known.a, b: known.b };
 // What is no key of this version is kept, for the one that wrote it.
 let state = { ...DEFAULTS, others: [] };
 const shows = [];

@@ -1,0 +1,88 @@
+"""What the page's script chooses from: for each question the codes, judged by all that no reader's constraint changes.
+
+The script has the rule of `answer.py` alone, with a reader's limits in place of those that were asked for.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from ....reports.page.codec_key import CodecKey
+from . import answer
+from .answer import Row, groups, image_loss, largest, largest_mixed, loss_db, mean, why_unfit
+from .sentences import around_gain, called, constraints, not_held, question
+from .table import TABLE
+
+# The constants of the rule, by their names there.
+CONSTANTS = {
+    "hidden": answer.HIDDEN_SLOTS,
+    "affordable": answer.AFFORDABLE,
+    "step": answer.STEP,
+    "same": answer.SAME_PRICE,
+    "least": answer.LEAST_DB,
+    "much": answer.MUCH_BETTER_DB,
+    "hole": answer.HOLE,
+}
+# What a reader may ask for otherwise.
+ASKED = ("most_instructions", "readers", "worth", "enough", "accept_holes", "accept_lengths")
+
+
+def extras(_folder: Path, tables: Mapping[str, Sequence[Row]], _remarks: list[str]) -> Mapping[str, Any]:
+    """The questions of a run, for the page; nothing where it answers none."""
+    made = [_question(group) for group in groups(tables[TABLE.name]).values() if group[0]["aim"] != "cost"]
+    return {"choices": {"constants": CONSTANTS, "questions": made}} if made else {}
+
+
+def _question(group: Sequence[Row]) -> dict[str, Any]:
+    first = group[0]
+    asked = {name: first[name] for name in ASKED}
+    unpriced = {"length": answer.LENGTH_SAID, "hole": answer.HOLE_SAID, "price": answer.LOOPS_SAID}
+    said = {**unpriced, "figure": f"{answer.NO_FIGURE} {first['aim']}"}
+    about = {"where": question(first), "asked": asked, "said": said, "needs": _needs_text(first)}
+    return {**about, "codes": [_code(row) for row in group]}
+
+
+def _needs_text(first: Row) -> Sequence[str]:
+    """The constraints that a reader cannot change here, in words."""
+    return constraints({**first, "most_instructions": None})
+
+
+def _code(row: Row) -> dict[str, Any]:
+    fixed = {**row, "accept_lengths": True}
+    is_long = not why_unfit(fixed) and bool(why_unfit({**row, "accept_lengths": False}))
+    begin, end = around_gain(row)
+    return {
+        "name": called(row),
+        "codec": CodecKey.of(row).label,
+        "storage": row["storage"],
+        "unfit": why_unfit(fixed),
+        "long": is_long,
+        "cannot": str(row["cannot_mix"] or "").partition(":")[0],
+        "loss": _finite(loss_db(row)),
+        "tie": _finite(answer.to_a_step(image_loss(row))),
+        "met": largest(row),
+        "largest": largest_mixed(row),
+        "mean": mean(row),
+        "encode": row["encode_slots"],
+        "decode": row["decode_slots"],
+        "once": row["slots_once"],
+        "priced": row["slots"] is not None,
+        "bits": row["bits"],
+        "free": row["free_bits"],
+        "table": bool(row["table"]),
+        "image": answer.image_db(row),
+        "beside": row["beside"],
+        "packed": row["packed"],
+        "across": bool(row["mixed_across"]),
+        "lost": " ".join(not_held(row)),
+        "begin": begin,
+        "end": end,
+    }
+
+
+def _finite(value: float) -> float | None:
+    """A loss as JSON can hold it: None where it is not known."""
+    return value if math.isfinite(value) else None

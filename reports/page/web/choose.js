@@ -1,0 +1,172 @@
+"use strict";
+
+// The answer for a reader's own constraints: the rule of pick's answer.py over codes that choices.py judged.
+const LIMITS = { most: "most_instructions", readers: "readers", worth: "worth", enough: "enough", holes: "accept_holes", lengths: "accept_lengths" };
+
+// Python rounds halves to even.
+function even(value) {
+  const low = Math.floor(value), rest = value - low;
+  return rest < 0.5 || (rest === 0.5 && low % 2 === 0) ? low : low + 1;
+}
+
+// Less is better, the first number that differs decides.
+function before(one, other) {
+  const at = one.findIndex((figure, i) => figure !== other[i]);
+  return at < 0 ? 0 : one[at] - other[at];
+}
+
+// What qualifies, in its order, and why the others do not.
+function answerOf({ codes, said }, asked, { hidden, affordable, step, same, least, much, hole }) {
+  const price = ({ encode, decode }) => Math.max(encode || 0, hidden) + asked.readers * Math.max(decode || 0, hidden);
+  const doublings = (code) => Math.log2(price(code) / (hidden * (1 + asked.readers)));
+  const loss = (code) => code.loss ?? Infinity, bits = (code) => code.bits || Infinity, tenth = (x) => (Number.isFinite(x) ? even(x * 10) / 10 : x);
+  const ties = (code) => [code.tie ?? Infinity, price(code), bits(code), code.priced ? (code.encode || 0) + asked.readers * (code.decode || 0) : 0];
+  const order = (code, count) => {
+    const isEnough = code.largest !== null && 2 * code.largest <= asked.enough && price(code) <= affordable * hidden * (1 + asked.readers);
+    const first = isEnough ? [0, Number(code.table), bits(code), even(doublings(code)), tenth(loss(code))] : [1, even((loss(code) + asked.worth * doublings(code)) / step) * step, price(code), loss(code)];
+    return [...first, ...ties(code)].slice(0, count);
+  };
+  const unfit = (code) => code.unfit || (code.long && !asked.accept_lengths ? said.length : "");
+  const leasts = {};
+  for (const code of codes) if (!unfit(code) && code.met !== null) leasts[code.storage] = Math.min(code.met, leasts[code.storage] ?? Infinity);
+  const limit = ({ once }) => (asked.most_instructions === null ? "" : once === null ? "issue slots not known" : once > asked.most_instructions ? `more than ${asked.most_instructions} issue slots` : "");
+  const own = (code) => unfit(code) || code.cannot || limit(code) || (code.loss === null ? said.figure : "");
+  const why = new Map(codes.map((code) => {
+    const found = own(code), isHoled = !unfit(code) && !asked.accept_holes && code.met !== null && code.met > hole * leasts[code.storage];
+    return [code, isHoled && (!found || found === said.figure) ? said.hole : found];
+  }));
+  if (codes.some((code) => !why.get(code) && code.priced)) for (const code of codes) if (!why.get(code) && !code.priced) why.set(code, said.price);
+  const fit = codes.filter((code) => !why.get(code) && !code.beside).sort((a, b) => before(order(a), order(b)));
+  const best = fit[0], out = codes.filter((code) => why.get(code) && !code.beside);
+  if (!best) return { best, fit, out, why, others: [] };
+  // Another storage of the same bytes is worth a word where it is much better, and not worse at its worst.
+  const gain = (code) => loss(best) - loss(code), isMuchBetter = (code) => gain(code) >= much && (code.largest || Infinity) <= (best.largest || Infinity);
+  const elsewhere = codes.filter((code) => code.beside && !why.get(code) && isMuchBetter(code)).sort((a, b) => before(order(a, -4), order(b, -4))).slice(0, 1);
+  const figures = (code) => [tenth(loss(code)), price(code), bits(code)];
+  const beats = (one, other) => figures(one).every((x, i) => x <= figures(other)[i]) && figures(one).some((x, i) => x < figures(other)[i]);
+  const exact = fit.reduce((a, b) => (before(figures(b), figures(a)) < 0 ? b : a));
+  const above = fit.filter((code) => code !== best && code !== exact && gain(code) >= least && !fit.some((other) => beats(other, code))).sort((a, b) => loss(b) - loss(a));
+  const rungs = above.reduce((kept, code) => (!kept.length || loss(kept.at(-1)) - loss(code) >= least ? [...kept, code] : kept), []).slice(0, 2);
+  if (exact !== best && gain(exact) >= least) rungs.push(exact);
+  const near = fit.filter((code) => rungs.includes(code) && code.storage !== best.storage && isMuchBetter(code)).slice(0, 1);
+  return { best, fit, out, why, rungs, price, isSame: (a, b) => Math.abs(Math.log2(price(a) / price(b))) < same, others: elsewhere.length ? elsewhere : near, gain };
+}
+
+// Its first sentence, as pick writes it.
+function sentenceOf({ where, needs }, asked, { best, others, gain }) {
+  if (best) return [`${where}: take ${best.name}.`, ...(best.lost ? [best.lost] : []), ...others.map((code) => `${code.begin}${even(gain(code))}${code.end}`)].join(" ");
+  const limits = [...(asked.most_instructions === null ? [] : [`at most ${asked.most_instructions} issue slots`]), ...needs];
+  return `${where}: no code qualifies${limits.length ? ` (${limits.join(", ")})` : ""}.`;
+}
+
+// What is asked for: the question's own limits, or a reader's.
+function askedOf(question, state) {
+  const asked = { ...question.asked };
+  for (const [key, name] of Object.entries(LIMITS)) {
+    if (!state[key]) continue;
+    asked[name] = key === "holes" || key === "lengths" ? state[key] === "yes" : Number(state[key]);
+  }
+  return asked;
+}
+
+const degrees = (value) => (value === null ? "" : `${Number(value.toPrecision(3))}°`);
+const COLUMNS = [
+  ["mean error", (code) => degrees(code.mean), (code) => code.mean, "less"],
+  ["largest error", (code) => degrees(code.largest), (code) => code.largest, "less"],
+  ["slots to encode + decode", (code) => (code.priced ? `${code.encode} + ${code.decode}` : ""), (code) => code.once, "less"],
+  ["worst image", (code) => (code.image === null ? "" : `${code.image.toFixed(1)} dB`), (code) => code.image, "more"],
+  ["bits", (code) => String(code.bits ?? ""), (code) => code.bits, "less"],
+  ["bits free", (code) => String(code.free ?? ""), (code) => code.free, "more"],
+];
+
+class Choose {
+  constructor(root, { constants, questions }) {
+    Object.assign(this, { root, constants, questions });
+    this.control = Object.fromEntries(Array.from(root.querySelectorAll("[data-limit]"), (one) => [one.dataset.limit, one]));
+    this.control.for.append(...questions.map(({ where }) => element("option", {}, where)));
+    for (const [key, one] of Object.entries(this.control)) one.addEventListener("input", () => this.take(key, one));
+    root.querySelector("[data-again]").addEventListener("click", () => change(Object.fromEntries(Object.keys(LIMITS).map((key) => [key, ""]))));
+    root.querySelector(".constraints").hidden = false;
+    shows.push((state, before) => this.show(state, before));
+    this.show(state, null);
+  }
+
+  take(key, { type, checked, value, validity }) {
+    if (!validity.valid) return;
+    change({ [key]: type === "checkbox" ? (checked ? "yes" : "no") : value }, type === "number");
+  }
+
+  show(state, before) {
+    if (before && ["for", "a", "b", ...Object.keys(LIMITS)].every((key) => state[key] === before[key])) return;
+    const question = this.questions.find(({ where }) => where === state.for) ?? this.questions[0], asked = askedOf(question, state);
+    const found = answerOf(question, asked, this.constants), isOwn = JSON.stringify(asked) !== JSON.stringify(question.asked);
+    this.fill(question, asked, isOwn);
+    for (const reply of this.root.querySelectorAll("[data-question]")) reply.hidden = isOwn || reply.dataset.question !== question.where;
+    const own = this.root.querySelector("[data-own-reply]");
+    own.hidden = !isOwn;
+    own.replaceChildren(element("p", { class: "lead" }, sentenceOf(question, asked, found)), element("ul", {}, ...this.said(found).map((line) => element("li", {}, line))));
+    this.root.querySelector("[data-left]").textContent = `${found.fit.length} of ${found.fit.length + found.out.length} codes are left`;
+    this.root.querySelector("[data-codes]").replaceChildren(this.table(found), this.leftOut(found));
+    this.root.querySelector("[data-pair]").replaceChildren(...this.pair(question, state));
+  }
+
+  // The controls say what is asked for.
+  fill(question, asked, isOwn) {
+    this.control.for.value = question.where;
+    for (const [key, name] of Object.entries(LIMITS)) {
+      const one = this.control[key], value = asked[name];
+      if (one.type === "checkbox") one.checked = value;
+      else if (document.activeElement !== one || one.tagName === "SELECT") {
+        if (one.tagName === "SELECT" && !Array.from(one.options).some((option) => Number(option.value) === value)) one.append(new Option(String(value), value));
+        one.value = one.tagName === "SELECT" ? Array.from(one.options).find((option) => Number(option.value) === value).value : value ?? "";
+      }
+    }
+    this.root.querySelector("[data-again]").hidden = !isOwn;
+  }
+
+  said({ best, rungs, gain, price, isSame }) {
+    if (!best) return ["Allow more slots, or accept holes or lengths."];
+    const slots = best.priced ? `It takes ${best.encode} issue slots to encode and ${best.decode} to decode, and has ${best.bits} bits.` : "What it costs is not known on this machine.";
+    const rung = (code) => {
+      const better = gain(code), ratio = price(code) / price(best);
+      return `${better >= 0 ? "More exact" : "Less exact"}: ${code.name}, ${Math.abs(better).toFixed(1)} dB, ${isSame(code, best) ? "for the same price" : `for ${Number(ratio.toPrecision(2))} times the price`}.`;
+    };
+    return [`Its mean error is ${degrees(best.mean)}, its largest ${degrees(best.largest)}.`, slots, ...rungs.map(rung)];
+  }
+
+  table({ fit, price }) {
+    const most = Math.max(...fit.map((code) => price(code))), least = fit.length ? price(fit[0]) : 1;
+    const heads = [element("th", { scope: "col" }, "code"), ...COLUMNS.map(([title]) => element("th", { scope: "col", class: "n" }, title)), element("th", { scope: "col" }, "price")];
+    const rows = fit.map((code) => {
+      const bar = element("span", { class: "bar", style: `--share: ${price(code) / most}` });
+      const ratio = element("td", { class: "priced" }, bar, code.priced ? `${Number((price(code) / least).toPrecision(2))} ×` : "");
+      return element("tr", { "data-codec": code.codec }, element("th", { scope: "row" }, nameButton(code.codec, code.name)), ...COLUMNS.map(([, text]) => element("td", { class: "n" }, text(code))), ratio);
+    });
+    const table = element("table", {}, element("caption", {}, element("span", {}, "All codes that are left, the best first")), element("thead", { class: "plain" }, element("tr", {}, ...heads)), element("tbody", {}, ...rows));
+    return element("div", { class: "scroll", role: "region", "aria-label": "All codes that are left", tabindex: "0" }, table);
+  }
+
+  leftOut({ out, why }) {
+    const reasons = new Map();
+    for (const code of out) reasons.set(why.get(code), [...(reasons.get(why.get(code)) ?? []), code.name]);
+    const lines = Array.from(reasons, ([reason, names]) => element("p", {}, `${names.join(", ")}: ${reason}.`));
+    return element("details", { class: "aside" }, element("summary", {}, `What does not qualify (${out.length})`), ...lines);
+  }
+
+  // A and B in the figures of the question, the better one of each marked.
+  pair({ codes, where }, state) {
+    const [a, b] = CODECS.map((side) => codes.find(({ codec }) => codec === state[side]));
+    if (!a && !b) return [element("p", { class: "note" }, `Neither A nor B is of ${where}. Click a code below: it is A, with shift B.`)];
+    const cell = ([, text, value, better], one, other) => {
+      const isBest = one && other && value(one) !== null && value(other) !== null && (better === "less" ? value(one) < value(other) : value(one) > value(other));
+      return element("td", { class: isBest ? "n best" : "n" }, one ? text(one) : "");
+    };
+    const heads = CODECS.map((side, at) => element("th", { scope: "col", class: `n side-${side}` }, `${side.toUpperCase()} ${[a, b][at]?.name ?? "not of this question"}`));
+    const rows = COLUMNS.map((column) => element("tr", {}, element("th", { scope: "row" }, column[0]), cell(column, a, b), cell(column, b, a)));
+    const table = element("table", { class: "pair-figures" }, element("thead", { class: "plain" }, element("tr", {}, element("td", {}), ...heads)), element("tbody", {}, ...rows));
+    return [element("div", { class: "scroll", role: "region", "aria-label": "A beside B", tabindex: "0" }, table)];
+  }
+}
+
+const chooseRoot = document.querySelector("[data-choose]");
+if (chooseRoot) unpacked("#data-choices").then((text) => new Choose(chooseRoot, JSON.parse(text)));

@@ -1,0 +1,149 @@
+"""The page's answer for a reader's constraints is pick's, to the letter."""
+
+import numpy as np
+from browsing import Opened
+from test_pictures import answered_run
+
+from normalbench.bench.tables.pick.answer import answered
+from normalbench.bench.tables.pick.choices import CONSTANTS, extras
+from normalbench.bench.tables.pick.sentences import told
+from normalbench.bench.tables.registry import TABLES
+from normalbench.encodings.catalogue import ENCODINGS
+
+SETS = 500
+ASK = """([questions, constants]) => questions.map(([question, asked]) => {
+  const found = answerOf(question, asked, constants);
+  return [sentenceOf(question, asked, found), found.fit.map(({ codec }) => codec)];
+})"""
+
+
+def made_up_rows(rng: np.random.Generator) -> list[dict]:
+    """Rows of a question as a run keeps them: prices and errors of a few sizes, so that many are equal, and codes of
+    every kind that is left out."""
+    usual = {
+        "asked": "rgb10a2",
+        "normals": "sphere",
+        "scene": "studio",
+        "aim": "angle",
+        "bytes": 4,
+        "rounding": "nearest",
+    }
+    usual |= {
+        "readers": 4,
+        "worth": 3.0,
+        "enough": 0.35,
+        "against": False,
+        "accept_holes": False,
+        "accept_lengths": False,
+    }
+    rows = []
+    for name in ENCODINGS:
+        for storage in ("rgb10a2", "rgb8_10_10_2", "rg16"):
+            if rng.random() < 0.3:
+                continue
+            encode, decode = rng.choice([0, 5, 14, 16, 20, 36, 64, 115.5, 289], 2)
+            is_priced, mean = rng.random() < 0.9, float(0.02 * 2 ** (rng.integers(0, 24) / 4))
+            largest = mean * float(rng.choice([2, 3, 30]))
+            rows.append(
+                TABLES["pick"].empty()
+                | usual
+                | {"encoding": name, "storage": storage, "beside": storage == "rg16", "packed": "_" in storage}
+                | {"angle_mean_deg": mean, "angle_max_deg": largest, "worst_normal": "(1.0, 0.0, 0.0)"}
+                | {"angle_sup_deg": largest * 1.1 if rng.random() < 0.3 else None}
+                | {
+                    "encode_slots": float(encode) if is_priced else None,
+                    "decode_slots": float(decode) if is_priced else None,
+                }
+                | {"slots_once": float(encode + decode) if is_priced else None}
+                | {"slots": float(encode + 4 * decode) if is_priced else None}
+                | {
+                    "bits": int(rng.choice([20, 24, 30])),
+                    "free_bits": int(rng.integers(0, 3)),
+                    "table": rng.random() < 0.1,
+                }
+                | {
+                    "domain": str(rng.choice(["sphere"] * 9 + ["hemisphere"])),
+                    "length_share": float(rng.choice([0, 0.7], p=[0.9, 0.1])),
+                }
+                | {"invalid": int(rng.random() < 0.03), "code_bits": 10.0 if rng.random() < 0.05 else None}
+                | {"image_db_studio": float(rng.uniform(20, 80)) if rng.random() < 0.5 else None}
+                | {"image_lost_percent": 3.0 if rng.random() < 0.05 else None, "image_lost_scene": "studio"}
+            )
+            if rows[-1]["domain"] == "hemisphere":
+                rows[-1]["lost_percent"] = 50.0
+    return rows
+
+
+def asked_at_random(rng: np.random.Generator) -> dict:
+    return {
+        "most_instructions": [None, None, *range(0, 60, 5), 100, 300][rng.integers(16)],
+        "readers": int(rng.integers(0, 9)),
+        "worth": float(rng.choice([0.5, 1.0, 3.0, 6.0])),
+        "enough": float(rng.choice([0.0, 0.1, 360 / 1024, 1.0, 5.0])),
+        "accept_holes": bool(rng.integers(2)),
+        "accept_lengths": bool(rng.integers(2)),
+    }
+
+
+def test_the_pages_answer_is_picks_for_any_constraints(opened, tmp_path):
+    rng = np.random.default_rng(11)
+    pairs, expected = [], []
+    for at in range(SETS):
+        if at % 25 == 0:
+            rows = made_up_rows(rng)
+            (question,) = extras(tmp_path, {"pick": rows}, [])["choices"]["questions"]
+        asked = asked_at_random(rng)
+        # A price in the rows is that of their own readers.
+        own = [row | asked | {"slots": _slots(row, asked["readers"])} for row in rows]
+        found = answered(own)
+        pairs.append([question, asked])
+        fit = [f"{row['encoding']} {row['storage']}" for row in found if not row["left_out"] and not row["beside"]]
+        expected.append([told(found)[0], fit])
+    said = opened.page.evaluate(ASK, [pairs, CONSTANTS])
+    wrong = [(one, other) for one, other in zip(said, expected, strict=True) if one != other]
+    assert not wrong, f"{len(wrong)} of {SETS}: {wrong[0]}"
+    answers = {sentence for sentence, _ in expected}
+    assert (
+        len(answers) > 50
+        and any("no code qualifies" in one for one in answers)
+        and any("In rg16" in one for one in answers)
+    )
+
+
+def _slots(row: dict, readers: int) -> float | None:
+    return None if row["slots"] is None else row["encode_slots"] + readers * row["decode_slots"]
+
+
+def test_constraints_change_the_answer_the_count_and_the_address(browser, run, tmp_path):
+    """By the keyboard; what the run asked for itself is in no address, and a button brings it back."""
+    assert run("report", str(answered_run(tmp_path / "run")))[0] == 0
+    page = Opened(browser, tmp_path / "run/report.html")
+    page.page.locator(".constraints").wait_for()
+    left, codes = page.page.locator("[data-left]"), page.page.locator("[data-codes] tbody tr")
+    assert left.text_content() == "2 of 2 codes are left" and codes.count() == 2
+    assert page.page.locator(".reply:visible .lead").all_text_contents() == ["rg8, on sphere: take fine."]
+    most = page.page.locator("[data-limit=most]")
+    most.focus()
+    page.page.keyboard.type("6")
+    assert left.text_content() == "1 of 2 codes are left" and codes.count() == 1
+    assert page.page.locator(".reply:visible .lead").all_text_contents() == ["rg8, on sphere: take xy."]
+    assert page.page.evaluate("location.hash") == "#v1/choose?most=6"
+    page.page.locator("[data-limit=for]").select_option("rgb10a2, on sphere")
+    assert page.page.locator(".reply:visible .lead").all_text_contents() == ["rgb10a2, on sphere: take xy."]
+    # A copied address shows the same.
+    other = Opened(browser, tmp_path / "run/report.html", fragment=page.page.evaluate("location.hash"))
+    other.page.locator(".constraints").wait_for()
+    for one in (page, other):
+        assert one.page.locator("[data-left]").text_content() == "1 of 2 codes are left"
+        assert one.page.locator("[data-limit=most]").input_value() == "6"
+    other.context.close()
+    page.page.locator("[data-again]").click()
+    assert page.page.evaluate("state.most") == "" and left.text_content() == "2 of 2 codes are left"
+    most.fill("1")
+    assert (
+        page.page.locator(".reply:visible .lead").text_content().endswith("no code qualifies (at most 1 issue slots).")
+    )
+    page.page.locator("[data-codes] summary").click()
+    assert "more than 1 issue slots" in page.page.locator("[data-codes] details").text_content()
+    assert page.said == []
+    page.context.close()
