@@ -87,15 +87,13 @@ def test_only_the_folder_of_opengl_imports_moderngl():
 DRAWN_BY = {"draw.py", "labels.py", "looks.py", "plots.py", "sphere_chart.py", "pictures.py"}
 
 
-def test_only_the_renderers_of_charts_know_matplotlib_and_vega():
+def test_only_the_renderers_of_charts_know_matplotlib_and_d3():
     """All others say a chart as a value."""
     charts = ROOT / "reports" / "charts"
     drawing = {path for path in SOURCES if any(name.split(".")[0] == "matplotlib" for name in imported(path))}
     assert drawing <= {charts / name for name in DRAWN_BY}
-    naming = {
-        path for path in SOURCES if re.search(r"vega-?lite|vl_convert|vegaembed", path.read_text(), re.IGNORECASE)
-    }
-    assert naming == {charts / "vega.py"}
+    naming = {path for path in SOURCES if re.search(r"\bd3\b|mpld3", path.read_text())}
+    assert naming == {charts / "wire.py"}
 
 
 def test_a_folder_of_the_renderer_is_read_at_a_glance():

@@ -15,7 +15,7 @@ from types import MappingProxyType
 from typing import Any
 
 from ...encodings.catalogue import ENCODINGS
-from ...reports.charts import drawings, vega
+from ...reports.charts import drawings, wire
 from ...reports.page import embedded, markdown, page, several
 from ...reports.page.found import Found, plain_text
 from ...reports.page.live import Live
@@ -132,7 +132,7 @@ def write_report(
     _write_beside(target.parent / pictures, gallery.files)
     with whole_file(target) as partial:
         files = {path.name for path in folder.iterdir()} if target.parent.resolve() == folder.resolve() else set()
-        made = page.html(run.with_remarks(failed), gallery, specs, _library() if specs else "", files)
+        made = page.html(run.with_remarks(failed), gallery, specs, wire.library() if specs else "", files)
         partial.write_text(made, encoding="utf-8")
     return target
 
@@ -147,11 +147,6 @@ def _write_beside(folder: Path, files: Mapping[str, str]) -> None:
     for name, text in files.items():
         with whole_file(folder / name) as partial:
             partial.write_text(text, encoding="utf-8")
-
-
-def _library() -> str:
-    """What draws interactive charts. Bundling it takes seconds, so it is kept."""
-    return cache.kept(cache.key_of(vega.library_name()), lambda: {"script": vega.library()})["script"]
 
 
 def draw_ahead(folder: Path) -> dict[str, str]:
@@ -172,15 +167,15 @@ def _what_it_shows(drawing: drawings.Drawing) -> str:
     return cache.key_of(pickle.dumps(drawing.draw))
 
 
-def _drawn(run: Found, folder: Path, drawn: Mapping[str, str]) -> tuple[dict[str, Sequence[Row]], list[str]]:
+def _drawn(run: Found, folder: Path, drawn: Mapping[str, str]) -> tuple[dict[str, wire.Spec], list[str]]:
     """Writes every chart as files. Gives those of the page by name, and a sentence for each that cannot be drawn."""
     specs, failed = {}, []
     for drawing in page.drawings(run):
         try:
             if not (drawing.name in drawn and drawn[drawing.name] == _what_it_shows(drawing)):
                 _write_chart(drawing, folder)
-            if drawing.specs:
-                made = drawing.specs()
+            if drawing.spec:
+                made = drawing.spec()
                 # A browser reads no infinity.
                 json.dumps(made, allow_nan=False)
                 specs[drawing.name] = made

@@ -1,4 +1,4 @@
-"""A chart as one frozen value, which `draw.py` writes as files and `vega.py` gives to the page.
+"""A chart as one frozen value, which `draw.py` writes as files and `wire.py` gives to the page.
 
 Rows are mappings of plain values. A row that has a codec names it in `codec`, as tables and pictures do.
 """
@@ -16,8 +16,13 @@ from ..page.verdict import is_number
 Row = Mapping[str, Any]
 Domain = tuple[float, float]
 
-# Okabe and Ito's colours, told apart by most people who do not see all of them.
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999", "#8C564B")
+# Of what has no order, on white and on dark paper; near Okabe and Ito's, moved apart until each two are told apart by
+# those who do not see red, green or blue (a test computes how far).
+COLOURS = ("#335FA3", "#BB5209", "#28895F", "#CA609E", "#AD8A27", "#0490CE", "#1A1D21", "#656375", "#834D3E")
+DARK = ("#5393E6", "#EA8141", "#4DC287", "#BE8EB7", "#ECAA09", "#77CDFE", "#E7E9EC", "#B0BBC5", "#BE796C")
+# Of what has an order: viridis from what stands out least from the paper to what stands out most.
+ORDERED = ("#21918C", "#2C728E", "#3B528B", "#472D7B", "#440154")
+ORDERED_DARK = ("#26828E", "#1F9E89", "#4AC16D", "#A0DA39", "#FDE725")
 SHAPES = (
     *("circle", "square", "diamond", "triangle-up", "triangle-down", "cross", "triangle-left", "triangle-right"),
     *("star", "x"),
@@ -126,12 +131,20 @@ class Names:
         values: all of them, in order.
         title: what the names are: the heading of the page's legend. In files it follows each name, as a unit does.
         looks: the shapes or dashes of the values; empty for the usual ones in turn.
+        is_ordered: whether the values go up, as bits do: their colours then go from light to dark.
     """
 
     field: str
     values: tuple[Any, ...]
     title: str = ""
     looks: tuple[Any, ...] = ()
+    is_ordered: bool = False
+
+    def colours(self, is_dark: bool = False) -> list[str]:
+        """The colour of each value, on white or on dark paper: #RRGGBB."""
+        if self.is_ordered:
+            return _between(ORDERED_DARK if is_dark else ORDERED, len(self.values))
+        return self.of(DARK if is_dark else COLOURS)
 
     def of(self, looks: Sequence[Any]) -> list[Any]:
         """What each value looks like, of the usual looks."""
@@ -257,6 +270,15 @@ class Chart:
         names = getattr(self, look)
         return names if isinstance(names, Names) and names.field == getattr(mark, look) else None
 
+    @property
+    def legends(self) -> list[dict[str, Names]]:
+        """What a legend says: for each field that is told apart, by colour, shape and dash, its names."""
+        fields: dict[str, dict[str, Names]] = {}
+        for name in ("colour", "shape", "dash"):
+            if isinstance(names := getattr(self, name), Names):
+                fields.setdefault(names.field, {})[name] = names
+        return list(fields.values())
+
     def rows_of(self, mark: Mark) -> tuple[Row, ...]:
         """The rows of a mark that have a place."""
         axes = ((self.x, mark.x), (self.x, mark.x2), (self.y, mark.y), (self.y, mark.y2))
@@ -351,3 +373,16 @@ def lines_apart(axis: Axis, values: Sequence[float], height: float, least: float
 def distinct(rows: Sequence[Row], field: str) -> tuple[Any, ...]:
     """The values of a field, in the order of the rows."""
     return tuple(dict.fromkeys(row[field] for row in rows))
+
+
+def _between(colours: Sequence[str], count: int) -> list[str]:
+    """As many colours as asked for, evenly spaced along a sequence of them; of one alone the middle."""
+    last = len(colours) - 1
+    return [_mixed(colours, at / (count - 1) * last if count > 1 else last / 2) for at in range(count)]
+
+
+def _mixed(colours: Sequence[str], place: float) -> str:
+    """The colour at a place of a sequence: 2.5 is between the third and the fourth."""
+    at = min(int(place), len(colours) - 2)
+    pairs = ((int(colour[i : i + 2], 16) for colour in colours[at : at + 2]) for i in (1, 3, 5))
+    return "#" + "".join(f"{round(a + (b - a) * (place - at)):02X}" for a, b in pairs)

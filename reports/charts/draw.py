@@ -10,7 +10,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from .chart import COLOURS, DASHES, SHAPES, Axis, Chart, Kind, Mark, Names, Row, Scale, Shades
+from .chart import DASHES, SHAPES, Axis, Chart, Kind, Mark, Names, Row, Scale, Shades
 from .labels import label_ends, label_points, write_ends
 from .looks import MARKERS, as_text, colour_of, marker_of, places, plain, shade, stroke, stroke_of
 from .plots import drawn_off_screen, save
@@ -231,15 +231,11 @@ def _legend(place: Any, chart: Chart) -> None:
     """What colours, shapes and dashes mean, those of one field together; what labels say is not said again."""
     from matplotlib.lines import Line2D
 
-    scales: dict[str, dict[str, Names]] = {}
-    for name in ("colour", "shape", "dash"):
-        if isinstance(names := getattr(chart, name), Names):
-            scales.setdefault(names.field, {})[name] = names
     if any(mark.kind == Kind.ENDS for mark in chart.marks):
         return
     handles = [
         Line2D([], [], label=as_text(f"{value} {names.title}".strip()), **_look(chart, named, at))
-        for named in scales.values()
+        for named in chart.legends
         for names in [next(iter(named.values()))]
         for at, value in enumerate(names.values)
     ]
@@ -252,7 +248,7 @@ def _legend(place: Any, chart: Chart) -> None:
 def _look(chart: Chart, named: Mapping[str, Names], at: int) -> dict[str, Any]:
     """A line of the legend: a colour, a shape or a dash, or several of them."""
     kinds = {mark.kind for mark in chart.marks if mark.colour in {names.field for names in named.values()}}
-    colour = named["colour"].of(COLOURS)[at] if "colour" in named else "#555555"
+    colour = named["colour"].colours()[at] if "colour" in named else "#555555"
     if "shape" in named:
         return {"color": colour, "marker": MARKERS[named["shape"].of(SHAPES)[at]], "linestyle": "", "markersize": 5}
     if "dash" in named:

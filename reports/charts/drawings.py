@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -11,8 +11,7 @@ from typing import Any
 from .chart import Chart
 from .draw import figure, settings
 from .plots import save
-from .vega import rows_of as rows_of
-from .vega import specs
+from .wire import Spec, spec
 
 
 @dataclass(frozen=True)
@@ -24,20 +23,20 @@ class Drawing:
         title: what it is called.
         description: what it shows, for who cannot see it.
         draw: gives a figure for `plots.save`.
-        specs: gives the same as interactive charts; None where the page has a picture instead.
+        spec: gives the same as the page draws it; None where the page has a picture instead.
     """
 
     name: str
     title: str
     description: str
     draw: Callable[[], Any]
-    specs: Callable[[], Sequence[dict[str, Any]]] | None = None
+    spec: Callable[[], Spec] | None = None
 
 
 def of(chart: Chart) -> Drawing:
     """A chart, to be drawn."""
     said = f"{chart.subtitle}. {chart.description}"
-    return Drawing(chart.name, chart.title, said, partial(figure, (chart,)), partial(specs, chart))
+    return Drawing(chart.name, chart.title, said, partial(figure, (chart,)), partial(spec, chart))
 
 
 def write(drawing: Drawing, *files: tuple[Path, str]) -> None:

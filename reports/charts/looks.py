@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
-from .chart import COLOURS, DASHES, FAINT, INK, MUTED, SHAPES, Axis, Chart, Mark, Names, Row, Scale, Shades
+from .chart import DASHES, FAINT, INK, MUTED, SHAPES, Axis, Chart, Mark, Names, Row, Scale, Shades
 
 # How many letters of a name a chart has room for.
 LONGEST = 48
@@ -43,7 +43,7 @@ def colour_of(part: Chart, mark: Mark, row: Row) -> str:
     if mark.colour in ROLES:
         return ROLES[mark.colour]
     names = part.named("colour", mark)
-    return look(names, COLOURS, row) if names else str(row[mark.colour])
+    return names.colours()[names.values.index(row[names.field])] if names else str(row[mark.colour])
 
 
 def marker_of(part: Chart, mark: Mark, row: Row) -> str:

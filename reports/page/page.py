@@ -14,7 +14,9 @@ from typing import Any
 
 from .. import tables
 from ..charts import spheres
-from ..charts.drawings import Drawing, rows_of
+from ..charts.drawings import Drawing
+from ..charts.wire import Spec
+from ..charts.wire import codecs as drawn_codecs
 from ..sheets import Column, Row, Sheet, View, undefined
 from . import embedded, live
 from .codec_key import CodecKey
@@ -24,7 +26,7 @@ from .sections import TableSection, whole
 from .verdict import is_number
 
 WEB = Path(__file__).parent / "web"
-SCRIPTS = ("tables.js", "state.js", "data.js", "choose.js", "pictures.js", "charts.js", "opener.js")
+SCRIPTS = ("tables.js", "state.js", "data.js", "choose.js", "pictures.js", "charts.js", "figures.js", "opener.js")
 # Text of more letters than this may break into lines.
 WRAPPED = 24
 
@@ -149,10 +151,10 @@ def remarks(found: Found) -> list[str]:
 
 @dataclass(frozen=True)
 class Chart:
-    """A drawing in the page, as one interactive chart or several."""
+    """A drawing in the page, and what charts.js draws of it."""
 
     drawing: Drawing
-    plots: int
+    spec: Spec
 
 
 @dataclass(frozen=True)
@@ -225,11 +227,10 @@ def template(name: str) -> Any:
     return environment.get_template(name)
 
 
-def codecs(found: Found, specs: Mapping[str, Sequence[Row]]) -> list[str]:
+def codecs(found: Found, specs: Mapping[str, Spec]) -> list[str]:
     """Every codec that the page shows, by name."""
     named = {one.codec for subject in found.subjects for one in subject.codecs if one.codec}
-    drawn = (row for several in specs.values() for spec in several for row in rows_of(spec))
-    named |= {row["codec"] for row in drawn if "codec" in row}
+    named |= {name for spec in specs.values() for name in drawn_codecs(spec)}
     encodings = found.encodings
     rows = [row for section in found.sections for row in section.rows]
     return sorted(named | {name for row in rows if " " in (name := _codec(row, encodings))})
@@ -238,7 +239,7 @@ def codecs(found: Found, specs: Mapping[str, Sequence[Row]]) -> list[str]:
 def html(
     found: Found,
     gallery: embedded.Gallery,
-    specs: Mapping[str, Sequence[Row]],
+    specs: Mapping[str, Spec],
     library_script: str,
     files: Container[str] = (),
 ) -> str:
@@ -319,8 +320,8 @@ def sources_of(scripts: Sequence[str], is_beside: bool = False) -> str:
     return " ".join([*(f"'sha256-{digest}'" for digest in digests), *(["'self'", "file:"] if is_beside else [])])
 
 
-def _part(found: Found, section: TableSection, specs: Mapping[str, Sequence[Row]]) -> Part:
+def _part(found: Found, section: TableSection, specs: Mapping[str, Spec]) -> Part:
     encodings = found.encodings
     shown = [_table(sheet, section.column, encodings) for sheet in section.sheets]
-    charts = [Chart(drawing, len(specs[drawing.name])) for drawing in section.drawings if drawing.name in specs]
+    charts = [Chart(drawing, specs[drawing.name]) for drawing in section.drawings if drawing.name in specs]
     return Part(section, charts, shown, section.measured())

@@ -1,27 +1,27 @@
 """Charts drawn by both renderers, and what each of them shows."""
 
+from __future__ import annotations
+
 import json
-import re
 from collections import Counter
 from dataclasses import dataclass, field
+from functools import partial
+from math import dist
 from pathlib import Path
-from xml.etree import ElementTree
+from typing import Any
 
 import pytest
-import vl_convert
 from matplotlib import pyplot
 from matplotlib.collections import FillBetweenPolyCollection, LineCollection, PathCollection
 from matplotlib.patches import Rectangle
 
 from normalbench.bench.tables.registry import TABLES
-from normalbench.reports.charts import draw, vega
-from normalbench.reports.charts.chart import Chart, Kind, Scale
+from normalbench.reports.charts import draw, drawings, wire
+from normalbench.reports.charts.chart import Axis, Chart, Kind, Scale
+from normalbench.reports.page import page as report
+from normalbench.reports.page.page import WEB, template
 
 WIDTH = 900
-SVG = "{http://www.w3.org/2000/svg}"
-# Marks of the page that a file has as parts of others.
-NOT_COUNTED = ("hits", "leaders")
-TITLE = re.compile(r"([XY])-axis (?:titled '(.*)' )?for a")
 
 
 @dataclass
@@ -65,53 +65,96 @@ def _in_axes(axes, part: Chart) -> Shown:
     return found
 
 
-def in_pages(chart: Chart) -> list[Shown]:
-    """What each panel shows, drawn by Vega-Lite, with what a switch has chosen at first."""
-    switch = chart.switch
-    choices = switch.values if switch and switch.has_panels else [None]
-    return [_in_svg(_chosen(spec, choice)) for choice in choices for spec in vega.specs(chart)]
+# Puts a figure into the page, and draws it.
+PUT = """([html, spec, codecs]) => {
+  document.querySelector("main").innerHTML = html;
+  known.codecs = codecs;
+  change({ a: "", b: "" });
+  const figure = document.querySelector("figure"), height = () => document.querySelector("[data-drawn]").offsetHeight;
+  const before = height();
+  charts.specs = { [figure.dataset.chart]: spec };
+  charts.views.clear();
+  while (drawNext(figure));
+  return [before, height()];
+}"""
+# Reads the panels for each choice of a switch: marks and texts, what axes say and where, the box.
+READ = """(choices) => {
+  const all = (node, selector) => Array.from(node.querySelectorAll(selector));
+  const figure = document.querySelector("figure");
+  const said = (node) => node.querySelector("title")?.textContent ?? node.textContent;
+  const numbers = (node) => node.getAttribute("transform").match(/-?[0-9.]+(e-?[0-9]+)?/g).map(Number);
+  const panel = (svg) => {
+    const box = svg.querySelector("clipPath rect"), kinds = ["points", "lines", "areas", "rules", "bars", "cells"];
+    const [x, y, width, height] = ["x", "y", "width", "height"].map((name) => Number(box.getAttribute(name)));
+    const tick = (one) => [said(one.querySelector("text")), ...numbers(one)];
+    const counts = kinds.map((kind) => [kind, all(svg, `.${kind}`).length]);
+    return {
+      box: [x + 6, y + 6, x + width - 6, y + height - 6],
+      marks: Object.fromEntries(counts.filter(([, count]) => count)),
+      texts: all(svg, "text.texts, text.labels, text.ends").filter((one) => !one.matches(".unplaced")).map(said),
+      axes: all(svg, ".axis").map((axis) => all(axis, ".tick").map(tick)),
+      titles: all(svg, ".title[transform]").map(said),
+      points: all(svg, ".points").map((one) => numbers(one).slice(0, 2)),
+    };
+  };
+  return choices.flatMap((choice) => {
+    const select = figure.querySelector("[data-switch]");
+    if (choice) select.value = choice;
+    for (const view of charts.views.values()) view.draw();
+    return all(figure, ".plot svg").map(panel);
+  });
+}"""
 
 
-def _chosen(spec, choice):
-    """A specification as it is where a reader has chosen something else."""
-    if choice is None:
-        return spec
-    param = spec["usermeta"]["switch"]["param"]
-    chosen = [one | {"value": choice} if one["name"] == param else one for one in spec["params"]]
-    return spec | {"params": chosen}
+# What a report's scripts find beside its figures.
+AROUND = """<button id="theme"><span></span></button><nav></nav><style id="sides"></style><main></main>
+<script type="application/json" id="beginning">{"codecs": [], "a": "", "b": "", "view": ""}</script>"""
 
 
-def _in_svg(spec) -> Shown:
-    # What follows the container is as wide as it is told here.
-    text = json.dumps(spec | {"width": WIDTH}, allow_nan=False).replace("containerSize()[0]", str(WIDTH))
-    whole = json.loads(text)
-    scales = {scale["name"]: scale for scale in vl_convert.vegalite_to_vega(whole)["scales"]}
-    found = Shown(extents={name: _ends(scales[name]) for name in ("x", "y") if name in scales})
-    for element in ElementTree.fromstring(vl_convert.vegalite_to_svg(whole)).iter():
-        if element.tag == f"{SVG}g":
-            _count(element, found)
-            if "role-axis-label" in element.get("class", ""):
-                found.ticks |= {"".join(one.itertext()) for one in element.iter(f"{SVG}text")}
-        if said := TITLE.match(element.get("aria-label", "")):
-            found.titles[said[1].lower()] = said[2] or ""
-    found.texts.sort()
-    return found
+class Page:
+    """A page of a browser with the scripts of a report, which draws one chart after the other.
 
+    Args:
+        page: an empty one.
+        path: a file that it becomes; a page without an address cannot keep a state.
+    """
 
-def _ends(scale) -> tuple[float, ...]:
-    """The values at the ends of an axis, or how many names it has."""
-    return (len(scale["domain"]),) if scale["type"] in ("band", "point") else tuple(scale["domain"])
+    def __init__(self, page, path: Path):
+        self.page, self.said = page, []
+        page.on("pageerror", lambda error: self.said.append(str(error)))
+        names = ("tables.js", "state.js", "charts.js", "figures.js")
+        scripts = [wire.library(), *((WEB / name).read_text() for name in names)]
+        style = (WEB / "page.css").read_text() + f"main {{ width: {WIDTH}px; }} main .plots {{ display: block; }}"
+        texts = "".join(f"<script>{text}</script>" for text in scripts)
+        path.write_text(f"<!doctype html><meta charset='utf-8'><style>{style}</style>{AROUND}{texts}")
+        page.goto(path.as_uri())
 
+    def put(self, chart: Chart) -> list[float]:
+        """Draw a chart. Gives the height of what holds its panels before and after it."""
+        spec = wire.spec(chart)
+        json.dumps(spec, allow_nan=False)
+        figure = template("parts.html.j2").module.chart(report.Chart(drawings.of(chart), spec))
+        heights = self.page.evaluate(PUT, [str(figure), spec, sorted(wire.codecs(spec))])
+        assert not self.said, self.said
+        return heights
 
-def _count(group, found: Shown) -> None:
-    named = re.search(r"role-mark ([a-z]+)_\d+_marks", group.get("class", ""))
-    if not named or named[1] in NOT_COUNTED:
-        return
-    kind, marks = named[1], [one for one in group if one.get("opacity") != "0"]
-    if kind in (Kind.TEXTS, Kind.LABELS, Kind.ENDS):
-        found.texts += ["".join(one.itertext()) for one in group.iter(f"{SVG}text")]
-    else:
-        found.marks[kind] = found.marks.get(kind, 0) + len(marks)
+    def panels(self, chart: Chart) -> list[dict]:
+        """What READ finds in each panel, with what a switch has chosen at first, or with each choice."""
+        self.put(chart)
+        switch = chart.switch
+        return self.page.evaluate(READ, list(switch.values) if switch and switch.has_panels else [""])
+
+    def agree(self, chart: Chart) -> list[Shown]:
+        """Panels of a chart that a file and the page show alike, and as the chart's value has them."""
+        files, pages = in_files(chart), self.panels(chart)
+        assert len(files) == len(pages)
+        named = {name for axis in (chart.x, chart.y) for name in (*axis.names, *(name for _, name in axis.ticks))}
+        for file, page, (_, part) in zip(files, pages, chart.still(), strict=True):
+            same(file, page)
+            stands(part, page)
+            ticks = {text for axis in page["axes"] for text, *_ in axis}
+            assert named <= file.ticks and named <= ticks, (named - file.ticks, named - ticks)
+        return files
 
 
 def rows_of_tables() -> dict[str, list[dict]]:
@@ -126,21 +169,41 @@ def rows_of_tables() -> dict[str, list[dict]]:
     }
 
 
-def same(file: Shown, page: Shown) -> None:
-    """A file and the page agree; the page names points of the rest only when they are picked."""
-    assert file.marks == page.marks
-    assert Counter(page.texts) <= Counter(file.texts)
-    assert file.titles == page.titles and set(file.extents) == {"x", "y"}
-    for name, ends in file.extents.items():
-        assert ends == pytest.approx(page.extents[name], rel=1e-6), name
+def same(file: Shown, page: dict) -> None:
+    """A file and the page agree; the page leaves names of the rest out where there is no room for them."""
+    assert file.marks == page["marks"]
+    assert Counter(page["texts"]) <= Counter(file.texts)
+    assert [file.titles["x"], file.titles["y"]] == page["titles"]
 
 
-def agree(chart: Chart) -> list[Shown]:
-    """Panels of a chart that both renderers show alike."""
-    files, pages = in_files(chart), in_pages(chart)
-    assert len(files) == len(pages)
-    named = {name for axis in (chart.x, chart.y) for name in (*axis.names, *(name for _, name in axis.ticks))}
-    for file, page in zip(files, pages, strict=True):
-        same(file, page)
-        assert named <= file.ticks and named <= page.ticks, (named - file.ticks, named - page.ticks)
-    return files
+def stands(part: Chart, page: dict) -> None:
+    """Axes and points of the page are where the chart's value has them, to within a tenth of a pixel; d3 moves what
+    has a line by half a pixel, so that it is sharp."""
+    left, top, right, bottom = page["box"]
+    for axis, ticks, at, (start, end) in zip(
+        (part.x, part.y), page["axes"], (1, 2), ((left, right), (bottom, top)), strict=True
+    ):
+        assert len(ticks) > 1 or not part.rows, axis.title
+        if axis.names:
+            assert [tick[0] for tick in ticks] == list(axis.names)
+        moved = 0 if axis.names else 0.5
+        for tick in ticks:
+            assert tick[at] - moved == pytest.approx(_at(axis, tick[0], start, end), abs=0.1), (axis.title, tick)
+    marks = [mark for mark in part.marks if mark.kind == Kind.POINTS]
+    places = [
+        (_at(part.x, row[mark.x], left, right), _at(part.y, row[mark.y], bottom, top))
+        for mark in marks
+        for row in part.rows_of(mark)
+    ]
+    assert len(places) == len(page["points"])
+    for some, others in ((places, page["points"]), (page["points"], places)):
+        assert all(min(map(partial(dist, one), others)) < 0.2 for one in some)
+
+
+def _at(axis: Axis, value: Any, start: float, end: float) -> float:
+    """The pixel of a value, or of the text of a mark, on an axis between two pixels; names begin on top or left."""
+    if axis.scale == Scale.NAMES:
+        low, high = min(start, end), max(start, end)
+        return low + (axis.names.index(value) + 0.5) / len(axis.names) * (high - low)
+    values = {text: at for at, text in axis.ticks}
+    return start + axis.share(float(values.get(value, value))) * (end - start)

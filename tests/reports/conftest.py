@@ -1,5 +1,6 @@
 """A browser, and the page of the small run in it."""
 
+import both_ways
 import pytest
 from browsing import ARGUMENTS, GL_ARGUMENTS, Laboratory, Opened
 from playwright.sync_api import sync_playwright
@@ -24,6 +25,20 @@ def gl_browser(play, chromium):
     opened = play.chromium.launch(executable_path=chromium, args=GL_ARGUMENTS)
     yield opened
     opened.close()
+
+
+@pytest.fixture(scope="session")
+def chart_page(browser, tmp_path_factory):
+    """Draws charts in a browser, one after the other."""
+    page = browser.new_page()
+    yield both_ways.Page(page, tmp_path_factory.mktemp("charts") / "page.html")
+    page.close()
+
+
+@pytest.fixture
+def agree(chart_page):
+    """Gives the panels of a chart that a file and the page show alike."""
+    return chart_page.agree
 
 
 @pytest.fixture(scope="module")

@@ -5,12 +5,12 @@ import json
 import re
 
 import pytest
-from both_ways import agree, rows_of_tables
+from both_ways import rows_of_tables
 from matplotlib import pyplot
 from PIL import Image
 
 from normalbench.bench.tables.registry import TABLES
-from normalbench.reports.charts import draw, vega
+from normalbench.reports.charts import draw, wire
 from normalbench.reports.charts.chart import (
     ALL,
     Axis,
@@ -45,13 +45,13 @@ def a_chart(**more) -> Chart:
     return Chart(**about | {"marks": (line, end)} | more)
 
 
-def test_lines_and_the_names_at_their_ends_are_the_same_both_ways():
+def test_lines_and_the_names_at_their_ends_are_the_same_both_ways(agree):
     (shown,) = agree(a_chart())
     assert shown.marks == {Kind.LINES: 2} and shown.texts == [HOSTILE, "xy rg8"]
     assert shown.extents["y"] == pytest.approx((16 - 0.04 * 2384, 2400 + 0.04 * 2384))
 
 
-def test_every_kind_of_mark_is_the_same_both_ways():
+def test_every_kind_of_mark_is_the_same_both_ways(agree):
     rows = tuple({"codec": f"c{n}", "x": float(n), "z": n + 2.0, "name": f"c{n}", "rest": n == 1} for n in range(4))
     names = Axis(title="", scale=Scale.NAMES, names=distinct(rows, "name"))
     marks = [Mark(kind=kind, y="name") for kind in (Kind.POINTS,)]
@@ -80,7 +80,7 @@ def test_an_axis_of_angles_says_degrees():
 
 
 @pytest.mark.parametrize("name", [name for name in ROWS if TABLES[name].work.has_charts])
-def test_every_chart_of_a_run_is_the_same_both_ways(name):
+def test_every_chart_of_a_run_is_the_same_both_ways(agree, name):
     charts = list(TABLES[name].work.charts(ROWS[name]))
     assert charts and len({chart.name for chart in charts}) == len(charts)
     for chart in charts:
@@ -89,17 +89,16 @@ def test_every_chart_of_a_run_is_the_same_both_ways(name):
         assert chart.title and chart.subtitle and chart.title != chart.subtitle and chart.description.endswith(".")
 
 
-def test_panels_share_an_axis_or_have_their_own():
+def test_panels_share_an_axis_or_have_their_own(agree):
     chart = a_chart(panels=Names("bits", (16, 24)), x=Axis(title="pixels", scale=Scale.LOG, is_shared=False))
     one, other = agree(chart)
     assert one.extents["y"] == other.extents["y"] and one.texts != other.texts
 
 
-def test_a_switch_is_a_control_of_the_page_and_panels_or_one_choice_in_a_file():
+def test_a_switch_is_a_control_of_the_page_and_panels_or_one_choice_in_a_file(agree):
     switch = Switch("bits", "Bits shown", (ALL, "16", "24"), ALL)
-    (spec,) = vega.specs(a_chart(switch=switch))
-    assert spec["usermeta"]["switch"] == {"param": "bits", "label": "Bits shown", "options": [ALL, "16", "24"]}
-    assert {"name": "bits", "value": ALL} in spec["params"]
+    said = {"field": "bits", "label": "Bits shown", "all": ALL, "values": [ALL, "16", "24"], "usual": ALL}
+    assert wire.spec(a_chart(switch=switch))["switch"] == said
     (whole,) = agree(a_chart(switch=switch))
     assert whole.marks[Kind.LINES] == 2
     rows = tuple({**row, "gpu": f"gpu {row['bits']}"} for row in a_chart().rows)
@@ -107,16 +106,16 @@ def test_a_switch_is_a_control_of_the_page_and_panels_or_one_choice_in_a_file():
         switch = Switch("gpu", "GPU", ("gpu 16", "gpu 24"), "gpu 24", has_panels)
         shown = agree(a_chart(rows=rows, switch=switch))
         assert len(shown) == count and shown[-1].marks[Kind.LINES] == 1
-    assert len(vega.specs(a_chart(rows=rows, switch=switch))) == 1
+    assert len(wire.spec(a_chart(rows=rows, switch=switch))["panels"]) == 1
 
 
-def test_what_has_no_place_is_left_out_and_a_browser_reads_the_rest():
+def test_what_has_no_place_is_left_out_and_a_browser_reads_the_rest(agree):
     rows = [{"x": x, "y": y} for x, y in ((1.0, 2.0), (0.0, 2.0), (2.0, float("inf")), (3.0, None), (4.0, 1.0))]
     (shown,) = agree(a_chart(rows=tuple(rows), colour=None, marks=(Mark(kind=Kind.POINTS),)))
     assert shown.marks == {Kind.POINTS: 2}
 
 
-def test_a_chart_without_rows_is_an_empty_one(tmp_path):
+def test_a_chart_without_rows_is_an_empty_one(agree, tmp_path):
     (shown,) = agree(a_chart(rows=()))
     assert shown.marks == {} and shown.titles == {"x": "pixels", "y": "error, degrees"}
     draw.write([], (tmp_path / "none.png", "png"))
@@ -158,5 +157,5 @@ def test_names_at_ends_keep_apart_and_in_order():
 
 
 def test_a_specification_is_plain_data():
-    text = json.dumps(vega.specs(a_chart()), allow_nan=False)
-    assert {row["codec"] for row in vega.rows_of(json.loads(text)[0])} == {"xy rg8", HOSTILE}
+    text = json.dumps(wire.spec(a_chart()), allow_nan=False)
+    assert wire.codecs(json.loads(text)) == {"xy rg8", HOSTILE}

@@ -28,7 +28,7 @@ def front_chart(name: str, subtitle: str, panels: Sequence[Panel], error: Error)
     is_starred = any(point.is_starred for panel in panels for point in panel.points)
     looks: dict[str, Any] = {"colour": "bits", "shape": "bits"}
     tips = (("codec", "codec"), ("bits", "bits"), ("x", "cost"), ("y", "error"), ("machine", "GPU"))
-    bits = Names("bits", tuple(sorted({row["bits"] for row in rows})), "bits")
+    bits = Names("bits", tuple(sorted({row["bits"] for row in rows})), "bits", is_ordered=True)
     return Chart(
         name=name,
         title=_finding_sentence(panels, error),

@@ -62,7 +62,7 @@ def histogram_chart(at: int, rows: Sequence[Row]) -> Chart:
         x=Axis(title="angle between normal and decode, degrees", scale=Scale.LOG, domain=(LEAST_DEG, MOST_DEG)),
         y=Axis(title="", domain=(-0.3, len(rows) + 0.2), ticks=tuple(zip(feet, lines, strict=True))),
         rows=tuple(outlines),
-        colour=Names("bits", all_bits, "bits"),
+        colour=Names("bits", all_bits, "bits", is_ordered=True),
         shape=Names("figure", tuple(n for _, n, _ in FIGURES), looks=tuple(look for *_, look in FIGURES)),
         switch=Switch("bits", "Bits shown", (ALL, *map(str, all_bits)), ALL),
         marks=(

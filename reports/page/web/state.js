@@ -87,12 +87,16 @@ function agrees(one, other) {
   return Boolean(one && other) && (one === other || covers(one, other) || covers(other, one));
 }
 
+// What agrees with a name, as a selector.
+function sameAs(name) {
+  const text = CSS.escape(name), encoding = CSS.escape(name.split(" ")[0]);
+  return name.includes(" ") ? `[data-codec="${text}"], [data-codec="${encoding}"]` : `[data-codec="${text}"], [data-codec^="${text} "]`;
+}
+
 // What A and B are, everywhere: one rule each, for tables, charts and pictures.
 function ruleOf(name, side) {
   if (!name) return "";
-  const text = CSS.escape(name), encoding = CSS.escape(name.split(" ")[0]);
-  const same = name.includes(" ") ? `[data-codec="${text}"], [data-codec="${encoding}"]` : `[data-codec="${text}"], [data-codec^="${text} "]`;
-  return `:is(${same}) { --side: var(--${side}); --side-ground: var(--${side}-ground); --side-name: "${side.toUpperCase()}\\00a0"; }\n`;
+  return `:is(${sameAs(name)}) { --side: var(--${side}); --side-ground: var(--${side}-ground); --side-name: "${side.toUpperCase()}\\00a0"; }\n`;
 }
 
 function show(before, goes = false) {

@@ -1,0 +1,254 @@
+"""Charts as the page draws them: plain data that charts.js, beside page.css, makes SVG of with d3.
+
+d3 was chosen because it is a library of parts, not of charts: the chart stays a value of ours, and the page draws
+exactly what a file shows. Packed it takes 0.1 MB. The package mpld3 carries it, which is not imported for it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from importlib.metadata import version
+from importlib.util import find_spec
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+from ..page.verdict import is_number
+from .chart import (
+    ALL,
+    DASHES,
+    FAINT,
+    INK,
+    LINEAR_TO,
+    MUTED,
+    SHAPES,
+    Axis,
+    Chart,
+    Kind,
+    Mark,
+    Names,
+    Row,
+    Scale,
+    Shades,
+    Switch,
+    lines_apart,
+)
+from .labels import ANGLES, DISTANCES
+from .looks import colour_map
+from .plots import PlotError
+
+Spec = dict[str, Any]
+# The package that carries the library, and where in it.
+PACKAGE, LIBRARY = "mpld3", "js/d3.v5.min.js"
+# Colours of page.css. Beside a point, a name has to be read: FAINT is for what has none.
+ROLES = MappingProxyType({role: f"var(--{role})" for role in (INK, MUTED, FAINT)})
+STROKES: Mapping[str, Sequence[float]] = MappingProxyType({"solid": (), "dashed": (5, 4), "dotted": (1, 3)})
+# Shapes of points as paths, in a square from -1 to 1.
+PATHS = MappingProxyType(
+    {
+        "circle": "M0,-1A1,1,0,1,1,0,1A1,1,0,1,1,0,-1Z",
+        "square": "M-.88,-.88h1.76v1.76h-1.76z",
+        "diamond": "M0,-1.25L.9,0L0,1.25L-.9,0z",
+        "triangle-up": "M0,-1.15L1.1,.85h-2.2z",
+        "triangle-down": "M0,1.15L1.1,-.85h-2.2z",
+        "triangle-left": "M-1.15,0L.85,1.1v-2.2z",
+        "triangle-right": "M1.15,0L-.85,1.1v-2.2z",
+        "cross": "M-.38,-1.1h.76v.72h.72v.76h-.72v.72h-.76v-.72h-.72v-.76h.72z",
+        "star": "M0,-1.3L.29,-.4L1.24,-.4L.47,.15L.77,1.05L0,.5L-.77,1.05L-.47,.15L-1.24,-.4L-.29,-.4z",
+        "x": "M-1,-.7L-.3,0L-1,.7L-.7,1L0,.3L.7,1L1,.7L.3,0L1,-.7L.7,-1L0,-.3L-.7,-1z",
+        "tick": "M-.2,-1.3h.4v2.6h-.4z",
+    }
+)
+# Pixels of a line of labels, of a panel's name, and of an axis' marks with and without a title.
+LABEL_LINE, NAME_LINE, MARKS, TITLED = 13, 22, 24, 44
+# What a letter of a slanted name takes downwards, and the most of them.
+DOWN, MOST_DOWN = 3.4, 24
+# Colours of a legend of shades.
+STOPS = 17
+
+
+def library() -> str:
+    """d3, as a script. Raises PlotError where its package has another one."""
+    found = find_spec(PACKAGE)
+    path = Path(found.submodule_search_locations[0]) / LIBRARY if found and found.submodule_search_locations else None
+    if path and path.is_file():
+        return path.read_text(encoding="utf-8")
+    said = f"{PACKAGE} {version(PACKAGE)} has no {LIBRARY}" if found else f"{PACKAGE} is missing"
+    raise PlotError(f"{said}, which draws the page's charts; install {PACKAGE} 0.5.12")
+
+
+def spec(chart: Chart) -> Spec:
+    """A chart as JSON has it: what all its panels share, and each panel with its marks and rows."""
+    parts = chart.parts()
+    has_names = any(name for name, _ in parts) or (chart.switch is not None and chart.switch.usual != ALL)
+    made: Spec = {"label": f"{chart.title}. {chart.description}", "height": chart.pixels}
+    made |= {"top": NAME_LINE if has_names else 8, "bottom": max(_bottom(part.x) for _, part in parts)}
+    made |= {"zooms": _zooms(chart), "legends": [_legend(chart, one) for one in chart.legends]}
+    made["shades"] = _shades(chart.colour) if isinstance(chart.colour, Shades) else None
+    made["switch"] = _switch(chart.switch) if chart.switch else None
+    for look in LOOKS:
+        if isinstance(names := getattr(chart, look), Names):
+            made[look] = {
+                "field": names.field,
+                "looks": dict(zip(map(str, names.values), LOOKS[look](names), strict=True)),
+            }
+    if any(mark.kind == Kind.LABELS for mark in chart.marks):
+        made["around"] = {"distances": list(DISTANCES), "angles": ANGLES}
+    return made | {"panels": [_panel(name, part) for name, part in parts]}
+
+
+def codecs(made: Spec) -> set[str]:
+    """The codecs that a chart draws."""
+    columns = [table["codec"] for panel in made["panels"] for table in panel["tables"] if "codec" in table]
+    return {name for column in columns for name in (column["names"] if isinstance(column, dict) else column) if name}
+
+
+def rounded(value: Any) -> float | None:
+    """Four digits; None for what is no finite number."""
+    return float(f"{value:.4g}") if is_number(value) and math.isfinite(value) else None
+
+
+def _switch(switch: Switch) -> Spec:
+    about = {"field": switch.field, "label": switch.label, "all": ALL}
+    return about | {"values": list(switch.values), "usual": switch.usual}
+
+
+def _zooms(chart: Chart) -> bool:
+    """Whether a reader may look closer: at points between two axes of numbers."""
+    kinds = {mark.kind for mark in chart.marks}
+    return Kind.POINTS in kinds and Kind.ENDS not in kinds and not any(map(_has_words, (chart.x, chart.y)))
+
+
+def _has_words(axis: Axis) -> bool:
+    return axis.scale == Scale.NAMES or any(f"{at:g}" != name for at, name in axis.ticks)
+
+
+def _bottom(axis: Axis) -> int:
+    """Pixels below a panel: marks or slanted names, and the title."""
+    longest = min(MOST_DOWN, max(map(len, axis.names), default=0))
+    marks = MARKS + int(DOWN * longest) if axis.scale == Scale.NAMES else MARKS
+    return marks + (TITLED - MARKS if axis.title else 0)
+
+
+def _colours(names: Names) -> list[str]:
+    """The colours of names in either theme."""
+    return [f"light-dark({one}, {other})" for one, other in zip(names.colours(), names.colours(True), strict=True)]
+
+
+def _paths(names: Names) -> list[str]:
+    return [PATHS[name] for name in names.of(SHAPES)]
+
+
+def _dashes(names: Names) -> list[str]:
+    return [_dash(lengths) for lengths in names.of(DASHES)]
+
+
+def _dash(lengths: Sequence[float]) -> str:
+    return " ".join(f"{length:g}" for length in lengths)
+
+
+LOOKS = MappingProxyType({"colour": _colours, "shape": _paths, "dash": _dashes})
+
+
+def _legend(chart: Chart, named: Mapping[str, Names]) -> Spec:
+    """A line of the legend: names with a colour, a shape or a dash, or several of them."""
+    names = next(iter(named.values()))
+    kinds = {mark.kind for mark in chart.marks if mark.colour in {one.field for one in named.values()}}
+    looks = {look: LOOKS[look](one) for look, one in named.items()}
+    usual = {
+        "colour": ROLES[INK],
+        "shape": PATHS["square" if kinds & {Kind.BARS, Kind.AREAS} else "circle"],
+        "dash": "",
+    }
+    is_line = "shape" not in named and ("dash" in named or Kind.LINES in kinds)
+    entries = [
+        {"text": str(value), "is_line": is_line} | {look: looks.get(look, {at: one})[at] for look, one in usual.items()}
+        for at, value in enumerate(names.values)
+    ]
+    return {"title": names.title, "entries": entries}
+
+
+def _shades(shades: Shades) -> Spec:
+    """The colours of numbers, and what their legend is marked by: shares of its length, and texts."""
+    low, high = math.log10(shades.low), math.log10(shades.high)
+    values = [shades.low, *(10.0**at for at in range(math.floor(low) + 1, math.ceil(high))), shades.high]
+    ticks = [(round(100 * (math.log10(v) - low) / (high - low), 2), f"{v:g}") for v in values]
+    # The end needs room of its own.
+    ticks = [tick for tick in ticks[:-1] if tick[0] < 92] + ticks[-1:]
+    about = {"field": shades.field, "title": shades.title, "low": shades.low, "high": shades.high}
+    return about | {"ticks": ticks, "stops": colour_map(STOPS)}
+
+
+def _panel(name: str, part: Chart) -> Spec:
+    """A panel. Rows that several marks draw are there once, as columns."""
+    tables: list[tuple[Sequence[Row], set[str]]] = []
+    marks = []
+    for mark in part.marks:
+        rows = _drawn(part, mark)
+        if rows:
+            at = next((at for at, (kept, _) in enumerate(tables) if kept == rows), len(tables))
+            tables[at:] = tables[at:] or [(rows, set())]
+            tables[at][1].update(_fields(part, mark))
+            marks.append(_mark(part, mark) | {"table": at})
+    made: Spec = {"name": name, "x": _axis(part.x), "y": _axis(part.y), "marks": marks}
+    return made | {"tables": [_columns(rows, fields) for rows, fields in tables]}
+
+
+def _drawn(part: Chart, mark: Mark) -> Sequence[Row]:
+    """The rows of a mark; of names at ends the last ones, with the share of the panel's height where each stands."""
+    if mark.kind != Kind.ENDS:
+        return part.rows_of(mark)
+    all_ends = [row for one in part.marks if one.kind == Kind.ENDS for row in part.lasts(one)]
+    shares = lines_apart(part.y, [row[mark.y] for row in all_ends], part.pixels, LABEL_LINE)
+    places = {id(row): share for row, share in zip(all_ends, shares, strict=True)}
+    return [{**row, "end": places[id(row)]} for row in part.lasts(mark)]
+
+
+def _fields(part: Chart, mark: Mark) -> set[str]:
+    shown = {"codec", *([part.switch.field] if part.switch else []), *(["end"] if mark.kind == Kind.ENDS else [])}
+    return mark.fields | shown
+
+
+def _mark(part: Chart, mark: Mark) -> Spec:
+    """A mark, less what is as usual; `named` are the looks by which it tells names apart."""
+    made = {name: value for name in ("x", "y", "x2", "y2", "text", "rest") if (value := getattr(mark, name))}
+    made |= {"kind": mark.kind, "colour": mark.colour} | ({"css": ROLES[mark.colour]} if mark.colour in ROLES else {})
+    made["named"] = [look for look in LOOKS if part.named(look, mark)]
+    if mark.kind == Kind.POINTS:
+        made["shape"] = PATHS.get(mark.shape, "")
+    if mark.kind == Kind.LINES:
+        made["dash"] = _dash(STROKES.get(mark.dash, ()))
+        # What is dotted is beside the point.
+        made["is_faint"] = mark.dash == "dotted"
+    if mark.by:
+        made["by"] = list(mark.by)
+    return made | ({"is_stepped": True} if mark.is_stepped else {}) | ({"tips": mark.tips} if mark.tips else {})
+
+
+def _axis(axis: Axis) -> Spec:
+    made: Spec = {"title": axis.title, "scale": axis.scale}
+    if axis.scale == Scale.NAMES:
+        return made | {"names": list(axis.names)}
+    ticks = axis.ticks or tuple((count, str(count)) for count in axis.counts)
+    made |= {"domain": list(axis.domain or ()), "ticks": ticks, "has_words": _has_words(axis)}
+    return made | ({"linear_to": LINEAR_TO} if axis.scale == Scale.COUNT else {})
+
+
+def _columns(rows: Sequence[Row], fields: set[str]) -> Spec:
+    """Rows as columns; of words, the different ones and which of them each row has."""
+    found = {name: [_plain(row.get(name)) for row in rows] for name in sorted(fields)}
+    return {name: _words(values) for name, values in found.items() if any(value is not None for value in values)}
+
+
+def _words(values: list[Any]) -> Any:
+    names = list(dict.fromkeys(values))
+    if not all(isinstance(name, str) for name in names):
+        return values
+    places = {name: at for at, name in enumerate(names)}
+    return {"names": names, "places": [places[value] for value in values]}
+
+
+def _plain(value: Any) -> Any:
+    """A value as a browser reads it: four digits, and nothing for what is no finite number."""
+    return rounded(value) if isinstance(value, float) else value
