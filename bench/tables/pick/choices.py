@@ -32,7 +32,8 @@ ASKED = ("most_instructions", "readers", "worth", "enough", "accept_holes", "acc
 
 def extras(_folder: Path, tables: Mapping[str, Sequence[Row]], _remarks: list[str]) -> Mapping[str, Any]:
     """The questions of a run, for the page; nothing where it answers none."""
-    made = [_question(group) for group in groups(tables[TABLE.name]).values() if group[0]["aim"] != "cost"]
+    asked = enumerate(groups(tables[TABLE.name]).values())
+    made = [_question(group) | {"chart": f"choose-{at}"} for at, group in asked if group[0]["aim"] != "cost"]
     return {"choices": {"constants": CONSTANTS, "questions": made}} if made else {}
 
 

@@ -32,6 +32,7 @@ from ..mix.table import USES
 from ..table import COMPILERS, GL, Measured, Row, Sheet, Step, Tick, Work
 from . import measure, pictures
 from .answer import AIMS, HOLDS, answered, asked_of, groups, largest
+from .charts import charts
 from .choices import extras
 from .sentences import left_out, told
 from .table import TABLE, PickOptions, PickOutputs
@@ -280,6 +281,7 @@ WORK = Work(
     summary=_sheets,
     failures=_failures,
     write=_write,
+    charts=lambda rows: list(charts(rows)),
     extras=extras,
     needs=lambda _: frozenset({COMPILERS, GL}),
     subjects=pictures.subjects,

@@ -81,7 +81,7 @@ const COLUMNS = [
 
 class Choose {
   constructor(root, { constants, questions }) {
-    Object.assign(this, { root, constants, questions });
+    Object.assign(this, { root, constants, questions, faint: document.head.appendChild(element("style", {})) });
     this.control = Object.fromEntries(Array.from(root.querySelectorAll("[data-limit]"), (one) => [one.dataset.limit, one]));
     this.control.for.append(...questions.map(({ where }) => element("option", {}, where)));
     for (const [key, one] of Object.entries(this.control)) one.addEventListener("input", () => this.take(key, one));
@@ -102,6 +102,10 @@ class Choose {
     const found = answerOf(question, asked, this.constants), isOwn = JSON.stringify(asked) !== JSON.stringify(question.asked);
     this.fill(question, asked, isOwn);
     for (const reply of this.root.querySelectorAll("[data-question]")) reply.hidden = isOwn || reply.dataset.question !== question.where;
+    for (const place of this.root.querySelectorAll("[data-of]")) place.hidden = place.dataset.of !== question.chart;
+    // What a reader's constraints leave out is faint in the chart.
+    const out = found.out.map(({ codec }) => `[data-codec="${CSS.escape(codec)}"]`).join(", ");
+    this.faint.textContent = isOwn && out ? `[data-of="${question.chart}"] :is(${out}) { opacity: 0.15; }` : "";
     const own = this.root.querySelector("[data-own-reply]");
     own.hidden = !isOwn;
     own.replaceChildren(element("p", { class: "lead" }, sentenceOf(question, asked, found)), element("ul", {}, ...this.said(found).map((line) => element("li", {}, line))));

@@ -1,0 +1,60 @@
+"""The chart of an answer: what the codes of a question cost against what they lose."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from ....reports.charts.chart import INK, Axis, Chart, Kind, Mark, Scale
+from ....reports.page.codec_key import CodecKey
+from ..table import Row
+from .answer import groups, mean, why_unfit
+from .sentences import called, question
+
+HEIGHT = 400
+
+
+def charts(rows: Sequence[Row]) -> Iterator[Chart]:
+    """A chart for each question of which two codes have a price."""
+    for at, group in enumerate(groups(rows).values()):
+        points = [_point(row) for row in group if _has_place(row)]
+        if len(points) > 1:
+            yield _chart(f"choose-{at}", group, points)
+
+
+def _has_place(row: Row) -> bool:
+    return not row["beside"] and not why_unfit(row) and bool(mean(row)) and row["slots_once"] is not None
+
+
+def _point(row: Row) -> Row:
+    about = {"codec": CodecKey.of(row).label, "name": called(row), "why": row["left_out"] or ""}
+    return about | {"x": row["slots_once"], "y": mean(row), "rest": bool(row["left_out"])}
+
+
+def _front(points: Sequence[Row]) -> list[Row]:
+    """The points that no other one beats in both, the cheapest first."""
+    kept: list[Row] = []
+    for point in sorted((one for one in points if not one["rest"]), key=lambda one: (one["x"], one["y"])):
+        if not kept or point["y"] < kept[-1]["y"]:
+            kept.append(point)
+    return kept
+
+
+def _chart(name: str, group: Sequence[Row], points: Sequence[Row]) -> Chart:
+    asked, front = question(group[0]), tuple(_front(points))
+    tips = (("codec", "codec"), ("x", "issue slots"), ("y", "mean error, degrees"), ("why", "left out"))
+    return Chart(
+        name=name,
+        title=f"{asked}: no other code beats {len(front)} of {len(points)} in both slots and mean error",
+        subtitle="the line joins these; grey: left out",
+        description="Each code by the issue slots that it takes to encode and to decode once, and by its mean error. "
+        "The figures are in the table.",
+        x=Axis(title=f"issue slots to encode and decode, {group[0]['family']}", scale=Scale.COUNT),
+        y=Axis(title="mean error, degrees", scale=Scale.LOG),
+        rows=tuple(points),
+        height=HEIGHT,
+        marks=(
+            Mark(kind=Kind.LINES, rows=front, colour=INK, is_stepped=True),
+            Mark(kind=Kind.POINTS, rest="rest", tips=tips),
+            Mark(kind=Kind.LABELS, text="name", colour=INK, rest="rest"),
+        ),
+    )
