@@ -28,8 +28,7 @@ const faint = document.head.appendChild(element("style", {}));
 shows.push((state) => {
   const same = CODECS.map((side) => state[side]).filter(Boolean).map(sameAs).join(", ");
   const rest = `.plot:has(${same}) [data-codec]:not(${same}) { opacity: var(--rest); }`;
-  const rules = [rest, `.plot .unplaced:is(${same}) { display: inline; }`, `.plot text:is(${same}) { font-weight: 600; }`];
-  const text = same ? rules.join("\n") : "";
+  const text = same ? `${rest}\n.plot .unplaced:is(${same}) { display: inline; }` : "";
   if (faint.textContent !== text) faint.textContent = text;
 });
 
