@@ -123,7 +123,9 @@ def test_the_lens_shows_the_pixels_at_the_pointer_and_says_what_they_are(opened,
 CHOSEN = """() => ({
   rows: Array.from(document.querySelectorAll("tr[data-codec]"))
     .filter((row) => getComputedStyle(row).getPropertyValue("--side")).map((row) => row.dataset.codec),
-  charts: charts.views.map(({ view }) => view.signal("picked")),
+  charts: Array.from(document.querySelectorAll(".plot .areas"))
+    .filter((one) => getComputedStyle(one).getPropertyValue("--side") === getComputedStyle(one).getPropertyValue("--a"))
+    .map((one) => one.dataset.codec),
   pictures: ["left", "right"].map((side) => document.querySelector(`#${side}`).selectedOptions[0]?.textContent),
   sides: CODECS.map((side) => document.querySelector(`#side-${side}`).value),
 })"""
@@ -142,7 +144,7 @@ def test_a_codec_chosen_anywhere_is_that_everywhere(opened, by):
         opened.come_to("#viewer")
         opened.page.locator(".thumbs button", has_text="spheremap rgba8").click()
     elif by == "a chart":
-        opened.page.locator("figure[data-chart] .plot path[aria-label*='spheremap rgba8']").last.dispatch_event("click")
+        opened.page.locator("figure[data-chart] .plot [data-codec='spheremap rgba8']").last.dispatch_event("click")
     else:
         opened.come_to(TABLE)
         button = opened.page.locator(f"{TABLE} >> tr[data-codec='spheremap rgba8'] .pick")
