@@ -33,6 +33,24 @@ def text_of(value: Any) -> str:
     return visible(str(value))
 
 
+# What columns' names say in small letters.
+WORDS = {
+    "psnr": "PSNR",
+    "mse": "MSE",
+    "db": "dB",
+    "flip": "FLIP",
+    "deg": "degrees",
+    "glsl": "GLSL",
+    "jax": "JAX",
+    "gl": "GL",
+}
+
+
+def title_of(name: str) -> str:
+    """A column's name as people read it: PSNR dB."""
+    return " ".join(WORDS.get(word, word) for word in name.split("_"))
+
+
 def visible(text: str) -> str:
     """Text whose control characters, which a terminal would obey, are written as escapes."""
     return CONTROL.sub(lambda found: found[0].encode("unicode_escape").decode(), text)

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from ..sheets import Column, Role, Row, column_called, undefined
-from ..tables import storable
+from ..tables import storable, title_of
 from .packing import packed
 
 # What a browser's numbers hold without a loss.
@@ -32,7 +32,7 @@ def block(rows: Sequence[Row], columns: Iterable[Column]) -> str:
 def _about(column: Column, name: str) -> dict[str, Any]:
     """What is said of a column, less what is empty."""
     said = {"says": column.definition, "better": column.better, "raw": column.role is Role.RAW}
-    return {"name": name, **{key: value for key, value in said.items() if value}}
+    return {"name": name, "title": title_of(name), **{key: value for key, value in said.items() if value}}
 
 
 def _values(name: str, rows: Sequence[Row]) -> dict[str, Any]:

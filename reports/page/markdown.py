@@ -1,4 +1,4 @@
-"""A run's report for a pull request: the answer and the tables in short, without a link."""
+"""A run's report for a pull request: the answer, or the tables in short where there is none, without a link."""
 
 from __future__ import annotations
 
@@ -38,15 +38,19 @@ def _blocks(found: Found) -> Iterator[str]:
     yield f"## normalbench: {found.name}\n"
     for remark in remarks(found):
         yield f"> {_plain(remark)}\n"
-    leading = (sheet for section in found.sections if section.about.leads for sheet in section.summary)
-    for sheet in (sheet for sheet in leading if sheet.said):
-        first, *rest = map(tables.markdown_sentence, (*sheet.said, *sheet.aside))
+    answers = [sheet for section in found.sections if section.about.leads for sheet in section.summary if sheet.said]
+    for sheet in answers:
+        first, *rest = map(tables.markdown_sentence, sheet.said)
         yield "\n".join([f"**{first}**\n", *(f"- {line}" for line in rest), ""])
     if said := found.extras.get("agreement"):
         yield f"{tables.markdown_sentence(said)}\n"
-    for sheet in (sheet for section in found.sections for sheet in section.summary if sheet.rows):
+    # Nobody reads the tables of a whole run in a comment: its page has them.
+    summaries = () if answers else (sheet for section in found.sections for sheet in section.summary if sheet.rows)
+    for sheet in summaries:
         heading = f"<details><summary>{html.escape(sheet.title)}</summary>\n"
         yield "\n".join([heading, tables.to_markdown(_rows(whole(sheet.rows))), "</details>\n"])
+    if answers:
+        yield f"Tables, charts and pictures are on the page that {tables.code_text('normalbench report')} draws.\n"
     machine = [found.machine.get(name) for name in ("processor", "GL", "RADV") if found.machine.get(name)]
     versions = [f"{name} {found.machine[name]}" for name in ("normalbench", "jax", "python") if name in found.machine]
     yield f"Measured by {tables.code_text(found.command)}: {_plain(', '.join(map(str, [*machine, *versions])))}.\n"

@@ -92,7 +92,7 @@ def shown_sheet(sheet: Sheet) -> Table:
 def _table(sheet: Sheet, column: Callable[[str], Column], encodings: Container[str]) -> Table:
     rows = whole(sheet.rows)
     shown, constants = tables.without_constants(rows)
-    heads = [Heading(column(name), name.replace("_", " "), tables.is_numeric(shown, name)) for name in shown[0]]
+    heads = [Heading(column(name), tables.title_of(name), tables.is_numeric(shown, name)) for name in shown[0]]
     numbers = [head.column for head in heads if head.numeric and head.column.better]
     # Among every row there are several back ends and conditions: the best of them all says nothing.
     best = set() if sheet.folded else {at for one in numbers for at in _best(shown, rows, one)}

@@ -135,7 +135,7 @@ def column(opened: Opened, index: int) -> list[str]:
 def test_tables_sort_by_number_in_both_directions_by_keyboard(opened):
     headers = opened.page.locator(f"{TABLE} >> thead th")
     names = [text.strip() for text in headers.all_text_contents()]
-    at = names.index("psnr db")
+    at = names.index("PSNR dB")
     before = column(opened, 0)
     headers.nth(at).locator("button").focus()
     for direction, reverse in (("descending", True), ("ascending", False)):
@@ -153,7 +153,7 @@ def test_tables_sort_by_number_in_both_directions_by_keyboard(opened):
 
 def test_what_is_empty_is_last_whichever_way(opened):
     headers = opened.page.locator(f"{TABLE} >> thead th")
-    at = [text.strip() for text in headers.all_text_contents()].index("article db")
+    at = [text.strip() for text in headers.all_text_contents()].index("article dB")
     for _ in range(2):
         headers.nth(at).locator("button").click()
         texts = column(opened, at)
@@ -170,7 +170,7 @@ def test_infinite_figures_sort_as_the_largest(browser, tmp_path, run):
     page.goto((tmp_path / "page.html").as_uri())
     table = page.locator("#quality [data-sheet]").first
     headers = table.locator("thead th")
-    at = [text.strip() for text in headers.all_text_contents()].index("psnr db jax")
+    at = [text.strip() for text in headers.all_text_contents()].index("PSNR dB JAX")
     for last in (48.1, math.inf):
         headers.nth(at).locator("button").click()
         assert float(table.locator("tbody tr").last.locator("th, td").nth(at).text_content()) == last
@@ -195,7 +195,7 @@ def test_the_best_of_each_column_is_marked_among_as_many_bits(opened):
     best = {row.locator("th").text_content(): row.locator(".best").count() for row in rows.all()}
     assert {name for name, count in best.items() if count} >= {"octahedral_precise"}
     assert best["xyz"] == 0, "nothing else has 24 bits"
-    at = names.index("psnr db")
+    at = names.index("PSNR dB")
     assert "best" in rows.first.locator("th, td").nth(at).get_attribute("class")
     assert rows.first.locator("th").text_content() == "octahedral_precise"
 

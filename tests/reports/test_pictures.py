@@ -226,9 +226,9 @@ def test_the_answers_table_is_open_what_does_not_qualify_folded_and_its_storage_
     folder = a_run(tmp_path / "run", {"pick": rows, "quality": quality})
     assert run("report", str(folder))[0] == 0
     page = (folder / "report.html").read_text()
-    table, fold = page.index('id="pick-1-caption"'), page.index('<details class="aside">')
+    table, fold = page.index("<div data-codes>"), page.index('<details class="aside">')
     assert page.rindex("<details", 0, table) < page.rindex("</details>", 0, table), "in no fold"
     assert fold < page.index("<p>Left out: xy (") < page.index("</details>", fold) and "<li>Left out" not in page
     titles = [page.index(f"{normals}, {storage}: ") for normals, storage in (sets[1], sets[2], sets[0])]
     assert titles == sorted(titles)
-    assert "- Left out: xy (" in run("report", str(folder), "--markdown")[1]
+    assert "Left out" not in run("report", str(folder), "--markdown")[1]

@@ -208,7 +208,7 @@ def test_a_column_that_is_infinite_for_several_has_no_star_and_the_articles_is_l
     shown = text[
         text.index('id="quality-1-caption"') : text.index("How this was measured", text.index('id="quality-1-caption"'))
     ]
-    assert "psnr article" not in shown and '<td class="n">inf</td>' in shown
+    assert "PSNR article" not in shown and '<td class="n">inf</td>' in shown
     assert shown.count('class="n best"') == 2, "the mean angle, of the two"
     rows[0] |= {"psnr_db": 60.0, "psnr_article_db": 55.0}
     rows[1] |= {"psnr_article_db": 60.0}
@@ -216,7 +216,7 @@ def test_a_column_that_is_infinite_for_several_has_no_star_and_the_articles_is_l
     shown = text[
         text.index('id="quality-1-caption"') : text.index("How this was measured", text.index('id="quality-1-caption"'))
     ]
-    assert "psnr article" in shown and '<td class="n best">inf</td>' in shown
+    assert "PSNR article" in shown and '<td class="n best">inf</td>' in shown
 
 
 def test_what_was_left_out_of_a_run_is_said(run, tmp_path):
@@ -314,7 +314,7 @@ def test_reading_leaves_the_run_as_it_is_and_run_has_written_the_same_report(run
     assert time.process_time() - begin < 60, "seconds of all cores"
     assert {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()} == before
     # Elsewhere the files of rows are not beside the page.
-    links = re.compile(rb' <a href="\w+\.(csv|json|parquet)">[^<]*</a>')
+    links = re.compile(rb'[:,] <a href="\w+\.(csv|json|parquet)">[^<]*</a>')
     assert links.search(before[folder / "report.html"]) and not links.search((tmp_path / "page.html").read_bytes())
     assert (tmp_path / "page.html").read_bytes() == links.sub(b"", before[folder / "report.html"])
     names = {path.name for path in (tmp_path / "page-charts").iterdir()}

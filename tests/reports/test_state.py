@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 STATES = 200
-KEYS = ("view", "a", "b", "at", "live")
 
 
 def random_states(opened) -> list[dict]:
@@ -19,7 +18,12 @@ def random_states(opened) -> list[dict]:
     for _ in range(STATES):
         a, b = (codecs[i] for i in rng.choice(len(codecs), 2, replace=False))
         others = [[f"key {i}", words[rng.integers(len(words))]] for i in range(rng.integers(3))]
-        made.append({"view": views[rng.integers(len(views))], "a": a, "b": b, "at": "", "live": "", "others": others})
+        asked = {
+            key: str(rng.integers(9)) if rng.random() < 0.3 else "" for key in ("most", "readers", "worth", "enough")
+        }
+        yes = {key: ("", "yes", "no")[rng.integers(3)] for key in ("holes", "lengths")}
+        about = {"view": views[rng.integers(len(views))], "for": words[rng.integers(len(words))], **asked, **yes}
+        made.append({**about, "a": a, "b": b, "at": "", "live": "", "others": others})
     return made
 
 

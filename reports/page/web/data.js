@@ -66,7 +66,7 @@ class DataTable {
   chooser() {
     const names = this.part.words, select = element("select", { onchange: () => this.refilter() }, element("option", { value: "" }, "all"), ...names.map((name) => element("option", {}, name)));
     this.chosen = select;
-    return element("label", {}, `${this.part.name.replaceAll("_", " ")} `, select);
+    return element("label", {}, `${this.part.title} `, select);
   }
 
   refilter() {
@@ -93,7 +93,7 @@ class DataTable {
   show() {
     const rows = this.rows(), columns = this.columns(rows.length ? rows : this.order);
     const heads = columns.map((column) => {
-      const button = element("button", { type: "button", onclick: () => this.sort(column) }, column.name.replaceAll("_", " "));
+      const button = element("button", { type: "button", onclick: () => this.sort(column) }, column.title);
       if (column.says) button.title = column.says;
       const sort = this.sorted?.column === column ? this.sorted.direction : "none";
       return element("th", { scope: "col", "aria-sort": sort, ...(column.kind === "text" ? {} : { class: "n" }) }, button);
@@ -113,7 +113,7 @@ class DataTable {
     this.count.textContent = `${rows.length} of ${this.data.count} rows`;
     this.more.hidden = shown.length === rows.length;
     this.more.textContent = `Show ${Math.min(LINES, rows.length - shown.length)} more of ${rows.length}`;
-    this.definitions.replaceChildren(...columns.filter(({ says }) => says).flatMap(({ name, says }) => [element("dt", {}, name.replaceAll("_", " ")), element("dd", {}, says)]));
+    this.definitions.replaceChildren(...columns.filter(({ says }) => says).flatMap(({ title, says }) => [element("dt", {}, title), element("dd", {}, says)]));
   }
 
   // The first click puts the best on top, as in every table.
@@ -134,7 +134,7 @@ class DataTable {
 
   markdown() {
     const rows = this.rows(), columns = this.columns(rows);
-    return markdownOf(columns.map(({ name }) => name.replaceAll("_", " ")), columns.map(({ kind }) => kind !== "text"), rows.map((row) => columns.map((column) => shownText(column, row))));
+    return markdownOf(columns.map(({ title }) => title), columns.map(({ kind }) => kind !== "text"), rows.map((row) => columns.map((column) => shownText(column, row))));
   }
 }
 
