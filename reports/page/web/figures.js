@@ -59,7 +59,9 @@ async function drawn(figure) {
   coming.unobserve(figure);
   try {
     await ready();
-    while (drawNext(figure)) await new Promise((done) => setTimeout(done));
+    // Each panel in a task of its own, so that the page answers in between.
+    do await new Promise((done) => setTimeout(done));
+    while (drawNext(figure));
   } catch (error) {
     toolsOf(figure).append(`The chart cannot be drawn: ${error.message}`);
   }
@@ -87,7 +89,7 @@ async function drawRest() {
 }
 window.addEventListener("load", () => idle(drawRest));
 window.addEventListener("beforeprint", () => {
-  for (const figure of charts.specs ? charts.waiting : []) while (drawNext(figure));
+  for (const figure of charts.specs ? document.querySelectorAll("figure[data-chart]") : []) while (drawNext(figure));
 });
 
 // A figure as a file: its panels as they are drawn, with the colours that are seen, its title and its legend.
