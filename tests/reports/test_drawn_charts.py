@@ -165,7 +165,7 @@ def test_a_file_is_what_is_seen_and_stands_alone(drawn):
     assert "var(" not in text and "light-dark" not in text and "<script" not in text
     root = ElementTree.fromstring(text)
     points = [one for one in root.iter(f"{SVG}path") if one.get("class", "").startswith("points")]
-    assert len(points) == 42 and {one.get("opacity") for one in points} == {"1", "0.3"}
+    assert len(points) == 42 and {one.get("opacity") for one in points} == {"1", "0.5"}
     assert all(re.match(r"rgb|#|none", one.get("fill")) for one in points)
     said = {"".join(one.itertext()) for one in root.iter(f"{SVG}text")}
     assert {"bits", "16", "24", "instructions"} <= said and any(text.startswith("No other beats") for text in said)
