@@ -124,7 +124,9 @@ def write_report(
         run = gathered(folder, done)
         # Pictures are packed while charts are drawn; either takes a core for seconds.
         with ThreadPoolExecutor(1) as pool:
-            packing = pool.submit(embedded.gallery, run.subjects, pictures)
+            is_answered = any(section.about.leads and section.rows for section in run.sections)
+            budget = embedded.BUDGET_OF_A_RUN if is_answered else embedded.BUDGET
+            packing = pool.submit(embedded.gallery, run.subjects, pictures, budget)
             specs, failed = _drawn(run, beside, drawn)
             gallery = packing.result()
     if gallery.damaged:

@@ -25,6 +25,7 @@ def seen(request, browser, report):
         figure.scroll_into_view_if_needed()
         figure.locator(".plot svg").first.wait_for()
     page.page.evaluate("change({ view: DEFAULTS.view })")
+    page.page.evaluate("scrollTo(0, 0)")
     yield page
     page.context.close()
 

@@ -5,7 +5,7 @@ import re
 import pytest
 
 from normalbench.reports import tables
-from normalbench.reports.page import page
+from normalbench.reports.page import live, page
 
 HOSTILE = "<script src=//x>[a](http://b) |`@c\x1b[2J"
 
@@ -50,3 +50,15 @@ def test_figures_of_a_page_sort_by_all_their_digits():
     made = page.table("t", [{"name": name, "db": db} for name, db in (("a", 50.00001), ("b", 50.00002))], lambda _: "")
     one, other = (line.cells[1] for line in made.rows)
     assert one.text == other.text and float(one.value) < float(other.value), (one, other)
+
+
+def test_no_name_of_the_pages_scripts_is_there_twice():
+    """They share one scope, the laboratory's with them, which is added when it is opened: a second `const` ends it."""
+    texts = [(page.WEB / name).read_text(encoding="utf-8") for name in page.SCRIPTS] + [live.script()]
+    declared = re.compile(r"^(const|let|class|function|async function)\s+(\w+)([^\n]*)", re.MULTILINE)
+    found = [one.groups() for text in texts for one in declared.finditer(text)]
+    # Several to a line: const VERSION = "v1", CODECS = [...].
+    more = [re.findall(r", (\w+) = ", rest) for kind, _, rest in found if kind in ("const", "let") and "=>" not in rest]
+    names = [name for _, name, _ in found] + [name for several in more for name in several]
+    assert len(names) > 100
+    assert not {name for name in names if names.count(name) > 1}

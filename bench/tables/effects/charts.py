@@ -45,6 +45,6 @@ def _finding_sentence(points: Sequence[Row]) -> str:
     worst = min(points, key=lambda point: point["y"])
     best = max(points, key=lambda point: point["y"])
     return (
-        f"{worst['effect']} loses the most, {worst['y']:.1f} dB with {worst['codec']}; "
-        f"{best['effect']} the least, {best['y']:.1f} dB with {best['codec']}"
+        f"{worst['effect']} is worst, at {worst['y']:.1f} dB with {worst['codec']}; "
+        f"{best['effect']} is best, at {best['y']:.1f} dB with {best['codec']}"
     )

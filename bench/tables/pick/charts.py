@@ -48,7 +48,7 @@ def _chart(name: str, group: Sequence[Row], points: Sequence[Row]) -> Chart:
         subtitle="the line joins these; grey: left out",
         description="Each code by the issue slots that it takes to encode and to decode once, and by its mean error. "
         "The figures are in the table.",
-        x=Axis(title=f"issue slots to encode and decode, {group[0]['family']}", scale=Scale.COUNT),
+        x=Axis(title=f"issue slots to encode and decode once, {group[0]['family']}", scale=Scale.COUNT),
         y=Axis(title="mean error, degrees", scale=Scale.LOG),
         rows=tuple(points),
         height=HEIGHT,

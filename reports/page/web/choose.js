@@ -70,7 +70,7 @@ function askedOf(question, state) {
 }
 
 const degrees = (value) => (value === null ? "" : `${Number(value.toPrecision(3))}°`);
-const COLUMNS = [
+const COMPARED = [
   ["mean error", (code) => degrees(code.mean), (code) => code.mean, "less"],
   ["largest error", (code) => degrees(code.largest), (code) => code.largest, "less"],
   ["slots to encode + decode", (code) => (code.priced ? `${code.encode} + ${code.decode}` : ""), (code) => code.once, "less"],
@@ -93,25 +93,37 @@ class Choose {
 
   take(key, { type, checked, value, validity }) {
     if (!validity.valid) return;
-    change({ [key]: type === "checkbox" ? (checked ? "yes" : "no") : value }, type === "number");
+    const next = { [key]: type === "checkbox" ? (checked ? "yes" : "no") : value };
+    change(key === "for" ? { ...next, ...this.sidesOf(value) } : next, type === "number");
+  }
+
+  // A and B of another question are its answer and what comes next, unless one of them is a code of it.
+  sidesOf(where) {
+    const question = this.questions.find((one) => one.where === where);
+    if (question.codes.some(({ codec }) => CODECS.some((side) => state[side] === codec))) return {};
+    const { fit } = answerOf(question, askedOf(question, state), this.constants), name = (at) => (known.codecs.includes(fit[at]?.codec) ? fit[at].codec : "");
+    return { a: name(0), b: name(1) };
   }
 
   show(state, before) {
     if (before && ["for", "a", "b", ...Object.keys(LIMITS)].every((key) => state[key] === before[key])) return;
     const question = this.questions.find(({ where }) => where === state.for) ?? this.questions[0], asked = askedOf(question, state);
+    this.root.querySelector("[data-pair]").replaceChildren(...this.pair(question, state));
+    // The table stays under the pointer that chose a code in it.
+    if (before && ["for", ...Object.keys(LIMITS)].every((key) => state[key] === before[key])) return;
     const found = answerOf(question, asked, this.constants), isOwn = JSON.stringify(asked) !== JSON.stringify(question.asked);
     this.fill(question, asked, isOwn);
     for (const reply of this.root.querySelectorAll("[data-question]")) reply.hidden = isOwn || reply.dataset.question !== question.where;
     for (const place of this.root.querySelectorAll("[data-of]")) place.hidden = place.dataset.of !== question.chart;
     // What a reader's constraints leave out is faint in the chart.
     const out = found.out.map(({ codec }) => `[data-codec="${CSS.escape(codec)}"]`).join(", ");
+    for (const caption of this.root.querySelectorAll("[data-of] figcaption")) caption.hidden = isOwn;
     this.faint.textContent = isOwn && out ? `[data-of="${question.chart}"] :is(${out}) { opacity: 0.15; }` : "";
     const own = this.root.querySelector("[data-own-reply]");
     own.hidden = !isOwn;
-    own.replaceChildren(element("p", { class: "lead" }, sentenceOf(question, asked, found)), element("ul", {}, ...this.said(found).map((line) => element("li", {}, line))));
+    own.replaceChildren(element("h2", { class: "lead" }, sentenceOf(question, asked, found)), element("ul", {}, ...this.said(found, asked).map((line) => element("li", {}, line))));
     this.root.querySelector("[data-left]").textContent = `${found.fit.length} of ${found.fit.length + found.out.length} codes are left`;
-    this.root.querySelector("[data-codes]").replaceChildren(this.table(found), this.leftOut(found));
-    this.root.querySelector("[data-pair]").replaceChildren(...this.pair(question, state));
+    this.root.querySelector("[data-codes]").replaceChildren(...(found.fit.length ? [this.table(found, asked)] : []), this.leftOut(found));
   }
 
   // The controls say what is asked for.
@@ -128,25 +140,28 @@ class Choose {
     this.root.querySelector("[data-again]").hidden = !isOwn;
   }
 
-  said({ best, rungs, gain, price, isSame }) {
-    if (!best) return ["Allow more slots, or accept holes or lengths."];
+  said({ best, fit, out, why, rungs, gain, price, isSame }, asked) {
+    const dear = out.filter((code) => code.once !== null && why.get(code).startsWith("more than ")).map((code) => code.once);
+    if (!best) return dear.length ? [`The cheapest code that is left out for its slots alone takes ${Math.min(...dear)}.`] : ["Every code is left out for another reason: see what does not qualify."];
+    const isEnough = (code) => code.largest !== null && 2 * code.largest <= asked.enough, limit = degrees(asked.enough);
+    const moved = isEnough(best) ? [`A reflection moves by at most ${degrees(2 * best.largest)}, which is enough. Of codes that are enough and cost little, that of the fewest bits is taken.`] : fit.some(isEnough) || !asked.enough ? [] : [`No code that is left moves a reflection by ${limit} or less.`];
     const slots = best.priced ? `It takes ${best.encode} issue slots to encode and ${best.decode} to decode, and has ${best.bits} bits.` : "What it costs is not known on this machine.";
     const rung = (code) => {
       const better = gain(code), ratio = price(code) / price(best);
       return `${better >= 0 ? "More exact" : "Less exact"}: ${code.name}, ${Math.abs(better).toFixed(1)} dB, ${isSame(code, best) ? "for the same price" : `for ${Number(ratio.toPrecision(2))} times the price`}.`;
     };
-    return [`Its mean error is ${degrees(best.mean)}, its largest ${degrees(best.largest)}.`, slots, ...rungs.map(rung)];
+    return [`Its mean error is ${degrees(best.mean)}, its largest ${degrees(best.largest)}.`, ...moved, slots, ...rungs.map(rung)];
   }
 
-  table({ fit, price }) {
+  table({ fit, price }, { readers }) {
     const most = Math.max(...fit.map((code) => price(code))), least = fit.length ? price(fit[0]) : 1;
-    const heads = [element("th", { scope: "col" }, "code"), ...COLUMNS.map(([title]) => element("th", { scope: "col", class: "n" }, title)), element("th", { scope: "col" }, "price")];
+    const heads = [element("th", { scope: "col" }, "code"), ...COMPARED.map(([title]) => element("th", { scope: "col", class: "n" }, title)), element("th", { scope: "col" }, `price with ${readers} readers`)];
     const rows = fit.map((code) => {
       const bar = element("span", { class: "bar", style: `--share: ${price(code) / most}` });
       const ratio = element("td", { class: "priced" }, bar, code.priced ? `${Number((price(code) / least).toPrecision(2))} ×` : "");
-      return element("tr", { "data-codec": code.codec }, element("th", { scope: "row" }, nameButton(code.codec, code.name)), ...COLUMNS.map(([, text]) => element("td", { class: "n" }, text(code))), ratio);
+      return element("tr", { "data-codec": code.codec }, element("th", { scope: "row" }, nameButton(code.codec, code.name)), ...COMPARED.map(([, text]) => element("td", { class: "n" }, text(code))), ratio);
     });
-    const table = element("table", {}, element("caption", {}, element("span", {}, "All codes that are left, the best first")), element("thead", { class: "plain" }, element("tr", {}, ...heads)), element("tbody", {}, ...rows));
+    const table = element("table", {}, element("caption", {}, element("span", {}, "All codes that are left, by what they lose and cost together")), element("thead", { class: "plain" }, element("tr", {}, ...heads)), element("tbody", {}, ...rows));
     return element("div", { class: "scroll", role: "region", "aria-label": "All codes that are left", tabindex: "0" }, table);
   }
 
@@ -166,7 +181,7 @@ class Choose {
       return element("td", { class: isBest ? "n best" : "n" }, one ? text(one) : "");
     };
     const heads = CODECS.map((side, at) => element("th", { scope: "col", class: `n side-${side}` }, `${side.toUpperCase()} ${[a, b][at]?.name ?? "not of this question"}`));
-    const rows = COLUMNS.map((column) => element("tr", {}, element("th", { scope: "row" }, column[0]), cell(column, a, b), cell(column, b, a)));
+    const rows = COMPARED.map((column) => element("tr", {}, element("th", { scope: "row" }, column[0]), cell(column, a, b), cell(column, b, a)));
     const table = element("table", { class: "pair-figures" }, element("thead", { class: "plain" }, element("tr", {}, element("td", {}), ...heads)), element("tbody", {}, ...rows));
     return [element("div", { class: "scroll", role: "region", "aria-label": "A beside B", tabindex: "0" }, table)];
   }

@@ -452,8 +452,15 @@ class Viewer {
     return name ? this.subject.codecs.findIndex((one) => one.codec && agrees(one.codec, name)) : -1;
   }
 
+  // How many of A and B a subject has pictures of.
+  has(subject) {
+    return CODECS.filter((side) => subject.codecs.some(({ codec }) => codec && agrees(codec, state[side]))).length;
+  }
+
   // A stands to the left and B to the right, where there are pictures of them.
   take(state) {
+    const lacking = CODECS.filter((side) => state[side] && this.find(state[side]) < 0).map((side) => `${side.toUpperCase()}, ${state[side]}`);
+    this.one("[data-lacking]").textContent = lacking.length ? `This picture is not in the page of ${lacking.join(" and of ")}.` : "";
     const before = SIDES.map((side) => this.side(side).value);
     for (const [at, side] of SIDES.entries()) {
       const found = this.find(state[CODECS[at]]);
@@ -463,7 +470,12 @@ class Viewer {
   }
 
   follow(state) {
-    if (this.isReady && this.take(state)) this.show();
+    if (!this.isReady) return;
+    const most = Math.max(...this.data.subjects.map((one) => this.has(one)));
+    if (this.has(this.subject) < most) {
+      this.one("#subject").value = this.data.subjects.findIndex((one) => this.has(one) === most);
+      this.begun = this.begin();
+    } else if (this.take(state)) this.show();
   }
 
   // What a reader chose: a codec of the page is A or B everywhere.

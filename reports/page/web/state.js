@@ -152,6 +152,15 @@ document.addEventListener("click", (event) => {
   const name = codecNamed(button.dataset.name);
   if (name) choose(name, event.shiftKey);
 });
+// A view keeps A, B and what is asked.
+for (const link of document.querySelectorAll("nav [data-to]")) {
+  link.addEventListener("click", (event) => {
+    if (event.ctrlKey || event.metaKey || event.shiftKey || event.altKey) return;
+    event.preventDefault();
+    change({ view: link.dataset.to, at: "" });
+    scrollTo({ top: 0, behavior: "instant" });
+  });
+}
 for (const side of CODECS) document.querySelector(`#side-${side}`)?.addEventListener("change", (event) => change({ [side]: event.target.value }));
 document.querySelector("#sides-swap")?.addEventListener("click", () => change({ a: state.b, b: state.a }));
 document.querySelector(".sides")?.removeAttribute("hidden");
