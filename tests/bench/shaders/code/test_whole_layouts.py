@@ -260,7 +260,7 @@ def test_what_a_layout_calls_by_a_name_is_called_so(tmp_path):
     words = "other.flags:4 other.half:4 other.roughness:4 other.lit:2 other.lit:2"
     (tmp_path / "mine.toml").write_text(WORDS.replace("occlusion other kind:4 other:12", f"occlusion {words} kind:8"))
     (layout,) = layouts_named(str(tmp_path / "mine.toml"))
-    names = [field.name for field in Contents(layout).fields if field.components[0] == field.name]
+    names = [field.name for field in Contents(layout).fields if field.components == (field.name,)]
     assert {"flags", "half_4", "roughness_5", "lit_6", "lit_7", "other_1", "other_2"} <= {*names}, names
     assert (found := agreement(gbuffer_code(layout, "c"), FEW)).differing == 0, found.says
 
