@@ -208,8 +208,7 @@ def gathered(folder: Path, done: Done) -> Found:
         tables=tables,
         steps=len(done.steps),
         finished=done.finished,
-        domains={name: encoding.domain for name, encoding in ENCODINGS.items()},
-        others=_others(tables),
+        encodings=_encodings(tables),
         subjects=list(_subjects(folder, done, tables, remarks)),
         extras=_extras(folder, tables, remarks),
         live=_live(folder / LIVE),
@@ -221,11 +220,11 @@ def gathered(folder: Path, done: Done) -> Found:
     return replace(found, sections=answered_first(sections))
 
 
-def _others(tables: Mapping[str, Sequence[Row]]) -> frozenset[str]:
-    """The encodings of normals in a run's rows that are not the catalogue's: those of users' files."""
+def _encodings(tables: Mapping[str, Sequence[Row]]) -> frozenset[str]:
+    """The names of encodings of normals: the catalogue's, and those of users' files in a run's rows."""
     of_normals = (rows for name, rows in tables.items() if ENCODING in TABLES[name].columns)
     names = {str(row["encoding"]) for rows in of_normals for row in rows if row.get("encoding")}
-    return frozenset(names - ENCODINGS.keys())
+    return frozenset(names | ENCODINGS.keys())
 
 
 def _section(folder: Path, found: Found, done: Done, table: Table, remarks: list[str]) -> TableSection:

@@ -54,8 +54,7 @@ class Found:
         sections: the tables as the page shows them, in its order.
         steps: how many have their rows.
         finished: whether all that was asked for has.
-        domains: of each encoding, the normals that it is made for.
-        others: the names of encodings of normals that are not the catalogue's.
+        encodings: the names of encodings of normals: the catalogue's, and those of users' files.
         subjects: what codecs were tried on, and their pixels.
         extras: what tables show beside their rows, by name: `maps`, `agreement`, `fronts`, `listings` and
             `order`.
@@ -69,8 +68,7 @@ class Found:
     sections: Sequence[TableSection] = ()
     steps: int = 0
     finished: bool = False
-    domains: Mapping[str, str] = field(default_factory=dict)
-    others: frozenset[str] = frozenset()
+    encodings: frozenset[str] = frozenset()
     subjects: Sequence[Subject] = ()
     extras: Mapping[str, Any] = field(default_factory=dict)
     live: Live | None = None
@@ -85,11 +83,6 @@ class Found:
         """Names and versions of what measured, by what they are of; empty where the run does not say."""
         machine = self.facts.get("machine")
         return machine if isinstance(machine, dict) else {}
-
-    @property
-    def encodings(self) -> set[str]:
-        """The names of encodings of normals: the catalogue's, and those of users' files."""
-        return {*self.domains, *self.others}
 
     @property
     def begun(self) -> str:

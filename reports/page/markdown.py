@@ -24,7 +24,6 @@ def markdown(found: Found) -> str:
         found,
         name=_plain(found.name),
         tables={name: _rows(rows) for name, rows in found.tables.items()},
-        domains={_plain(name): domain for name, domain in found.domains.items()},
     )
     text = ""
     for block in _blocks(safe):

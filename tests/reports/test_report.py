@@ -1,12 +1,10 @@
 """The report: what it holds, of runs that are whole, partial, old, stopped or hostile."""
 
-import base64
 import hashlib
 import json
 import math
 import re
 import time
-import zlib
 from dataclasses import replace
 from html.parser import HTMLParser
 from importlib import import_module
@@ -15,6 +13,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from packed import packed_text
 from PIL import Image
 
 from normalbench.bench.subjects.normals.normal_sets import hemisphere
@@ -45,13 +44,6 @@ def quality_row(encoding: str, **more) -> dict:
 
 def text_of_page(folder: Path) -> str:
     return (folder / "report.html").read_text(encoding="utf-8")
-
-
-def packed_text(page_text: str, key: str) -> str:
-    """What an element of a page holds packed."""
-    found = re.search(rf'id="{key}">([^<]*)</script>', page_text)
-    assert found, key
-    return zlib.decompress(base64.b64decode(found[1]), wbits=-zlib.MAX_WBITS).decode()
 
 
 def a_run(folder: Path, tables: dict[str, list], **facts) -> Path:

@@ -57,7 +57,7 @@ def test_compare_names_its_rows_and_the_page_shows_it(copy):
     (change,) = json.loads(done.stdout)
     assert done.returncode == 1 and (change["row"], change["column"], change["verdict"]) == ("c", "letters", "worse")
     page = (copy / "before/report.html").read_text()
-    assert '<section id="echo"' in page and '<a href="#echo">Words</a>' in page and "What words cost" in page
+    assert '<section id="echo"' in page and 'data-to="more"' in page and "What words cost" in page
     assert re.search(r"<dt>letters</dt><dd>How many letters it has\. Unit: letters\.</dd>", page)
     assert "a parrot" in page, "the conditions"
     assert "bb is the longest, with 2 letters" in page and (copy / "before/charts/echo.svg").exists()
