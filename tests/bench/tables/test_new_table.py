@@ -2,12 +2,12 @@
 
 import json
 import os
-import re
 import subprocess
 import sys
 
 import pytest
 from contributing import EXAMPLES, a_copy_of_the_rooms, normalbench_in
+from packed import packed_text
 
 ECHO = EXAMPLES["a table"]
 
@@ -58,6 +58,6 @@ def test_compare_names_its_rows_and_the_page_shows_it(copy):
     assert done.returncode == 1 and (change["row"], change["column"], change["verdict"]) == ("c", "letters", "worse")
     page = (copy / "before/report.html").read_text()
     assert '<section id="echo"' in page and 'data-to="more"' in page and "What words cost" in page
-    assert re.search(r"<dt>letters</dt><dd>How many letters it has\. Unit: letters\.</dd>", page)
+    assert "How many letters it has. Unit: letters." in packed_text(page, "data-echo")
     assert "a parrot" in page, "the conditions"
     assert "bb is the longest, with 2 letters" in page and (copy / "before/charts/echo.svg").exists()
