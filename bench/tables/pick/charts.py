@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 from ....reports.charts.chart import INK, Axis, Chart, Kind, Mark, Scale
 from ....reports.page.codec_key import CodecKey
@@ -13,12 +13,15 @@ from .sentences import called, question
 HEIGHT = 400
 
 
-def charts(rows: Sequence[Row]) -> Iterator[Chart]:
+def charts(rows: Sequence[Row]) -> list[Chart]:
     """A chart for each question of which two codes have a price."""
-    for at, group in enumerate(groups(rows).values()):
-        points = [_point(row) for row in group if _has_place(row)]
-        if len(points) > 1:
-            yield _chart(f"choose-{at}", group, points)
+    asked = [(group, [_point(row) for row in group if _has_place(row)]) for group in groups(rows).values()]
+    return [_chart(chart_name(at), group, points) for at, (group, points) in enumerate(asked) if len(points) > 1]
+
+
+def chart_name(at: int) -> str:
+    """The name of the chart of a question, by its place among those of the rows."""
+    return f"choose-{at}"
 
 
 def _has_place(row: Row) -> bool:

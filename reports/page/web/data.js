@@ -38,14 +38,13 @@ function shownText(column, row) {
 class DataTable {
   constructor(details, data) {
     Object.assign(this, { details, data, order: Array.from({ length: data.count }, (_, at) => at), sorted: null, lines: LINES });
-    this.title = details.querySelector("summary").textContent;
     this.part = data.columns.find(({ name }) => name === details.dataset.parts);
     this.build();
     this.show();
   }
 
   build() {
-    const { name, table } = this.details.dataset, id = `rows-${table}-filter`;
+    const { table } = this.details.dataset, id = `rows-${table}-filter`;
     this.filter = element("input", { type: "search", id, autocomplete: "off", spellcheck: "false", oninput: () => this.refilter() });
     this.count = element("span", { role: "status", "data-count": "" });
     this.said = element("span", { role: "status", "data-copied": "" });
@@ -57,7 +56,7 @@ class DataTable {
     tools.append(button("markdown", "Copy as Markdown", () => copy(this.markdown(), this.said)), button("csv", "Save as CSV", () => saveText(`${table}.csv`, this.csv())), this.said);
     const scroll = element("div", { class: "scroll", role: "region", "aria-label": `Every row of ${table}`, tabindex: "0" }, this.table);
     this.definitions = element("dl", {});
-    this.root = element("div", { class: "sheet", "data-rows": name || table }, tools, scroll, element("p", { class: "tools" }, this.more),
+    this.root = element("div", { class: "sheet", "data-rows": table }, tools, scroll, element("p", { class: "tools" }, this.more),
       element("details", { class: "columns" }, element("summary", {}, "What the columns say", element("span", { class: "visually-hidden" }, ` of ${table}`)), this.definitions));
     this.details.append(this.root);
   }
@@ -116,10 +115,8 @@ class DataTable {
     this.definitions.replaceChildren(...columns.filter(({ says }) => says).flatMap(({ title, says }) => [element("dt", {}, title), element("dd", {}, says)]));
   }
 
-  // The first click puts the best on top, as in every table.
   sort(column) {
-    const first = column.better === "more" ? "descending" : "ascending", second = first === "ascending" ? "descending" : "ascending";
-    const direction = this.sorted?.column === column && this.sorted.direction === first ? second : first;
+    const direction = nextOrder(column.better, this.sorted?.column === column ? this.sorted.direction : "none");
     this.sorted = { column, direction };
     const text = (row) => { const value = valueIn(column, row); return value === null ? "" : String(value); };
     const way = direction === "ascending" ? 1 : -1;

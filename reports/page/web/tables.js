@@ -41,13 +41,16 @@ function number(text) {
   return Number(text.replace("inf", "Infinity"));
 }
 
-// The first click puts the best on top.
+// The first click puts the best on top, the second the worst.
+function nextOrder(better, order) {
+  const [first, second] = better === "more" ? ["descending", "ascending"] : ["ascending", "descending"];
+  return order === first ? second : first;
+}
+
 function sortBy(header) {
   const table = header.closest("table"), body = table.tBodies[0];
   const index = cellsOf(header.parentNode).indexOf(header), numeric = header.classList.contains("n");
-  const first = header.dataset.better === "more" ? "descending" : "ascending";
-  const second = first === "ascending" ? "descending" : "ascending";
-  const order = header.getAttribute("aria-sort") === first ? second : first;
+  const order = nextOrder(header.dataset.better, header.getAttribute("aria-sort"));
   for (const other of cellsOf(header.parentNode)) other.setAttribute("aria-sort", "none");
   header.setAttribute("aria-sort", order);
   const value = (row) => valueOf(row.children[index]);
