@@ -14,8 +14,8 @@ class CodecKey(NamedTuple):
 
     @classmethod
     def of(cls, row: dict[str, Any]) -> CodecKey:
-        """The codec of a row."""
-        return cls(*(str(row.get(name)) for name in cls._fields))
+        """The codec of a row, which rounds to the nearest unless the row says otherwise."""
+        return cls(str(row.get("encoding")), str(row.get("storage")), str(row.get("rounding") or "nearest"))
 
     @property
     def label(self) -> str:

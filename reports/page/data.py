@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from ..sheets import Column, Role, Row, column_called, undefined
+from ..sheets import Column, Row, column_called, undefined
 from ..tables import storable, title_of
 from .packing import packed
 
@@ -31,7 +31,8 @@ def block(rows: Sequence[Row], columns: Iterable[Column]) -> str:
 
 def _about(column: Column, name: str) -> dict[str, Any]:
     """What is said of a column, less what is empty."""
-    said = {"says": column.definition, "better": column.better, "raw": column.role is Role.RAW}
+    said = {"says": column.definition, "better": column.better, "role": column.role.value, "unit": column.unit}
+    said |= {"hidden": not column.shown}
     return {"name": name, "title": title_of(name), **{key: value for key, value in said.items() if value}}
 
 

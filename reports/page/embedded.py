@@ -20,7 +20,7 @@ from ..charts.pictures import GAIN, POWER
 from .pixels import LEAST_LOG2, NOT_A_NUMBER, STEPS_PER_OCTAVE, ImagePixels, NormalPixels, Pictured, Subject
 
 # What all pictures inside a page may take, in bytes of text; and inside one of a whole run, which has much besides.
-BUDGET, BUDGET_OF_A_RUN = 1_750_000, 640_000
+BUDGET, BUDGET_OF_A_RUN = 1_750_000, 600_000
 # Inside a page a picture is at most this wide or high: larger ones are shown as every second pixel, or every third.
 INSIDE = 400
 # Pixels that WebP has room for on a side.
@@ -184,7 +184,8 @@ def _packed(pool: ThreadPoolExecutor, packers: Sequence[_Packer]) -> Iterator[tu
 
 
 def _in_turn(packers: Sequence[_Packer]) -> Iterator[tuple[_Packer, Pictured]]:
-    """The first codec of each subject by rank, then the second of each, and so on."""
+    """What comes before all others; then the first codec of each subject by rank, the second of each, and so on."""
     ranked = [[(packer, one) for one in sorted(packer.subject.codecs, key=lambda one: one.rank)] for packer in packers]
-    for turn in itertools.zip_longest(*ranked):
+    yield from (one for turn in ranked for one in turn[: turn[0][0].subject.first])
+    for turn in itertools.zip_longest(*(turn[turn[0][0].subject.first :] for turn in ranked)):
         yield from filter(None, turn)

@@ -26,7 +26,18 @@ from .sections import TableSection, whole
 from .verdict import is_number
 
 WEB = Path(__file__).parent / "web"
-SCRIPTS = ("tables.js", "state.js", "data.js", "choose.js", "pictures.js", "charts.js", "figures.js", "opener.js")
+SCRIPTS = (
+    "tables.js",
+    "state.js",
+    "data.js",
+    "choose.js",
+    "compare.js",
+    "zoom.js",
+    "pictures.js",
+    "charts.js",
+    "figures.js",
+    "opener.js",
+)
 # Text of more letters than this may break into lines.
 WRAPPED = 24
 
@@ -181,13 +192,14 @@ class Shown:
     parts: Sequence[tuple[str, str]]
 
 
-def views(found: Found, has_pictures: bool) -> list[Shown]:
+def views(found: Found, has_codecs: bool, has_pictures: bool) -> list[Shown]:
     """What a reader may look at, in the order of the page."""
     parts: dict[View, list[tuple[str, str]]] = {view: [] for view in View}
     for section in found.sections:
         mine = parts[section.about.view]
         mine.append((section.key, section.about.short))
         mine += [(extra, EXTRAS[extra]) for extra in section.about.extras if extra in EXTRAS]
+    parts[View.COMPARE] += [("both", "Figures")] if has_codecs else []
     parts[View.COMPARE] += [("pictures", "Pictures")] if has_pictures else []
     parts[View.SEE] += [("live", "Your GPU")] if found.live else []
     parts[View.DATA] += [("rows", "Every row"), ("measured", "Measured")]
@@ -255,12 +267,12 @@ def html(
     laboratory = live.script() if found.live else ""
     parts = [_part(found, section, specs) for section in found.sections]
     names, leading = codecs(found, specs), [part for part in parts if part.section.about.leads and part.is_there]
-    maps, begins = found.extras.get("maps", ()), beginning(parts, names)
+    maps, begins, choices = found.extras.get("maps", ()), beginning(parts, names), found.extras.get("choices")
     return template("page.html.j2").render(
         found=found,
         remarks=remarks(found),
         most_remarks=MOST_REMARKS,
-        views=views(found, bool(gallery.subjects)),
+        views=views(found, bool(names), bool(gallery.subjects)),
         agreement=found.extras.get("agreement", ""),
         parts=parts,
         leading=leading,
@@ -273,7 +285,9 @@ def html(
         codecs=names,
         begins=begins,
         begins_data=data_block(begins),
-        choices=packed(json.dumps(found.extras["choices"])) if "choices" in found.extras else "",
+        choices=choices,
+        compared=json.dumps([(part.section.key, part.section.about.short) for part in parts if part.is_there]),
+        choices_data=packed(json.dumps(choices)) if choices else "",
         listings=packed(_listings(found)) if found.extras.get("listings") else "",
         files=files,
         library=packed(library_script) if specs else "",

@@ -98,12 +98,14 @@ class Subject:
         original: the exact normals, or the image in 32-bit floats: uint8 of shape (height, width, 3); None where its
             file is damaged.
         codecs: whose pixels there are, the best of the fewest bits first.
+        first: how many of these a page has room for before it takes any of other subjects.
     """
 
     title: str
     of: str
     original: Callable[[], np.ndarray | None]
     codecs: Sequence[Pictured]
+    first: int = 0
 
 
 @dataclass(frozen=True)

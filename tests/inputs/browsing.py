@@ -37,7 +37,6 @@ class Opened:
         self.page.on("pageerror", lambda error: self.said.append(str(error)))
         self.address, self.is_new = path.as_uri() + fragment, True
         self.page.goto(self.address)
-        self.page.wait_for_selector("#theme:not([hidden])")
 
     def load_anew(self) -> None:
         """As a new window has it: nothing that was typed, chosen, remembered or allowed is left."""
@@ -49,7 +48,6 @@ class Opened:
             self.page.goto("about:blank")
             self.asked.clear()
             self.page.goto(self.address)
-            self.page.wait_for_selector("#theme:not([hidden])")
             self.said.clear()
         self.is_new = False
 

@@ -128,6 +128,10 @@ def test_constraints_change_the_answer_the_count_and_the_address(browser, run, t
     assert left.text_content() == "1 of 2 codes are left" and codes.count() == 1
     assert page.page.locator(".reply:visible .lead").all_text_contents() == ["rg8, on sphere: take xy."]
     assert page.page.evaluate("location.hash") == "#v1/choose?most=6"
+    page.says("[data-of='choose-0'] [data-finding]", "rg8, on sphere: no other code beats 1 of 1 in both")
+    plot = page.page.locator("[data-of='choose-0'] .plot:has(svg)")
+    points = "(plot) => Object.fromEntries(charts.views.get(plot).tables.flat().map((row) => [row.codec, row.rest]))"
+    assert plot.evaluate(points) == {"fine rg8": True, "xy rg8": False}
     page.page.locator("[data-limit=for]").select_option("rgb10a2, on sphere")
     assert page.page.locator(".reply:visible .lead").all_text_contents() == ["rgb10a2, on sphere: take xy."]
     # A copied address shows the same.

@@ -11,6 +11,8 @@ from .answer import groups, mean, why_unfit
 from .sentences import called, question
 
 HEIGHT = 400
+# What the title of a chart finds; the page's script fills it in for a reader's own constraints.
+FOUND = "{where}: no other code beats {front} of {all} in both slots and mean error"
 
 
 def charts(rows: Sequence[Row]) -> list[Chart]:
@@ -25,7 +27,9 @@ def chart_name(at: int) -> str:
 
 
 def _has_place(row: Row) -> bool:
-    return not row["beside"] and not why_unfit(row) and bool(mean(row)) and row["slots_once"] is not None
+    """Whether some reader's constraints may let a code in, and it has both figures."""
+    is_known = bool(mean(row)) and row["slots_once"] is not None
+    return is_known and not row["beside"] and not why_unfit({**row, "accept_lengths": True})
 
 
 def _point(row: Row) -> Row:
@@ -43,12 +47,12 @@ def _front(points: Sequence[Row]) -> list[Row]:
 
 
 def _chart(name: str, group: Sequence[Row], points: Sequence[Row]) -> Chart:
-    asked, front = question(group[0]), tuple(_front(points))
+    asked, front, left = question(group[0]), tuple(_front(points)), [point for point in points if not point["rest"]]
     tips = (("codec", "codec"), ("x", "issue slots"), ("y", "mean error, degrees"), ("why", "left out"))
     return Chart(
         name=name,
-        title=f"{asked}: no other code beats {len(front)} of {len(points)} in both slots and mean error",
-        subtitle="the line joins these; grey: left out",
+        title=FOUND.format(where=asked, front=len(front), all=len(left)),
+        subtitle="The line joins these; grey: left out",
         description="Each code by the issue slots that it takes to encode and to decode once, and by its mean error. "
         "The figures are in the table.",
         x=Axis(title=f"issue slots to encode and decode once, {group[0]['family']}", scale=Scale.COUNT),

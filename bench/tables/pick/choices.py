@@ -13,7 +13,7 @@ from typing import Any
 from ....reports.page.codec_key import CodecKey
 from . import answer
 from .answer import Row, groups, image_loss, largest, largest_mixed, loss_db, mean, why_unfit
-from .charts import chart_name
+from .charts import FOUND, chart_name
 from .sentences import around_gain, called, constraints, not_held, question
 from .table import TABLE
 
@@ -35,7 +35,7 @@ def extras(_folder: Path, tables: Mapping[str, Sequence[Row]], _remarks: list[st
     """The questions of a run, for the page; nothing where it answers none."""
     asked = enumerate(groups(tables[TABLE.name]).values())
     made = [_question(group) | {"chart": chart_name(at)} for at, group in asked if group[0]["aim"] != "cost"]
-    return {"choices": {"constants": CONSTANTS, "questions": made}} if made else {}
+    return {"choices": {"constants": CONSTANTS, "questions": made, "found": FOUND}} if made else {}
 
 
 def _question(group: Sequence[Row]) -> dict[str, Any]:

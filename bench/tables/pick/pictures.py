@@ -20,12 +20,14 @@ from ..table import Row
 from .answer import AGAINST, BEST, CHEAPER, FEWER_BITS, MORE_EXACT, MOST_EXACT, images, places_of
 from .measure import Case, Pictures
 
+# The answer and what stands next to it are what a reader sees first.
+FIRST = 2
 PLACES = (BEST, AGAINST, MORE_EXACT, MOST_EXACT, CHEAPER, FEWER_BITS)
 
 
 def write(folder: Path, chosen: Sequence[Case], rows: Sequence[Row], drawing: Pictures) -> None:
     """The images of every code that has a place, and of the exact normals."""
-    placed = {_key_of(row) for row in rows if set(places_of(row)) & set(PLACES)}
+    placed = {CodecKey.of(row) for row in rows if set(places_of(row)) & set(PLACES)}
     drawn = (one for one in chosen if _key_of_case(one) in placed)
     for case, maker in ((one, maker) for one in drawn if not one.is_beside for maker in one.makers):
         # A code that the device has no room for has no image.
@@ -34,10 +36,6 @@ def write(folder: Path, chosen: Sequence[Case], rows: Sequence[Row], drawing: Pi
                 scene = _scene_stem(maker.name, "" if power is None else f"{power:g}")
                 _write(folder / f"{scene}-reference.png", exact)
                 _write(folder / _file_name(scene, _key_of_case(case)), image)
-
-
-def _key_of(row: Row) -> CodecKey:
-    return CodecKey(str(row["encoding"]), str(row["storage"]), str(row.get("rounding") or "nearest"))
 
 
 def _key_of_case(case: Case) -> CodecKey:
@@ -68,11 +66,11 @@ def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
     for scene, power in sorted(drawn, key=lambda key: (scenes.index(key[0]), -float(key[1] or 0))):
         stem = _scene_stem(scene, power)
         exact = there.get(f"{stem}-reference.png")
-        paths = {key: there.get(_file_name(stem, key)) for key in map(_key_of, placed)}
+        paths = {key: there.get(_file_name(stem, key)) for key in map(CodecKey.of, placed)}
         known = [Pictured(key, key.label, key.label, partial(_pixels, path)) for key, path in paths.items() if path]
         if exact and known:
             where = f"{scene} at power {power}" if power else scene
-            yield Subject(f"the answer on {where}", "image", partial(read_png, exact), known)
+            yield Subject(f"the answer on {where}", "image", partial(read_png, exact), known, FIRST)
 
 
 def _place_index(row: Row) -> int:

@@ -5,7 +5,6 @@ const charts = { views: new Map(), waiting: new Set(), late: new Set() };
 const FONT = "system-ui, sans-serif", pen = document.createElement("canvas").getContext("2d");
 // Pixels of text, of names and of points, and how near a pointer must come.
 const TEXT = 12, NAME = 11, POINT = 4.4, NEAR = 28;
-const clamped = (value, low, high) => Math.max(low, Math.min(high, value));
 const set = (selection, given) => Object.entries(given).reduce((made, [name, value]) => made.attr(name, value), selection);
 
 function widthOf(text, size) {

@@ -80,13 +80,12 @@ const COMPARED = [
 ];
 
 class Choose {
-  constructor(root, { constants, questions }) {
-    Object.assign(this, { root, constants, questions, faint: document.head.appendChild(element("style", {})) });
+  constructor(root, { constants, questions, found }) {
+    Object.assign(this, { root, constants, questions, title: found });
     this.control = Object.fromEntries(Array.from(root.querySelectorAll("[data-limit]"), (one) => [one.dataset.limit, one]));
-    this.control.for.append(...questions.map(({ where }) => element("option", {}, where)));
     for (const [key, one] of Object.entries(this.control)) one.addEventListener("input", () => this.take(key, one));
     root.querySelector("[data-again]").addEventListener("click", () => change(Object.fromEntries(Object.keys(LIMITS).map((key) => [key, ""]))));
-    root.querySelector(".constraints").hidden = false;
+    root.addEventListener("drawn", ({ target }) => this.plot(target));
     shows.push((state, before) => this.show(state, before));
     this.show(state, null);
   }
@@ -115,15 +114,29 @@ class Choose {
     this.fill(question, asked, isOwn);
     for (const reply of this.root.querySelectorAll("[data-question]")) reply.hidden = isOwn || reply.dataset.question !== question.where;
     for (const place of this.root.querySelectorAll("[data-of]")) place.hidden = place.dataset.of !== question.chart;
-    // What a reader's constraints leave out is faint in the chart.
-    const out = found.out.map(({ codec }) => `[data-codec="${CSS.escape(codec)}"]`).join(", ");
-    for (const caption of this.root.querySelectorAll("[data-of] figcaption")) caption.hidden = isOwn;
-    this.faint.textContent = isOwn && out ? `[data-of="${question.chart}"] :is(${out}) { opacity: 0.15; }` : "";
+    Object.assign(this, { question, found });
+    for (const plot of this.root.querySelectorAll(`[data-of="${question.chart}"] .plot`)) this.plot(plot);
     const own = this.root.querySelector("[data-own-reply]");
     own.hidden = !isOwn;
     own.replaceChildren(element("h2", { class: "lead" }, sentenceOf(question, asked, found)), element("ul", {}, ...this.said(found, asked).map((line) => element("li", {}, line))));
     this.root.querySelector("[data-left]").textContent = `${found.fit.length} of ${found.fit.length + found.out.length} codes are left`;
     this.root.querySelector("[data-codes]").replaceChildren(...(found.fit.length ? [this.table(found, asked)] : []), this.leftOut(found));
+  }
+
+  // The chart of the question: what the constraints leave out is grey, and the line joins what no other code beats in both.
+  plot(plot) {
+    const view = charts.views.get(plot), { question, found } = this;
+    if (!view || plot.closest("[data-of]").dataset.of !== question.chart) return;
+    const tableOf = (kind) => view.panel.marks.find((mark) => mark.kind === kind).table, why = new Map(Array.from(found.why, ([{ codec }, said]) => [codec, said]));
+    const points = view.tables[tableOf("points")];
+    for (const point of points) Object.assign(point, { why: why.get(point.codec), rest: Boolean(why.get(point.codec)) });
+    const left = points.filter(({ rest }) => !rest).sort((one, other) => before([one.x, one.y], [other.x, other.y]));
+    const front = left.reduce((kept, point) => (!kept.length || point.y < kept.at(-1).y ? [...kept, point] : kept), []);
+    view.tables[tableOf("lines")] = front;
+    const figure = plot.closest("figure"), title = this.title.replace("{where}", question.where).replace("{front}", front.length).replace("{all}", left.length);
+    figure.dataset.title = title;
+    figure.querySelector("[data-finding]").textContent = title;
+    view.draw();
   }
 
   // The controls say what is asked for.

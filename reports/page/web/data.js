@@ -86,7 +86,7 @@ class DataTable {
 
   // Less what is empty in all of these rows, and what only a program reads.
   columns(rows) {
-    return this.data.columns.filter((column) => !column.raw && rows.some((row) => column.values[row] !== null));
+    return this.data.columns.filter((column) => column.role !== "raw" && rows.some((row) => column.values[row] !== null));
   }
 
   show() {

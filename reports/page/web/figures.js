@@ -49,7 +49,10 @@ function drawLate() {
 function drawNext(figure) {
   const { panels, ...spec } = charts.specs[figure.dataset.chart], plots = Array.from(figure.querySelectorAll(".plot"));
   const at = plots.findIndex((plot) => !charts.views.has(plot));
-  if (at >= 0) charts.views.set(plots[at], new View(plots[at], spec, panels[at]));
+  if (at >= 0) {
+    charts.views.set(plots[at], new View(plots[at], spec, panels[at]));
+    plots[at].dispatchEvent(new Event("drawn", { bubbles: true }));
+  }
   if (at === plots.length - 1) addSaving(figure);
   return at >= 0;
 }

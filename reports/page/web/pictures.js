@@ -112,6 +112,14 @@ class Planes {
     return most;
   }
 
+  // The largest error of a pixel: an angle, or steps of 8 bits.
+  most() {
+    const count = this.subject.width * this.subject.height, error = this.subject.of === "image" ? (i) => this.difference(i) : (i) => this.angle(i);
+    let most = 0;
+    for (let i = 0; i < count; i++) most = Math.max(most, error(i) || 0);
+    return most;
+  }
+
   // How far an image is off at most, and where that is to be seen.
   offBy() {
     if (this.off) return this.off;
@@ -170,6 +178,19 @@ class Planes {
     penOf(canvas).putImageData(image, 0, 0);
   }
 
+  bitsOf(i) {
+    return this.codes.map((plane, c) => plane[i].toString(2).padStart(this.bits[c], "0"));
+  }
+
+  // What a pixel is, in lines that have room inside it.
+  numbers(i) {
+    if (this.subject.of === "image") return [0, 1, 2].map((c) => String(this.final(i, c))).concat(this.apart ? [`off ${this.difference(i)}`] : []);
+    if (!this.angles) return componentsOf(this.exact, i);
+    const angle = this.angle(i);
+    if (Number.isNaN(angle)) return [];
+    return [...this.bitsOf(i), ...componentsOf(this.decoded, i), this.isNumber(i) ? `${Number(angle.toPrecision(2))}°` : "not a number"];
+  }
+
   // What a pixel is, in words.
   say(i) {
     if (this.subject.of === "image") {
@@ -180,14 +201,18 @@ class Planes {
     if (!this.angles) return `normal ${normalOf(this.exact, i)}`;
     const angle = this.angle(i);
     if (Number.isNaN(angle)) return "background";
-    const bits = this.codes.map((plane, c) => plane[i].toString(2).padStart(this.bits[c], "0")).join(" ");
+    const bits = this.bitsOf(i).join(" ");
     if (!this.isNumber(i)) return `code ${bits}, decoded to what is not a number`;
     return `code ${bits}, decoded ${normalOf(this.decoded, i)}, off by ${Number(angle.toPrecision(2))}°`;
   }
 }
 
+function componentsOf(from, i) {
+  return [0, 1, 2].map((c) => (from[4 * i + c] / 127.5 - 1).toFixed(3));
+}
+
 function normalOf(from, i) {
-  return `(${[0, 1, 2].map((c) => (from[4 * i + c] / 127.5 - 1).toFixed(3)).join(", ")})`;
+  return `(${componentsOf(from, i).join(", ")})`;
 }
 
 function grey(share, to, at) {
@@ -202,8 +227,8 @@ class Viewer {
     this.degrees = Array.from({ length: 256 }, (_, step) => 2 ** (least_log2 + (step - 1) / steps_per_octave));
     Object.assign(this.degrees, { 0: NaN, 1: 0, [not_a_number]: 180 });
     data.subjects.forEach((subject, at) => this.one("#subject").add(new Option(subject.title, at)));
+    this.zoom = new Zoom(this);
     this.listen();
-    root.hidden = false;
   }
 
   one(selector) {
@@ -252,17 +277,15 @@ class Viewer {
       this.side(side).addEventListener("change", () => this.chosen(side));
     }
     for (const id of ["view", "scale", "colours"]) this.one(`#${id}`).addEventListener("input", () => this.show());
+    this.one("[data-fit]").addEventListener("click", () => this.fitToMost());
+    this.one("[data-blink]").addEventListener("click", () => this.blink());
     this.one("#divider").addEventListener("input", () => this.divide(this.one("#divider").value));
     const stage = this.one(".stage");
     stage.addEventListener("pointermove", (event) => this.point(event));
     stage.addEventListener("pointerdown", (event) => {
       stage.setPointerCapture(event.pointerId);
-      stage.classList.add("dragging");
       this.point(event);
     });
-    for (const name of ["pointerup", "pointercancel"]) {
-      stage.addEventListener(name, () => stage.classList.remove("dragging"));
-    }
     stage.addEventListener("pointerleave", () => (this.one(".lens").hidden = true));
     stage.addEventListener("keydown", (event) => this.key(event));
     stage.addEventListener("focus", () => this.look());
@@ -280,6 +303,7 @@ class Viewer {
     this.shown = {};
     this.fillLists(subject);
     this.place = { x: Math.floor(subject.width / 2), y: Math.floor(subject.height / 2) };
+    this.zoom.by(0);
     const note = subject.step > 1 ? `One pixel of ${subject.step} × ${subject.step} is shown.` : "Every pixel is shown.";
     this.one("[data-step]").textContent = note;
     this.fillThumbs();
@@ -316,6 +340,13 @@ class Viewer {
     this.one("#scale").value = at < 0 ? this.scales.length - 1 : at;
   }
 
+  // Full colour for the largest error of either side.
+  fitToMost() {
+    const shown = Object.values(this.shown).filter(({ codec }) => codec), most = Math.max(0, ...shown.map((planes) => planes.most()));
+    this.one("#scale").value = Math.max(0, this.scales.findLastIndex((scale) => scale <= most));
+    this.show();
+  }
+
   nearlyMost(planes) {
     const counts = new Uint32Array(256), count = this.subject.width * this.subject.height;
     const isImage = this.subject.of === "image";
@@ -346,6 +377,7 @@ class Viewer {
     }
     this.legend(scaled || view === "flip");
     this.magnify();
+    this.zoom.write();
   }
 
   put(side, planes, view, scale, isGrey) {
@@ -374,30 +406,45 @@ class Viewer {
     penOf(strip).putImageData(image, 0, 0);
   }
 
+  get divided() {
+    return Number(this.one("#divider").value);
+  }
+
+  // One side, and then the other, in the same place.
+  blink() {
+    this.divide(this.divided === 100 ? 0 : 100);
+  }
+
   divide(at) {
+    for (const [side, none] of [["left", 0], ["right", 100]]) this.one(`[data-name="${side}"]`).hidden = Number(at) === none;
     this.one(".stage").style.setProperty("--at", `${at}%`);
     this.one("#divider").value = at;
     this.one("[data-divided]").textContent = `${Math.round(at)} %`;
     this.one("#divider").setAttribute("aria-valuetext", `${Math.round(at)} %`);
+    this.zoom.write();
   }
 
   point(event) {
     // What a pointer passes over is not read out.
     this.one(".said").setAttribute("aria-live", "off");
-    const stage = this.one(".stage"), box = stage.getBoundingClientRect(), { width, height } = this.subject;
-    const share = { x: (event.clientX - box.left) / box.width, y: (event.clientY - box.top) / box.height };
-    if (stage.classList.contains("dragging")) this.divide(Math.max(0, Math.min(100, 100 * share.x)));
-    this.goTo({ x: share.x * width, y: share.y * height });
+    const stage = this.one(".stage"), box = stage.getBoundingClientRect();
+    if (this.zoom.drag === "line") this.divide(clamped((100 * (event.clientX - box.left)) / box.width, 0, 100));
+    this.goTo(this.zoom.at(event));
   }
 
   key(event) {
-    const by = event.shiftKey ? 10 : 1;
+    const by = event.shiftKey ? 10 : 1, zooms = { "+": STEP, "=": STEP, "-": 1 / STEP, 0: 0 };
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (event.key === " ") this.blink();
+    else if (event.key in zooms) this.zoom.by(zooms[event.key]);
+    if (event.key === " " || event.key in zooms) event.preventDefault();
     const moves = { ArrowLeft: [-by, 0], ArrowRight: [by, 0], ArrowUp: [0, -by], ArrowDown: [0, by] };
     if (!(event.key in moves)) return;
     event.preventDefault();
     this.one(".said").setAttribute("aria-live", "polite");
     const [x, y] = moves[event.key];
     this.goTo({ x: this.place.x + x, y: this.place.y + y });
+    this.zoom.follow(this.place);
   }
 
   goTo(place) {
@@ -408,7 +455,7 @@ class Viewer {
   }
 
   look() {
-    this.one(".lens").hidden = false;
+    this.one(".lens").hidden = this.zoom.k * this.zoom.unit > CELL;
     this.magnify();
   }
 
@@ -424,7 +471,7 @@ class Viewer {
       const field = this.one(`#lens-${axis}`);
       if (document.activeElement !== field) field.value = this.place[axis];
     }
-    this.placeLens(x / width, y / height);
+    this.placeLens(((x - this.zoom.x) * this.zoom.k) / width, ((y - this.zoom.y) * this.zoom.k) / height);
     const exact = of === "image" ? "" : `, exact normal ${normalOf(this.shown.left.exact, i)}`;
     this.say(`Pixel ${x * step}, ${y * step}${exact}`);
   }

@@ -163,7 +163,6 @@ for (const link of document.querySelectorAll("nav [data-to]")) {
 }
 for (const side of CODECS) document.querySelector(`#side-${side}`)?.addEventListener("change", (event) => change({ [side]: event.target.value }));
 document.querySelector("#sides-swap")?.addEventListener("click", () => change({ a: state.b, b: state.a }));
-document.querySelector(".sides")?.removeAttribute("hidden");
 for (const row of document.querySelectorAll("tr[data-codec]")) {
   if (codecNamed(row.dataset.codec)) row.cells[0].append(nameButton(row.dataset.codec, ...row.cells[0].childNodes));
 }

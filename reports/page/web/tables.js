@@ -1,5 +1,7 @@
 "use strict";
 
+const clamped = (value, low, high) => Math.max(low, Math.min(high, value));
+
 // Bytes of base64.
 function bytesOf(text) {
   return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
@@ -183,7 +185,6 @@ function remembered(name) {
 }
 
 const themeButton = document.querySelector("#theme");
-themeButton.hidden = false;
 themeButton.addEventListener("click", () => {
   const names = Object.keys(THEMES), now = document.documentElement.dataset.theme || "";
   const next = names[(names.indexOf(now) + 1) % names.length];
