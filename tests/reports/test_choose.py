@@ -1,9 +1,12 @@
 """The page's answer for a reader's constraints is pick's, to the letter."""
 
+import json
+
 import numpy as np
 from browsing import Opened
 from test_pictures import answered_run
 
+from normalbench.bench.tables.mix.table import USES
 from normalbench.bench.tables.pick.answer import answered
 from normalbench.bench.tables.pick.choices import CONSTANTS, extras
 from normalbench.bench.tables.pick.sentences import told
@@ -35,6 +38,8 @@ def made_up_rows(rng: np.random.Generator) -> list[dict]:
         "against": False,
         "accept_holes": False,
         "accept_lengths": False,
+        "look_ups": True,
+        "family": "navi21",
     }
     rows = []
     for name in ENCODINGS:
@@ -69,6 +74,8 @@ def made_up_rows(rng: np.random.Generator) -> list[dict]:
                 | {"image_db_studio": float(rng.uniform(20, 80)) if rng.random() < 0.5 else None}
                 | {"image_lost_percent": 3.0 if rng.random() < 0.05 else None, "image_lost_scene": "studio"}
             )
+            rows[-1] |= surveyed(rng, mean, float(encode), float(decode))
+            rows[-1]["by_family"] = rows[-1]["by_family"] if is_priced else None
             if rows[-1]["domain"] == "hemisphere":
                 rows[-1]["lost_percent"] = 50.0
     return rows
@@ -82,7 +89,39 @@ def asked_at_random(rng: np.random.Generator) -> dict:
         "enough": float(rng.choice([0.0, 0.1, 360 / 1024, 1.0, 5.0])),
         "accept_holes": bool(rng.integers(2)),
         "accept_lengths": bool(rng.integers(2)),
+        "look_ups": bool(rng.integers(4)),
+        "mixing": [None, None, None, "filter", "blend,upsample", "filter,blend,resolve"][rng.integers(6)],
+        "family": ["navi21", "navi21", "polaris10"][rng.integers(3)],
     }
+
+
+def surveyed(rng: np.random.Generator, mean: float, encode: float, decode: float) -> dict:
+    """What a survey adds to a row."""
+    uses = {
+        use: {
+            "cannot": f"cannot be {use}ed" if rng.random() < 0.3 else "",
+            "count": int(rng.integers(1, 5)),
+            "sum": float(mean * rng.choice([0.5, 2, 8])),
+            "max": float(mean * rng.choice([3, 9])),
+        }
+        for use in USES
+    }
+    return {"by_use": json.dumps(uses), "by_family": json.dumps({"polaris10": [encode * 2, decode + 5]})}
+
+
+def as_asked(row: dict, asked: dict) -> dict:
+    """A row as `pick` would have measured it for what is asked."""
+    made = row | asked
+    if asked["family"] != row["family"] and row["slots"] is not None:
+        encode, decode = json.loads(row["by_family"])[asked["family"]]
+        made |= {"encode_slots": encode, "decode_slots": decode, "slots_once": encode + decode}
+        made |= {"slots": encode + 4 * decode}
+    if asked["mixing"] and row["by_use"]:
+        uses = [json.loads(row["by_use"])[use] for use in asked["mixing"].split(",")]
+        said = [f"{use['cannot']}: why" for use in uses if use["cannot"]]
+        made |= {"cannot_mix": "; ".join(said) or None, "mixed_max_deg": max(use["max"] for use in uses)}
+        made |= {"mixed_mean_deg": sum(use["sum"] for use in uses) / sum(use["count"] for use in uses)}
+    return made | {"slots": _slots(made, asked["readers"])}
 
 
 def test_the_pages_answer_is_picks_for_any_constraints(opened, tmp_path):
@@ -94,7 +133,7 @@ def test_the_pages_answer_is_picks_for_any_constraints(opened, tmp_path):
             (question,) = extras(tmp_path, {"pick": rows}, [])["choices"]["questions"]
         asked = asked_at_random(rng)
         # A price in the rows is that of their own readers.
-        own = [row | asked | {"slots": _slots(row, asked["readers"])} for row in rows]
+        own = [as_asked(row, asked) for row in rows]
         found = answered(own)
         pairs.append([question, asked])
         fit = [f"{row['encoding']} {row['storage']}" for row in found if not row["left_out"] and not row["beside"]]

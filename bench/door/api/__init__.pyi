@@ -35,9 +35,11 @@ def pick(
     enough: float = ...,
     accept_holes: bool = ...,
     accept_lengths: bool = ...,
+    look_ups: bool = ...,
     most_instructions: int | None = ...,
     domain: Names | None = ...,
     needs: Names | None = ...,
+    survey: bool = ...,
     count: int = ...,
     seed: int = ...,
     define: Names | None = ...,
@@ -79,9 +81,11 @@ def pick(
         enough: Degrees that a mirror's reflection may move. Default: a texel of a 1k environment map.
         accept_holes: Take codes whose largest angle is over 4 times the least.
         accept_lengths: Take codes whose decodes are not of length 1.
+        look_ups: Take codes that read a look-up table, or leave them out.
         most_instructions: The most issue slots that encoding and decoding once may execute.
         domain: What the code must hold and is measured on: sphere, hemisphere (z >= 0), view (facing the viewer). Default: your normals.
         needs: What stored codes must survive: filter, blend, resolve, upsample; comma-separated, or all.
+        survey: Measure too what a reader of the page may ask: each use of --needs, and other GPU families.
         count: Normals in a uniform set.
         seed: The random seed of uniform sets, points and scenes.
         define: Shader files: macros, NAME or NAME=VALUE.

@@ -47,16 +47,23 @@ class Judgement:
         inside, across: why it cannot be used so, by use: inside a surface, and across an edge; nothing where it can.
         mean_deg, max_deg: the errors of what is mixed inside a surface: the mean of all operations at all distances,
             and the largest; None where nothing was measured.
+        count: how many errors that mean is of.
     """
 
     inside: dict[str, str]
     across: dict[str, str]
     mean_deg: float | None
     max_deg: float | None
+    count: int
 
 
 def judgement(codec: Codec, uses: Sequence[str], normals: NormalSet, domain: str) -> Judgement:
-    """What mixing does to a codec.
+    """What all of several uses together do to a codec; the arguments are those of `judgements`."""
+    return _judged(codec, uses, _measured_rows(codec, uses, normals, domain))
+
+
+def judgements(codec: Codec, uses: Sequence[str], normals: NormalSet, domain: str) -> dict[str, Judgement]:
+    """What each of several uses does to a codec.
 
     Args:
         uses: some of table.USES.
@@ -65,18 +72,25 @@ def judgement(codec: Codec, uses: Sequence[str], normals: NormalSet, domain: str
 
     A codec without a twin in JAX is measured by GLSL; what cannot be measured has no fault.
     """
+    rows = _measured_rows(codec, uses, normals, domain)
+    return {use: _judged(codec, [use], [row for row in rows if row["operation"] in USES[use]]) for use in uses}
+
+
+def _measured_rows(codec: Codec, uses: Sequence[str], normals: NormalSet, domain: str) -> list[Row]:
     operations = tuple(operation for use in uses for operation in USES[use])
     backend = "jax" if has_twin(codec.encoding) else "glsl"
     cases = (Case(codec, mixes, backend, operations, POWER, domain) for mixes in _mixes_of_set(normals))
-    rows = [row for case in cases for row in measure(case)]
+    return [row for case in cases for row in measure(case)]
+
+
+def _judged(codec: Codec, uses: Sequence[str], rows: Sequence[Row]) -> Judgement:
     inside, across = ([row for row in rows if is_decisive(row)] for is_decisive in (decides, decides_across))
     # Seams lie about the axes: a mean over these is not that of a surface.
     means = [row["angle_mean_deg"] for row in inside if row["normals"] != AXES]
     largest = max((row["angle_max_deg"] for row in inside), default=None)
     integer = dict.fromkeys((use for use in uses if _is_of_codes(use)), OF_INTEGER) if codec.is_integer else {}
-    return Judgement(
-        _faults_by_use(inside, uses) | integer, _faults_by_use(across, uses), fmean(means) if means else None, largest
-    )
+    mean, faults = fmean(means) if means else None, _faults_by_use(inside, uses) | integer
+    return Judgement(faults, _faults_by_use(across, uses), mean, largest, len(means))
 
 
 def _is_of_codes(use: str) -> bool:

@@ -51,6 +51,7 @@ NO_FIGURE = "no figure for --aim"
 # Why codes are left out that an option may take.
 HOLE_SAID = f"a hole: the largest error is over {HOLE:g} times the least; --accept-holes takes it"
 LENGTH_SAID = "decodes are not of length 1, and light needs a normalise; --accept-lengths takes them"
+TABLE_SAID = "reads a look-up table; --look-ups takes it"
 LOOPS_SAID = "how often its loops run is not known"
 # A code has no use for a storage that has so many more bits than it has codes for.
 WASTED_BITS = 8
@@ -210,6 +211,8 @@ def why_left_out(row: Row) -> str:
     """Why a code does not qualify by itself; empty where it does."""
     if why := why_unfit(row):
         return why
+    if row["table"] and not row.get("look_ups", True):
+        return TABLE_SAID
     if row.get("cannot_mix"):
         return str(row["cannot_mix"]).partition(":")[0]
     most, once = row["most_instructions"], row["slots_once"]

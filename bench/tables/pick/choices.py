@@ -5,12 +5,15 @@ The script has the rule of `answer.py` alone, with a reader's limits in place of
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from ....reports.page.codec_key import CodecKey
+from ...ground.options.gpu_families import FAMILIES
+from ..mix.table import USES
 from . import answer
 from .answer import Row, groups, image_loss, largest, largest_mixed, loss_db, mean, why_unfit
 from .charts import FOUND, chart_name
@@ -28,7 +31,10 @@ CONSTANTS = {
     "hole": answer.HOLE,
 }
 # What a reader may ask for otherwise.
-ASKED = ("most_instructions", "readers", "worth", "enough", "accept_holes", "accept_lengths")
+ASKED = (
+    *("most_instructions", "readers", "worth", "enough", "accept_holes", "accept_lengths", "look_ups"),
+    *("mixing", "family"),
+)
 
 
 def extras(_folder: Path, tables: Mapping[str, Sequence[Row]], _remarks: list[str]) -> Mapping[str, Any]:
@@ -40,22 +46,30 @@ def extras(_folder: Path, tables: Mapping[str, Sequence[Row]], _remarks: list[st
 
 def _question(group: Sequence[Row]) -> dict[str, Any]:
     first = group[0]
-    asked = {name: first[name] for name in ASKED}
+    asked = {name: first.get(name) for name in ASKED} | {"look_ups": first.get("look_ups") is not False}
     unpriced = {"length": answer.LENGTH_SAID, "hole": answer.HOLE_SAID, "price": answer.LOOPS_SAID}
-    said = {**unpriced, "figure": f"{answer.NO_FIGURE} {first['aim']}"}
-    about = {"where": question(first), "asked": asked, "said": said, "needs": _needs_text(first)}
-    return {**about, "codes": [_code(row) for row in group]}
+    said = {**unpriced, "figure": f"{answer.NO_FIGURE} {first['aim']}", "table": answer.TABLE_SAID}
+    about = {"where": question(first), "aim": first["aim"], "asked": asked, "said": said, "needs": _needs_text(first)}
+    codes = [_code(row) for row in group]
+    counted = dict.fromkeys(name for code in codes for name in code["families"] or ())
+    families = {name: f"{FAMILIES[name].title} ({name})" if name in FAMILIES else name for name in counted}
+    return {
+        **about,
+        "uses": list(USES) if any(code["uses"] for code in codes) else [],
+        "families": families,
+        "codes": codes,
+    }
 
 
 def _needs_text(first: Row) -> Sequence[str]:
     """The constraints that a reader cannot change here, in words."""
-    return constraints({**first, "most_instructions": None})
+    return constraints({**first, "most_instructions": None, "mixing": None})
 
 
 def _code(row: Row) -> dict[str, Any]:
     fixed = {**row, "accept_lengths": True}
     is_long = not why_unfit(fixed) and bool(why_unfit({**row, "accept_lengths": False}))
-    begin, end = around_gain(row)
+    begin, end = around_gain(row, "{mean}")
     return {
         "name": called(row),
         "codec": CodecKey.of(row).label,
@@ -63,6 +77,9 @@ def _code(row: Row) -> dict[str, Any]:
         "unfit": why_unfit(fixed),
         "long": is_long,
         "cannot": str(row["cannot_mix"] or "").partition(":")[0],
+        "uses": _read(row.get("by_use")),
+        "families": _read(row.get("by_family")),
+        "plain": [row["angle_mean_deg"], largest(row)],
         "loss": _finite(loss_db(row)),
         "tie": _finite(answer.to_a_step(image_loss(row))),
         "met": largest(row),
@@ -83,6 +100,11 @@ def _code(row: Row) -> dict[str, Any]:
         "begin": begin,
         "end": end,
     }
+
+
+def _read(text: str | None) -> Any:
+    """What a column for programs holds; None where it was not measured."""
+    return json.loads(text) if text else None
 
 
 def _finite(value: float) -> float | None:

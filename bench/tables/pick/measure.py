@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
@@ -23,6 +24,7 @@ from ....gbuffer.pipelines import PIPELINES, Pipeline
 from ....gbuffer.render import Keeps, rendering
 from ....gbuffer.scenes.catalogue import SCENES, SceneMaker
 from ....gbuffer.scenes.setting import Setting
+from ...ground.options.gpu_families import CHOICES
 from ...ground.output import cache as kept
 from ...ground.output.errors import tell
 from ...ground.output.sources import sources
@@ -32,10 +34,11 @@ from ...shaders.code.twin import has_twin
 from ...subjects.normals.normal_sets import NORMAL_SETS, NormalSet, from_arrays
 from ..mix import judge
 from ..mix.patches import in_domain
+from ..mix.table import USES
 from ..mix.verdict import DONE
 from ..quality import measure as quality
 from ..render import measure as render
-from .answer import AFFORDABLE, IMAGE, answered, floor, image_name, price, why_left_out
+from .answer import AFFORDABLE, IMAGE, answered, floor, image_name, price, why_left_out, why_unfit
 from .prices import Costs
 from .table import TABLE
 
@@ -43,6 +46,8 @@ Row = dict[str, Any]
 # Half a decibel from what 640 x 480 and three moments say, in a sixth of the time.
 SIZE = (320, 240)
 SUPREMUM, AXES = "angle_sup_deg", "angle_axes_deg"
+# The GPU families that a survey counts for: Mesa has their compilers, which take a second for each.
+SURVEYED = (*CHOICES["radeon"], "tgl", "dg2")
 # Normals that tell whether decodes have length 1.
 FEW = 2**14
 QUALITY = ("angle_mean_deg", "angle_max_deg", "worst_normal", "invalid", "count", "device", "skipped")
@@ -58,6 +63,7 @@ class Case:
         makers, setting, powers: what is rendered, and with which specular powers.
         said: what the row says of the question.
         pipeline: what renders, with the effects that were asked for.
+        is_surveyed: whether other constraints than those asked for are measured too.
     """
 
     codec: Codec
@@ -67,6 +73,7 @@ class Case:
     powers: tuple[float, ...]
     said: Mapping[str, Any]
     pipeline: Pipeline = PIPELINES["hybrid"]
+    is_surveyed: bool = False
 
     @property
     def name(self) -> str:
@@ -95,12 +102,14 @@ def rows(asked: Sequence[Sequence[Case]], device: Device | None, tick: Callable[
     if not asked:
         return
     said = asked[0][0].said
-    costs = Costs((case.codec for chosen in asked for case in chosen), said["family"].split(","), said["readers"])
+    codecs = [case.codec for chosen in asked for case in chosen]
+    costs = Costs(codecs, said["family"].split(","), said["readers"])
+    others = Costs(codecs, SURVEYED, said["readers"]) if asked[0][0].is_surveyed else None
     pictures = Pictures(device) if device else None
     # JAX compiles in a thread of its own while the device draws in this one.
     pool = ThreadPoolExecutor(1)
     try:
-        questions = [Question(chosen, pool, costs) for chosen in asked]
+        questions = [Question(chosen, pool, costs, others) for chosen in asked]
         # While a device draws in this thread, little Python runs in the other: what JAX traces comes first.
         for question in questions:
             question.measure(tick)
@@ -114,8 +123,8 @@ def rows(asked: Sequence[Sequence[Case]], device: Device | None, tick: Callable[
 class Question:
     """The codes of one storage, or of storages of as many bytes, on one set of normals and in its scenes."""
 
-    def __init__(self, chosen: Sequence[Case], pool: Executor, costs: Costs):
-        self._pool, self._costs, self._aim = pool, costs, chosen[0].said["aim"]
+    def __init__(self, chosen: Sequence[Case], pool: Executor, costs: Costs, others: Costs | None):
+        self._pool, self._costs, self._others, self._aim = pool, costs, others, chosen[0].said["aim"]
         self._cases = {case.name: case for case in chosen}
         self._suprema: dict[str, Future[float | None]] = {}
         self._rows = {name: _case_columns(case) | costs.of(case.codec) for name, case in self._cases.items()}
@@ -147,7 +156,20 @@ class Question:
             if row["mixing"] and not row["beside"] and not why_left_out(row | {"aim": "angle"}):
                 self._rows[_case_name(row)] |= _mixing_columns(self._cases[_case_name(row)])
         self._judge_others()
+        if self._others:
+            self._survey(self._others)
         self._find_suprema(self._qualified_rows("angle") if self._aim == "worst" else self._placed_rows())
+
+    def _survey(self, others: Costs) -> None:
+        """What a reader of the page may ask of the codes that could be the answer, and of that of another storage that
+        it names."""
+        named = {_case_name(row) for row in self._placed_rows()}
+        for name, row in self._rows.items():
+            if why_unfit(row | {"accept_lengths": True}):
+                continue
+            row["by_family"] = json.dumps(others.slots_of(self._cases[name].codec))
+            if name in named or not row["beside"]:
+                row["by_use"] = json.dumps(_by_use(self._cases[name]))
 
     def _judge_others(self) -> None:
         """What mixing does to the code of another storage that the answer would name; to the next one where it does not
@@ -230,11 +252,29 @@ def _case_name(row: Row) -> str:
     return f"{row['encoding']}/{row['storage']}"
 
 
+def _by_use(case: Case) -> Row:
+    """What each use does to a code: why it cannot be used so, and the sum, the number and the largest of its errors."""
+    domain = _mixed_domain(case)
+    key = _figures_key("each use", case.codec, domain, _normals_key(case))
+
+    def judged() -> Row:
+        found = judge.judgements(case.codec, list(USES), case.normal_set, domain)
+        return {
+            use: {
+                "cannot": f"cannot be {DONE[use]}" if one.inside else "",
+                "count": one.count,
+                "sum": (one.mean_deg or 0.0) * one.count,
+                "max": one.max_deg,
+            }
+            for use, one in found.items()
+        }
+
+    return kept.kept(key, judged)
+
+
 def _mixing_columns(case: Case) -> Row:
     """What the mixing that is asked for does to a code: why it does not survive, if it does not, and its errors."""
-    uses, domain = case.said["mixing"], case.said["needs"] or case.codec.encoding.domain
-    if domain == "sphere" and not _lost_percent(case.normal_set, "hemisphere"):
-        domain = "hemisphere"
+    uses, domain = case.said["mixing"], _mixed_domain(case)
     key = _figures_key("mixing", case.codec, uses, domain, _normals_key(case))
 
     def judged() -> Row:
@@ -248,6 +288,12 @@ def _mixing_columns(case: Case) -> Row:
         }
 
     return kept.kept(key, judged)
+
+
+def _mixed_domain(case: Case) -> str:
+    """The normals that are mixed: those asked for, or those that the code holds and the set has."""
+    domain = case.said["needs"] or case.codec.encoding.domain
+    return "hemisphere" if domain == "sphere" and not _lost_percent(case.normal_set, "hemisphere") else domain
 
 
 def _case_columns(case: Case) -> Row:

@@ -31,6 +31,11 @@ class Costs:
         found = [row for family in self._rows if (row := self._price_columns(family, codec))]
         return max(found, key=lambda row: (row["slots"] is None, row["slots"] or 0.0), default={})
 
+    def slots_of(self, codec: Codec) -> dict[str, tuple[float | None, float | None]]:
+        """By family the slots to encode and to decode; a family without a figure is left out."""
+        found = {family: self._price_columns(family, codec) for family in self._rows}
+        return {family: (row["encode_slots"], row["decode_slots"]) for family, row in found.items() if row}
+
     def _price_columns(self, family: str, codec: Codec) -> Row:
         rows, name = self._rows[family], codec.encoding.name
         parts = [[rows.get((name, operation))] for operation in cost.OPERATIONS]

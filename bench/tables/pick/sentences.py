@@ -323,15 +323,15 @@ def _bits_clause(row: Row, best: Row) -> str:
 
 def _elsewhere_text(row: Row, best: Row) -> str:
     """Another storage of the same bytes that is much better."""
-    begin, end = around_gain(row)
+    begin, end = around_gain(row, degrees(mean(row)))
     return f"{begin}{loss_db(best) - loss_db(row):.0f}{end}"
 
 
-def around_gain(row: Row) -> tuple[str, str]:
+def around_gain(row: Row, mean_text: str) -> tuple[str, str]:
     """What is said of a code of another storage, before its gain and behind it."""
     free = f"{row['free_bits']} bits stay free" if row["free_bits"] else "no bit stays free"
     begin = f"In {row['storage']}, of the same {row['bytes']} bytes, {row['encoding']} is "
-    return begin, f" dB better (mean {degrees(mean(row))}), and {free}."
+    return begin, f" dB better (mean {mean_text}), and {free}."
 
 
 def _rival_sentence(row: Row, best: Row) -> str:

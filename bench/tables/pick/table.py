@@ -85,6 +85,9 @@ class PickOptions(Reading, SourceOptions):
         bool, Option("--accept-holes", f"Take codes whose largest angle is over {HOLE:g} times the least.")
     ] = False
     accept_lengths: Annotated[bool, Option("--accept-lengths", "Take codes whose decodes are not of length 1.")] = False
+    look_ups: Annotated[
+        bool, Option("--look-ups/--no-look-ups", "Take codes that read a look-up table, or leave them out.")
+    ] = True
     most_instructions: Annotated[
         int | None, Option("--most-instructions", "The most issue slots that encoding and decoding once may execute.")
     ] = None
@@ -100,6 +103,12 @@ class PickOptions(Reading, SourceOptions):
         str | None,
         Option("--needs", f"What stored codes must survive: {', '.join(USES)}; comma-separated, or all."),
     ] = None
+    survey: Annotated[
+        bool,
+        Option(
+            "--survey", "Measure too what a reader of the page may ask: each use of --needs, and other GPU families."
+        ),
+    ] = False
     count: Count = COUNT
     seed: Seed = 0
 
@@ -205,6 +214,7 @@ COLUMNS = (
     Column("enough", "What a mirror's reflection may move by.", HOW, "degrees", shown=False),
     Column("accept_holes", "Whether codes with a hole may be the answer.", HOW, shown=False),
     Column("accept_lengths", "Whether codes whose decodes are not of length 1 may be the answer.", HOW, shown=False),
+    Column("look_ups", "Whether codes that read a look-up table may be the answer.", HOW, shown=False, before="yes"),
     Column("most_instructions", "The most issue slots that were allowed, encode and decode once.", HOW),
     Column("needs", "The domain that was asked for.", HOW),
     Column("mixing", "What stored codes must survive, as --needs says it.", HOW),
@@ -219,6 +229,8 @@ COLUMNS = (
     ),
     Column("mixed_max_deg", "Largest error after that mixing inside a surface.", HOW, "degrees", shown=False),
     Column("mixed_across", "What it does to the code across an edge, where that is garbage.", HOW),
+    Column("by_use", "What each use of mixing does to the code, for the page's constraints.", RAW, shown=False),
+    Column("by_family", "Its issue slots on other GPU families, for the page's constraints.", RAW, shown=False),
     Column("against", "Whether the code was named by --against.", HOW, shown=False),
     Column("beside", "Whether it is of another storage of the same bytes.", HOW, shown=False),
     Column("packed", "Whether it is packed into the texel that was asked for.", HOW, shown=False),
@@ -260,6 +272,7 @@ TABLE = Table(
     partial=True,
     single={"encoding": "octahedral", "storage": "rg8"},
     files={"images": "images"},
+    usual=({"survey": True},),
     section=Section(
         title="Which code should I take?",
         short="Answer",

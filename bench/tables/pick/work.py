@@ -93,7 +93,7 @@ def questions(options: PickOptions) -> list[list[measure.Case]]:
     def case(codec: Codec, normals: NormalSet, about: Row) -> measure.Case:
         more: Row = {"normals": normals.name, "code_space": normals.code_space}
         more["against"] = codec.encoding.name in named and not about["beside"]
-        return measure.Case(codec, normals, makers, setting, powers, said | about | more, pipeline)
+        return measure.Case(codec, normals, makers, setting, powers, said | about | more, pipeline, options.survey)
 
     made = [
         [
@@ -191,6 +191,7 @@ def _question(options: PickOptions) -> Row:
         raise UsageError(f"--enough {options.enough:g}: 0 to {MOST_ENOUGH:g} degrees")
     said |= {"readers": options.readers, "worth": options.worth, "enough": options.enough}
     said |= {"accept_holes": options.accept_holes, "accept_lengths": options.accept_lengths}
+    said |= {"look_ups": options.look_ups}
     return said | {"mixing": ",".join(uses) if uses else None}
 
 
@@ -234,7 +235,7 @@ def _key(chosen: Sequence[measure.Case]) -> Row:
     against = [case.codec.name for case in chosen if case.said["against"]]
     # Runs that knew no other rounding have said nothing of it.
     said = {name: value for name, value in one.said.items() if (name, value) != ("rounding", "nearest")}
-    return key | said | {"against": against}
+    return key | said | {"against": against} | ({"survey": True} if one.is_surveyed else {})
 
 
 def _measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:

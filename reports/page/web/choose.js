@@ -1,7 +1,8 @@
 "use strict";
 
 // The answer for a reader's own constraints: the rule of pick's answer.py over codes that choices.py judged.
-const LIMITS = { most: "most_instructions", readers: "readers", worth: "worth", enough: "enough", holes: "accept_holes", lengths: "accept_lengths" };
+const LIMITS = { most: "most_instructions", readers: "readers", worth: "worth", enough: "enough", holes: "accept_holes", lengths: "accept_lengths", tables: "look_ups", uses: "mixing", gpu: "family" };
+const NO_SURVEY = "what mixing does to it was not measured", WORDS = ["uses", "gpu"];
 
 // Python rounds halves to even.
 function even(value) {
@@ -15,8 +16,26 @@ function before(one, other) {
   return at < 0 ? 0 : one[at] - other[at];
 }
 
+// A code under another use of mixing, and on another GPU, than the run asked for.
+function codeAs(code, { aim, asked: usual }, { mixing, family }) {
+  const made = { ...code };
+  if (family !== usual.family) {
+    const [encode, decode] = code.families?.[family] ?? [null, null], priced = encode !== null && decode !== null;
+    Object.assign(made, { encode, decode, priced, once: priced ? encode + decode : null });
+  }
+  if ((mixing || "") === (usual.mixing || "")) return made;
+  const uses = (mixing || "").split(",").filter(Boolean), known = uses.map((use) => code.uses?.[use] ?? { cannot: NO_SURVEY, count: 0, sum: 0, max: null });
+  const count = known.reduce((sum, use) => sum + use.count, 0), mixed = count ? known.reduce((sum, use) => sum + use.sum, 0) / count : null;
+  const most = (...values) => values.filter((value) => value !== null).reduce((a, b) => Math.max(a, b), -Infinity), or = (value) => (value === -Infinity ? null : value);
+  const mean = or(most(code.plain[0], mixed)), largest = or(most(code.plain[1], ...known.map((use) => use.max)));
+  const decibels = (angle) => (angle === null ? null : 20 * Math.log10(Math.max(angle, 1e-12)));
+  const loss = aim === "image" ? code.loss : decibels(aim === "worst" ? largest : mean);
+  return Object.assign(made, { mean, largest, loss, cannot: known.map((use) => use.cannot).find(Boolean) ?? "" });
+}
+
 // What qualifies, in its order, and why the others do not.
-function answerOf({ codes, said }, asked, { hidden, affordable, step, same, least, much, hole }) {
+function answerOf(question, asked, { hidden, affordable, step, same, least, much, hole }) {
+  const { said } = question, codes = question.codes.map((code) => codeAs(code, question, asked));
   const price = ({ encode, decode }) => Math.max(encode || 0, hidden) + asked.readers * Math.max(decode || 0, hidden);
   const doublings = (code) => Math.log2(price(code) / (hidden * (1 + asked.readers)));
   const loss = (code) => code.loss ?? Infinity, bits = (code) => code.bits || Infinity, tenth = (x) => (Number.isFinite(x) ? even(x * 10) / 10 : x);
@@ -30,7 +49,7 @@ function answerOf({ codes, said }, asked, { hidden, affordable, step, same, leas
   const leasts = {};
   for (const code of codes) if (!unfit(code) && code.met !== null) leasts[code.storage] = Math.min(code.met, leasts[code.storage] ?? Infinity);
   const limit = ({ once }) => (asked.most_instructions === null ? "" : once === null ? "issue slots not known" : once > asked.most_instructions ? `more than ${asked.most_instructions} issue slots` : "");
-  const own = (code) => unfit(code) || code.cannot || limit(code) || (code.loss === null ? said.figure : "");
+  const own = (code) => unfit(code) || (code.table && !asked.look_ups && said.table) || code.cannot || limit(code) || (code.loss === null ? said.figure : "");
   const why = new Map(codes.map((code) => {
     const found = own(code), isHoled = !unfit(code) && !asked.accept_holes && code.met !== null && code.met > hole * leasts[code.storage];
     return [code, isHoled && (!found || found === said.figure) ? said.hole : found];
@@ -38,7 +57,7 @@ function answerOf({ codes, said }, asked, { hidden, affordable, step, same, leas
   if (codes.some((code) => !why.get(code) && code.priced)) for (const code of codes) if (!why.get(code) && !code.priced) why.set(code, said.price);
   const fit = codes.filter((code) => !why.get(code) && !code.beside).sort((a, b) => before(order(a), order(b)));
   const best = fit[0], out = codes.filter((code) => why.get(code) && !code.beside);
-  if (!best) return { best, fit, out, why, others: [] };
+  if (!best) return { codes, best, fit, out, why, others: [] };
   // Another storage of the same bytes is worth a word where it is much better, and not worse at its worst.
   const gain = (code) => loss(best) - loss(code), isMuchBetter = (code) => gain(code) >= much && (code.largest || Infinity) <= (best.largest || Infinity);
   const elsewhere = codes.filter((code) => code.beside && !why.get(code) && isMuchBetter(code)).sort((a, b) => before(order(a, -4), order(b, -4))).slice(0, 1);
@@ -49,13 +68,13 @@ function answerOf({ codes, said }, asked, { hidden, affordable, step, same, leas
   const rungs = above.reduce((kept, code) => (!kept.length || loss(kept.at(-1)) - loss(code) >= least ? [...kept, code] : kept), []).slice(0, 2);
   if (exact !== best && gain(exact) >= least) rungs.push(exact);
   const near = fit.filter((code) => rungs.includes(code) && code.storage !== best.storage && isMuchBetter(code)).slice(0, 1);
-  return { best, fit, out, why, rungs, price, isSame: (a, b) => Math.abs(Math.log2(price(a) / price(b))) < same, others: elsewhere.length ? elsewhere : near, gain };
+  return { codes, best, fit, out, why, rungs, price, isSame: (a, b) => Math.abs(Math.log2(price(a) / price(b))) < same, others: elsewhere.length ? elsewhere : near, gain };
 }
 
 // Its first sentence, as pick writes it.
 function sentenceOf({ where, needs }, asked, { best, others, gain }) {
-  if (best) return [`${where}: take ${best.name}.`, ...(best.lost ? [best.lost] : []), ...others.map((code) => `${code.begin}${even(gain(code))}${code.end}`)].join(" ");
-  const limits = [...(asked.most_instructions === null ? [] : [`at most ${asked.most_instructions} issue slots`]), ...needs];
+  if (best) return [`${where}: take ${best.name}.`, ...(best.lost ? [best.lost] : []), ...others.map((code) => `${code.begin}${even(gain(code))}${code.end.replace("{mean}", degrees(code.mean))}`)].join(" ");
+  const limits = [...(asked.most_instructions === null ? [] : [`at most ${asked.most_instructions} issue slots`]), ...needs, ...(asked.mixing ? [`that survives ${asked.mixing.replaceAll(",", ", ")}`] : [])];
   return `${where}: no code qualifies${limits.length ? ` (${limits.join(", ")})` : ""}.`;
 }
 
@@ -64,7 +83,8 @@ function askedOf(question, state) {
   const asked = { ...question.asked };
   for (const [key, name] of Object.entries(LIMITS)) {
     if (!state[key]) continue;
-    asked[name] = key === "holes" || key === "lengths" ? state[key] === "yes" : Number(state[key]);
+    if (WORDS.includes(key)) asked[name] = state[key] === "none" ? null : state[key];
+    else asked[name] = ["yes", "no"].includes(state[key]) ? state[key] === "yes" : Number(state[key]);
   }
   return asked;
 }
@@ -84,6 +104,8 @@ class Choose {
     Object.assign(this, { root, constants, questions, title: found });
     this.control = Object.fromEntries(Array.from(root.querySelectorAll("[data-limit]"), (one) => [one.dataset.limit, one]));
     for (const [key, one] of Object.entries(this.control)) one.addEventListener("input", () => this.take(key, one));
+    this.uses = Array.from(root.querySelectorAll("[data-use]"));
+    for (const one of this.uses) one.addEventListener("input", () => change({ uses: this.uses.filter(({ checked }) => checked).map(({ value }) => value).join(",") || (this.question.asked.mixing ? "none" : "") }));
     root.querySelector("[data-again]").addEventListener("click", () => change(Object.fromEntries(Object.keys(LIMITS).map((key) => [key, ""]))));
     root.addEventListener("drawn", ({ target }) => this.plot(target));
     shows.push((state, before) => this.show(state, before));
@@ -107,14 +129,14 @@ class Choose {
   show(state, before) {
     if (before && ["for", "a", "b", ...Object.keys(LIMITS)].every((key) => state[key] === before[key])) return;
     const question = this.questions.find(({ where }) => where === state.for) ?? this.questions[0], asked = askedOf(question, state);
-    this.root.querySelector("[data-pair]").replaceChildren(...this.pair(question, state));
+    const found = answerOf(question, asked, this.constants), isOwn = JSON.stringify(asked) !== JSON.stringify(question.asked);
+    this.root.querySelector("[data-pair]").replaceChildren(...this.pair(found, question, state));
     // The table stays under the pointer that chose a code in it.
     if (before && ["for", ...Object.keys(LIMITS)].every((key) => state[key] === before[key])) return;
-    const found = answerOf(question, asked, this.constants), isOwn = JSON.stringify(asked) !== JSON.stringify(question.asked);
     this.fill(question, asked, isOwn);
     for (const reply of this.root.querySelectorAll("[data-question]")) reply.hidden = isOwn || reply.dataset.question !== question.where;
     for (const place of this.root.querySelectorAll("[data-of]")) place.hidden = place.dataset.of !== question.chart;
-    Object.assign(this, { question, found });
+    Object.assign(this, { question, found, asked });
     for (const plot of this.root.querySelectorAll(`[data-of="${question.chart}"] .plot`)) this.plot(plot);
     const own = this.root.querySelector("[data-own-reply]");
     own.hidden = !isOwn;
@@ -125,11 +147,17 @@ class Choose {
 
   // The chart of the question: what the constraints leave out is grey, and the line joins what no other code beats in both.
   plot(plot) {
-    const view = charts.views.get(plot), { question, found } = this;
+    const view = charts.views.get(plot), { question, found, asked } = this;
     if (!view || plot.closest("[data-of]").dataset.of !== question.chart) return;
-    const tableOf = (kind) => view.panel.marks.find((mark) => mark.kind === kind).table, why = new Map(Array.from(found.why, ([{ codec }, said]) => [codec, said]));
-    const points = view.tables[tableOf("points")];
-    for (const point of points) Object.assign(point, { why: why.get(point.codec), rest: Boolean(why.get(point.codec)) });
+    const tableOf = (kind) => view.panel.marks.find((mark) => mark.kind === kind).table, codeOf = new Map(found.codes.map((code) => [code.codec, code]));
+    const { x } = (view.panelAsRun ??= view.panel), rows = (view.rowsAsRun ??= view.tables[tableOf("points")]), isKnown = ({ codec }) => codeOf.get(codec).once !== null && codeOf.get(codec).mean;
+    const points = rows.filter(isKnown).map((row) => {
+      const code = codeOf.get(row.codec), why = found.why.get(code);
+      return { ...row, x: code.once, y: code.mean, why, rest: Boolean(why) };
+    });
+    view.tables[tableOf("points")] = points;
+    for (const axis of ["x", "y"]) view.panel = { ...view.panel, [axis]: { ...view.panel[axis], domain: d3.extent([...view.panelAsRun[axis].domain, ...points.map((point) => point[axis])]) } };
+    view.panel.x.title = x.title.replace(question.asked.family, asked.family);
     const left = points.filter(({ rest }) => !rest).sort((one, other) => before([one.x, one.y], [other.x, other.y]));
     const front = left.reduce((kept, point) => (!kept.length || point.y < kept.at(-1).y ? [...kept, point] : kept), []);
     view.tables[tableOf("lines")] = front;
@@ -142,9 +170,12 @@ class Choose {
   // The controls say what is asked for.
   fill(question, asked, isOwn) {
     this.control.for.value = question.where;
+    for (const one of this.uses) one.checked = (asked.mixing || "").split(",").includes(one.value);
     for (const [key, name] of Object.entries(LIMITS)) {
       const one = this.control[key], value = asked[name];
-      if (one.type === "checkbox") one.checked = value;
+      if (!one) continue;
+      if (key === "gpu") one.value = value;
+      else if (one.type === "checkbox") one.checked = value;
       else if (document.activeElement !== one || one.tagName === "SELECT") {
         if (one.tagName === "SELECT" && !Array.from(one.options).some((option) => Number(option.value) === value)) one.append(new Option(String(value), value));
         one.value = one.tagName === "SELECT" ? Array.from(one.options).find((option) => Number(option.value) === value).value : value ?? "";
@@ -155,7 +186,8 @@ class Choose {
 
   said({ best, fit, out, why, rungs, gain, price, isSame }, asked) {
     const dear = out.filter((code) => code.once !== null && why.get(code).startsWith("more than ")).map((code) => code.once);
-    if (!best) return dear.length ? [`The cheapest code that is left out for its slots alone takes ${Math.min(...dear)}.`] : ["Every code is left out for another reason: see what does not qualify."];
+    const decodeFirst = asked.mixing && !asked.mixing.split(",").includes("upsample") ? ["Or decode each texel and mix normals (upsample), which no code minds."] : [];
+    if (!best) return [...(dear.length ? [`The cheapest code that is left out for its slots alone takes ${Math.min(...dear)}.`] : ["Every code is left out for another reason: see what does not qualify."]), ...decodeFirst];
     const isEnough = (code) => code.largest !== null && 2 * code.largest <= asked.enough, limit = degrees(asked.enough);
     const moved = isEnough(best) ? [`A reflection moves by at most ${degrees(2 * best.largest)}, which is enough. Of codes that are enough and cost little, that of the fewest bits is taken.`] : fit.some(isEnough) || !asked.enough ? [] : [`No code that is left moves a reflection by ${limit} or less.`];
     const slots = best.priced ? `It takes ${best.encode} issue slots to encode and ${best.decode} to decode, and has ${best.bits} bits.` : "What it costs is not known on this machine.";
@@ -186,7 +218,7 @@ class Choose {
   }
 
   // A and B in the figures of the question, the better one of each marked.
-  pair({ codes, where }, state) {
+  pair({ codes }, { where }, state) {
     const [a, b] = CODECS.map((side) => codes.find(({ codec }) => codec === state[side]));
     if (!a && !b) return [element("p", { class: "note" }, `Neither A nor B is of ${where}. Click a code below: it is A, with shift B.`)];
     const cell = ([, text, value, better], one, other) => {

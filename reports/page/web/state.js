@@ -2,7 +2,7 @@
 
 // The state of the whole page: which view is shown, what is asked of a code, the codecs A and B, a place in the view. One object, one
 // function that changes it, one that shows it, and the address, which holds it.
-const VERSION = "v1", CODECS = ["a", "b"], CONSTRAINTS = ["for", "most", "readers", "worth", "enough", "holes", "lengths"];
+const VERSION = "v1", CODECS = ["a", "b"], CONSTRAINTS = ["for", "most", "readers", "worth", "enough", "holes", "lengths", "tables", "uses", "gpu"];
 const KEYS = [...CONSTRAINTS, "a", "b", "at", "live"];
 const views = Array.from(document.querySelectorAll(".view")), known = JSON.parse(document.querySelector("#beginning").textContent);
 const NONE = Object.fromEntries(KEYS.map((key) => [key, ""]));
