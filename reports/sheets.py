@@ -101,6 +101,7 @@ class Section:
         extras: what the page's template shows beside the tables.
         view: where it is shown.
         leads: whether it is the page's answer.
+        of_texels: whether bytes of whole texels decide its figures, and not only the numbers that are stored.
     """
 
     title: str
@@ -111,6 +112,7 @@ class Section:
     extras: tuple[str, ...] = ()
     view: View = View.MORE
     leads: bool = False
+    of_texels: bool = False
 
 
 @dataclass(frozen=True)

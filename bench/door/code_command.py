@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 import shlex
 import tempfile
-from collections.abc import Iterable, Sequence
-from dataclasses import asdict, replace
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import asdict, dataclass, replace
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
@@ -40,6 +40,8 @@ LONGEST = 60
 # Codes whose numbers may be cut off.
 ROUNDED = (NORMAL, MOTION, CURVE, FRAME)
 ROUNDED_WORDS = "normals, motion, curves and tangent frames"
+# What the head of code says that was not run.
+NOT_COMPARED = "not in this run; the command below runs it and compares it with the catalogue"
 # What no compiler of its own runs here, and what is run in its place, the first that can be.
 WITNESSED, WITNESSES = ("msl",), ("c", "glsl")
 
@@ -146,22 +148,53 @@ def _prefix(codec: Any, codecs: Sequence[Any], options: CodeOptions) -> str:
 def _write_codec(codec: Any, languages: Sequence[str], prefix: str, output: Path | None) -> int:
     """A codec in each language; 1 where one differs from the catalogue's."""
     status = 0
+    for one in proven(codec, languages, prefix):
+        language = one.code.language
+        if one.why_not:
+            status = 1
+            tell(f"{codec.name} in {language}: {one.why_not}; it is not written")
+            continue
+        if one.row["verdict"] == NOT_RUN:
+            tell(f"{codec.name} in {language}: {one.row['says']}")
+        if one.code.interface.tables and output is None:
+            raise UsageError(f"{codec.encoding.name} comes with look-up tables: name a folder with -o")
+        _save(one.code, one.head(), output)
+    return status
+
+
+@dataclass(frozen=True)
+class Proven:
+    """A codec's code in a language that was run and compared.
+
+    Attributes:
+        code, row: what was run, and how it compares, see `verified`.
+        why_not: why it is not written; empty where it is.
+        head: gives the paragraphs above it.
+    """
+
+    code: Code
+    row: Row
+    why_not: str
+    head: Callable[[], list[str]]
+
+
+def proven(codec: Any, languages: Sequence[str], prefix: str = "") -> Iterator[Proven]:
+    """A codec's code in each language, run and compared. Raises UsageError where it can be written in none."""
     # Measured once, and only where something is written.
     said = cache(partial(figures, codec) if isinstance(codec, Codec) else list)
     own = replace(codec, encoding=getattr(codec.encoding, "own", None) or codec.encoding)
     made = [(code, verified(code)) for code in _all_made([own], languages, prefix)]
     for code, row in made:
-        language = code.language
-        if why := _why_not(code, row, made):
-            status = 1
-            tell(f"{codec.name} in {language}: {why}; it is not written")
-            continue
-        if row["verdict"] == NOT_RUN:
-            tell(f"{codec.name} in {language}: {row['says']}")
-        if code.interface.tables and output is None:
-            raise UsageError(f"{codec.encoding.name} comes with look-up tables: name a folder with -o")
-        _save(code, head(code, codec, _command(codec, language, prefix), row["says"], said()), output)
-    return status
+        yield Proven(code, row, _why_not(code, row, made), partial(_proven_head, code, codec, prefix, row, said))
+
+
+def _proven_head(code: Code, codec: Any, prefix: str, row: Row, said: Callable[[], list[str]]) -> list[str]:
+    return head(code, codec, _command(codec, code.language, prefix), row["says"], said())
+
+
+def unproven_head(code: Code) -> list[str]:
+    """The paragraphs above a catalogue's code that was not run: the command that runs it."""
+    return head(code, code.codec, _command(code.codec, code.language, ""), NOT_COMPARED, ())
 
 
 def _why_not(code: Code, row: Row, made: Sequence[tuple[Code, Row]]) -> str:

@@ -255,12 +255,14 @@ def _show(table: Table, rows: Sequence[Row]) -> bool:
 def _complete(run: Run, shown: Shown, drawn: Mapping[str, str]) -> None:
     """Tables for others, the pictures and the page; then the run is finished. `drawn` are charts that are there."""
     from ..show.report import write_report
+    from .run_code import keep_code
 
     done = replace(read_run(run.folder), facts=run.facts | {"finished": True})
     write_tables(run.folder, done, done.tables)
     for ask in shown.asks:
         if ask.table.name not in shown.written:
             ask.table.work.write(shown.done[ask.table.name], lambda _: None)
+    keep_code(run.folder, done)
     say(f"\nEvery figure, the pictures and the machine they come from: {run.folder}\n")
     page = write_report(run.folder, done, run.folder / PAGE, drawn=drawn)
     run.finish()

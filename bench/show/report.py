@@ -37,6 +37,8 @@ from ..measures.live.scenes import read_scenes, unpacking
 from ..tables.registry import TABLES
 from ..tables.shared_columns import ENCODING
 from ..tables.table import UNEXPECTED, Table
+from .cards import about_codecs
+from .kept_code import read_code
 
 SEVERAL = "runs.html"
 PAGE, CHARTS, PICTURES = "report.html", "charts", "pictures"
@@ -216,8 +218,15 @@ def gathered(folder: Path, done: Done) -> Found:
     )
     asked = _asked(facts)
     shown = [table for table in TABLES.values() if table.name in tables or table.name in asked]
-    sections = [_section(folder, found, done, table, remarks) for table in shown]
-    return replace(found, sections=answered_first(sections))
+    sections = answered_first([_section(folder, found, done, table, remarks) for table in shown])
+    extras = {**found.extras, "cards": about_codecs(sections), "code": _clean_code(read_code(folder))}
+    return replace(found, sections=sections, extras=extras)
+
+
+def _clean_code(kept: dict[str, Any]) -> dict[str, Any]:
+    """Kept code with the control characters of its pieces but for ends of lines as spaces."""
+    pieces = ["\n".join(map(str, map(plain_text, piece.split("\n")))) for piece in kept.get("pieces", ())]
+    return kept | {"pieces": pieces} if kept else {}
 
 
 def _encodings(tables: Mapping[str, Sequence[Row]]) -> frozenset[str]:

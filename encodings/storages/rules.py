@@ -126,6 +126,13 @@ def rule_of(storage: Storage) -> str:
     return f"{'float' if forms[0].is_signed else 'ufloat'}:{' and '.join(said)}"
 
 
+def rule_of_first(storage: Storage, count: int) -> str:
+    """What its first numbers are: their bits, and whether they lie across channels. Codes of these numbers are the same
+    in every storage that has the same: RG8 and RGBA8 for two."""
+    first = rule_of(replace(storage, bits=storage.bits[:count]))
+    return f"{first} across channels of {storage.part} bits" if storage.is_packed else first
+
+
 def storage_of(name: str) -> Storage | None:
     """The storage of a name: one of the catalogue's, numbers by rule as in `unorm:9:7`, or laid across channels as
     `rg8_9_7` has them; else None.

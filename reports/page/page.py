@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,7 @@ from ..charts.drawings import Drawing
 from ..charts.wire import Spec
 from ..charts.wire import codecs as drawn_codecs
 from ..sheets import Column, Row, Sheet, View, undefined
-from . import embedded, live
+from . import cards, embedded, live
 from .codec_key import CodecKey
 from .found import Found
 from .packing import packed
@@ -26,18 +27,8 @@ from .sections import TableSection, whole
 from .verdict import is_number
 
 WEB = Path(__file__).parent / "web"
-SCRIPTS = (
-    "tables.js",
-    "state.js",
-    "data.js",
-    "choose.js",
-    "compare.js",
-    "zoom.js",
-    "pictures.js",
-    "charts.js",
-    "figures.js",
-    "opener.js",
-)
+SCRIPTS = ("tables.js", "state.js", "data.js", "choose.js", "zoom.js", "pictures.js", "cards.js", "compare.js")
+SCRIPTS += ("charts.js", "figures.js", "opener.js")
 # Text of more letters than this may break into lines.
 WRAPPED = 24
 
@@ -143,11 +134,11 @@ def _cell(value: Any, numeric: bool, is_best: bool) -> Cell:
 
 def _codec(row: Mapping[str, Any], encodings: Container[str]) -> str:
     """The codec of a row, an encoding's name alone where the storage is not known; empty for none."""
-    encoding, storage = row.get("encoding"), row.get("storage")
+    encoding = row.get("encoding")
     if not isinstance(encoding, str) or encoding not in encodings:
         return ""
-    rounding = str(row.get("rounding") or "nearest")
-    return CodecKey(encoding, str(storage), rounding).label if storage else encoding
+    key = CodecKey.said_by(row)
+    return key.label if key else encoding
 
 
 def remarks(found: Found) -> list[str]:
@@ -283,11 +274,12 @@ def html(
         gallery=gallery,
         picture_data=data_block(gallery.data) if gallery.subjects else "",
         codecs=names,
+        grouped=[(encoding, list(of)) for encoding, of in groupby(names, cards.of_encoding)],
         begins=begins,
         begins_data=data_block(begins),
         choices=choices,
-        compared=json.dumps([(part.section.key, part.section.about.short) for part in parts if part.is_there]),
         choices_data=packed(json.dumps(choices)) if choices else "",
+        cards=cards.block(found, names),
         listings=packed(_listings(found)) if found.extras.get("listings") else "",
         files=files,
         library=packed(library_script) if specs else "",

@@ -37,6 +37,11 @@ class Opened:
         self.page.on("pageerror", lambda error: self.said.append(str(error)))
         self.address, self.is_new = path.as_uri() + fragment, True
         self.page.goto(self.address)
+        self.unfold()
+
+    def unfold(self) -> None:
+        """Opens the sections of Codecs, which are folded below the card."""
+        self.page.eval_on_selector_all("details.subject", "all => all.forEach((one) => (one.open = true))")
 
     def load_anew(self) -> None:
         """As a new window has it: nothing that was typed, chosen, remembered or allowed is left."""
@@ -48,6 +53,7 @@ class Opened:
             self.page.goto("about:blank")
             self.asked.clear()
             self.page.goto(self.address)
+            self.unfold()
             self.said.clear()
         self.is_new = False
 

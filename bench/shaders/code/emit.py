@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -82,8 +82,10 @@ def _template() -> Template:
     return environment.get_template(TEMPLATE.name)
 
 
+@lru_cache(1)
 def program_of(codec: Any, prefix: str) -> Program:
-    """The six functions of a codec of any kind as a tree, and what they need.
+    """The six functions of a codec of any kind as a tree, and what they need; the last one is kept, as a codec is
+    written in all languages one after the other.
 
     Raises:
         ShaderError: its GLSL cannot be read, or is of half arithmetic or a chain.

@@ -101,9 +101,10 @@ TABLE = Table(
     in_all=False,
     compilers=("driver",),
     section=Section(
-        title="Bytes against instructions",
+        title="Are fewer bytes worth their instructions?",
         short="Roofline",
         view=View.CODECS,
+        of_texels=True,
         intro="Is a smaller code worth its instructions?",
         method="Instructions are counted for the GPU's family: of encoding with packing, of unpacking with decoding. A "
         "frame encodes and writes each pixel's normal `overdraw` times. Each pass reads and decodes it once. Bytes "

@@ -1,13 +1,7 @@
 "use strict";
 
 // A and B in every figure of every table that has rows of both, the largest difference first.
-const OF_CODEC = ["encoding", "storage", "rounding"], BIT_DB = 20 * Math.log10(2), WIDEST = 4, FIGURES = 30;
-
-// The codec of a row; its encoding alone where the row is of no storage.
-function codecOf(column, row) {
-  const [encoding, storage, rounding] = OF_CODEC.map((name) => column[name] && valueIn(column[name], row));
-  return encoding ? [encoding, storage, storage && rounding !== "nearest" && rounding].filter(Boolean).join(" ") : "";
-}
+const BIT_DB = 20 * Math.log10(2), WIDEST = 4, FIGURES = 30;
 
 // How often B is twice A; of decibels, how often 6 dB more. Of nothing, or less, there is no twice: it counts as once.
 function doublings({ unit }, a, b) {
@@ -27,70 +21,57 @@ function saidApart({ unit }, a, b) {
 }
 
 // What a table says of both: for each figure, each condition under which both were measured.
-function comparedIn(table, { count, columns }, a, b) {
-  const column = Object.fromEntries(columns.map((one) => [one.name, one])), keys = columns.filter(({ name, role }) => role === "key" && !OF_CODEC.includes(name));
-  if (!column.encoding) return [];
-  const rows = { a: new Map(), b: new Map() }, textOfKey = (row) => JSON.stringify(keys.map((key) => valueIn(key, row)));
-  for (let row = 0; row < count; row++) {
-    const codec = codecOf(column, row);
-    if (agrees(codec, a)) rows.a.set(textOfKey(row), row);
-    if (agrees(codec, b)) rows.b.set(textOfKey(row), row);
-  }
-  const both = Array.from(rows.a.keys()).filter((key) => rows.b.has(key) && rows.b.get(key) !== rows.a.get(key)).map((key) => [rows.a.get(key), rows.b.get(key)]);
-  const telling = keys.filter((key) => new Set(both.map(([row]) => valueIn(key, row))).size > 1);
-  const under = (row) => telling.filter((key) => valueIn(key, row) !== null).map((key) => `${key.title} ${shownText(key, row)}`).join(", ");
-  return columns.flatMap((figure) => {
-    const isVerdict = figure.kind === "text" && figure.words.length && figure.words.every((word) => ["yes", "no"].includes(word));
-    if (!isVerdict && (figure.role !== "figure" || figure.kind === "text")) return [];
-    const known = both.filter((pair) => pair.every((row) => valueIn(figure, row) !== null));
-    const cases = known.map(([one, other]) => {
-      const values = [valueIn(figure, one), valueIn(figure, other)], apart = isVerdict ? Number(values[0] !== values[1]) : doublings(figure, ...values);
-      return { under: under(one), a: shownText(figure, one), b: shownText(figure, other), apart, said: isVerdict ? "" : saidApart(figure, ...values) };
+function comparedIn(table, sides) {
+  const { about, columns, data } = table, [one, other] = sides.map(({ rows }) => rows), isLike = sides.some(({ like }) => like);
+  const both = Array.from(one.keys()).filter((context) => other.has(context) && other.get(context) !== one.get(context)), keys = both.map(JSON.parse);
+  const telling = about.keys.map((name, at) => [columns[name].title, at]).filter(([, at]) => new Set(keys.map((key) => String(key[at]))).size > 1);
+  const under = (key) => telling.filter(([, at]) => key[at] !== null).map(([title, at]) => `${title} ${key[at]}`).join(", ");
+  return data.columns.flatMap((figure) => {
+    const isVerdict = figure.kind === "text" && figure.words.length > 0 && figure.words.every((word) => ["yes", "no"].includes(word));
+    if ((!isVerdict && (figure.role !== "figure" || figure.kind === "text")) || (isLike && about.texel.includes(figure.name))) return [];
+    const cases = both.flatMap((context, at) => {
+      const rows = [one.get(context), other.get(context)], values = rows.map((row) => valueIn(figure, row)), [a, b] = rows.map((row) => shownText(figure, row));
+      if (values.includes(null)) return [];
+      const apart = isVerdict ? Number(values[0] !== values[1]) : doublings(figure, ...values);
+      return [{ under: under(keys[at]), a, b, apart, said: isVerdict ? "" : saidApart(figure, ...values) }];
     });
-    cases.sort((one, other) => Math.abs(other.apart) - Math.abs(one.apart));
-    return cases.length ? [{ table, figure, isVerdict, cases, most: Math.abs(cases[0].apart) }] : [];
+    cases.sort((x, y) => Math.abs(y.apart) - Math.abs(x.apart));
+    return cases.length ? [{ about, figure, isVerdict, cases, most: Math.abs(cases[0].apart) }] : [];
   });
 }
 
 class Compare {
-  constructor(root) {
-    Object.assign(this, { root, tables: JSON.parse(root.dataset.compare), turn: 0, isWhole: false });
-    shows.push((state, before) => this.follow(state, before));
+  constructor(root, { codecs, tables }) {
+    Object.assign(this, { root, codecs, tables, read: new Map(), turn: 0, isWhole: false, shown: "" });
   }
 
-  follow(state, before) {
-    const isSame = this.turn && CODECS.every((side) => state[side] === before[side]);
-    if (state.view !== this.root.closest(".view").dataset.view || (isSame && this.shown === `${state.a}/${state.b}`)) return;
-    this.show(state);
+  table(about) {
+    if (!this.read.has(about.key)) this.read.set(about.key, dataOf(about.key).then((data) => new CardTable(about, data)));
+    return this.read.get(about.key);
   }
 
   async show({ a, b }) {
-    const turn = ++this.turn, found = [], has = { a: [], b: [] };
-    this.shown = `${a}/${b}`;
-    for (const [table, title] of a && b ? this.tables : []) {
-      const data = await dataOf(table);
-      if (turn !== this.turn) return;
-      const column = Object.fromEntries(data.columns.map((one) => [one.name, one]));
-      found.push(...comparedIn({ key: table, title }, data, a, b));
-      if (column.encoding) for (const side of CODECS) if (hasCodec(column, data.count, { a, b }[side])) has[side].push(table);
+    const turn = ++this.turn, found = [], sides = { a, b }, notes = [], lacks = { a: [], b: [] };
+    if (!a || !b) return this.root.replaceChildren(element("p", { class: "note" }, "Choose A and B above, or click a codec's name anywhere: it is A, with shift B."));
+    for (const about of this.tables) {
+      const table = await this.table(about), of = CODECS.map((side) => table.rowsOf(sides[side], this.codecs));
+      if (turn !== this.turn) return null;
+      for (const [at, side] of CODECS.entries()) {
+        if (of[at]?.like) notes.push(`${side.toUpperCase()} has no figures in ${about.title}: those of ${of[at].like} hold, which stores the same numbers of as many bits.`);
+        if (!of[at] && of[1 - at]) lacks[side].push(about.title);
+      }
+      if (of.every(Boolean)) found.push(...comparedIn(table, of));
+      await new Promise((done) => setTimeout(done));
     }
     const rank = ({ isVerdict, figure }) => (figure.hidden ? 2 : Number(isVerdict));
     found.sort((one, other) => rank(one) - rank(other) || other.most - one.most);
     Object.assign(this, { found, isWhole: false });
-    this.root.replaceChildren(...(a && b ? this.said(found, { a, b }, has) : [element("p", { class: "note" }, "Choose A and B above, or click a codec's name anywhere: it is A, with shift B.")]));
-    if (found.length) this.root.append(this.list());
-  }
-
-  said(found, sides, has) {
-    const differs = found.filter(({ most }) => most > 0), tables = new Set(found.map(({ table }) => table.key));
-    const made = [element("p", { class: "note" }, `${found.length} figures in ${tables.size} tables have rows of both; ${differs.length} of them differ.`)];
-    for (const side of CODECS) {
-      const lacks = this.tables.map(([key]) => key).filter((key) => !has[side].includes(key) && has[side === "a" ? "b" : "a"].includes(key));
-      const others = known.codecs.filter((codec) => codec !== sides[side] && codec.split(" ")[0] === sides[side].split(" ")[0]);
-      if (!lacks.length) continue;
-      made.push(element("p", { class: "note" }, `${side.toUpperCase()}, ${sides[side]}, is not in ${lacks.join(", ")}.`, ...(others.length ? [" The same encoding in other storages: ", ...others.flatMap((name, at) => [...(at ? [", "] : []), nameButton(name, name)]), "."] : [])));
-    }
-    return made;
+    for (const side of CODECS) if (lacks[side].length) notes.push(`${side.toUpperCase()}, ${sides[side]}, is not in: ${lacks[side].join("; ")}.`);
+    const differs = found.filter(({ most }) => most > 0), tables = new Set(found.map(({ about }) => about.key));
+    const count = element("p", { class: "note" }, `${found.length} figures in ${tables.size} tables have rows of both; ${differs.length} of them differ.`);
+    const aside = notes.length ? [element("details", { class: "aside" }, element("summary", {}, `What is compared with what (${notes.length})`), ...notes.map((note) => element("p", {}, note)))] : [];
+    this.root.replaceChildren(count, ...aside, ...(found.length ? [this.list()] : []));
+    return null;
   }
 
   list() {
@@ -103,9 +84,9 @@ class Compare {
   }
 
   line(one, { under, a, b, apart, said }, isFirst) {
-    const { figure, table, isVerdict, cases } = one, winner = !figure.better || !apart ? "" : (apart > 0) === (figure.better === "more") ? "b" : "a";
+    const { figure, about, isVerdict, cases } = one, winner = !figure.better || !apart ? "" : (apart > 0) === (figure.better === "more") ? "b" : "a";
     const cell = (side, text) => element("td", { class: winner === side ? "n best" : "n" }, text);
-    const name = isFirst ? [element("th", { scope: "row", ...(figure.says ? { title: figure.says } : {}) }, figure.title), element("td", {}, element("a", { href: `#${table.key}` }, table.title))] : [element("th", { scope: "row" }), element("td", {})];
+    const name = isFirst ? [element("th", { scope: "row", ...(figure.says ? { title: figure.says } : {}) }, figure.title), element("td", {}, element("a", { href: about.view === "codecs" ? `#${about.key}` : `#rows-${about.key}` }, about.title))] : [element("th", { scope: "row" }), element("td", {})];
     const row = element("tr", {}, ...name, cell("a", a), cell("b", b), element("td", { class: "apart" }, ...(isVerdict ? [] : [bar(apart, winner), said])), element("td", { class: "long" }, under));
     if (!isFirst || cases.length < 2) return row;
     const all = element("button", { type: "button", class: "pick", "aria-expanded": "false" }, `all ${cases.length}`);
@@ -124,11 +105,6 @@ class Compare {
   }
 }
 
-function hasCodec(column, count, name) {
-  for (let row = 0; row < count; row++) if (agrees(codecOf(column, row), name)) return true;
-  return false;
-}
-
 // To the right where B has more, in the colour of the better one.
 function bar(apart, winner) {
   const share = clamped(apart / WIDEST, -1, 1), colour = winner ? `var(--${winner})` : "var(--faint)";
@@ -136,4 +112,13 @@ function bar(apart, winner) {
 }
 
 const compareRoot = document.querySelector("[data-compare]");
-if (compareRoot) new Compare(compareRoot);
+if (compareRoot) {
+  let built = null, shown = "";
+  shows.push((now) => {
+    const key = now.view === compareRoot.closest(".view").dataset.view ? JSON.stringify([now.a, now.b]) : "";
+    if (!key || key === shown) return;
+    shown = key;
+    built ||= unpacked("#data-cards").then((text) => new Compare(compareRoot, JSON.parse(text)));
+    built.then((made) => made.show(now));
+  });
+}

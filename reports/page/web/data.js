@@ -54,7 +54,8 @@ class DataTable {
     const tools = element("p", { class: "tools" }, element("label", { for: id }, "Filter"), this.filter, this.count);
     if (this.part) tools.append(this.chooser());
     tools.append(button("markdown", "Copy as Markdown", () => copy(this.markdown(), this.said)), button("csv", "Save as CSV", () => saveText(`${table}.csv`, this.csv())), this.said);
-    const scroll = element("div", { class: "scroll", role: "region", "aria-label": `Every row of ${table}`, tabindex: "0" }, this.table);
+    this.none = element("p", { class: "missing" }, "No row has all of these words.");
+    const scroll = element("div", { class: "scroll", role: "region", "aria-label": `Every row of ${table}`, tabindex: "0" }, this.table, this.none);
     this.definitions = element("dl", {});
     this.root = element("div", { class: "sheet", "data-rows": table }, tools, scroll, element("p", { class: "tools" }, this.more),
       element("details", { class: "columns" }, element("summary", {}, "What the columns say", element("span", { class: "visually-hidden" }, ` of ${table}`)), this.definitions));
@@ -108,6 +109,8 @@ class DataTable {
       return element("tr", {}, ...cells);
     };
     const shown = rows.slice(0, this.lines);
+    this.none.hidden = rows.length > 0;
+    this.table.hidden = !rows.length;
     this.table.replaceChildren(element("thead", {}, element("tr", {}, ...heads)), element("tbody", {}, ...shown.map(line)));
     this.count.textContent = `${rows.length} of ${this.data.count} rows`;
     this.more.hidden = shown.length === rows.length;

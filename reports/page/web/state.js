@@ -110,6 +110,7 @@ function show(before, goes = false) {
   const style = document.querySelector("#sides");
   if (style.textContent !== rules) style.textContent = rules;
   for (const button of document.querySelectorAll("button[data-name]")) pressed(button);
+  for (const button of document.querySelectorAll("button[data-take]")) taken(button);
   for (const side of CODECS) {
     const list = document.querySelector(`#side-${side}`);
     if (list) list.value = state[side];
@@ -124,7 +125,10 @@ function pressed(button) {
 
 function goTo(before) {
   const place = state.at && document.getElementById(state.at);
-  if (place instanceof HTMLDetailsElement) place.open = true;
+  // What is named is seen, and a section's own fold with it.
+  for (let one = place && (place.querySelector(":scope > details.subject") ?? place); one; one = one.parentElement) {
+    if (one instanceof HTMLDetailsElement) one.open = true;
+  }
   if (place) place.scrollIntoView({ block: "start", behavior: "instant" });
   else if (state.view !== before.view) scrollTo({ top: 0, behavior: "instant" });
 }
@@ -144,6 +148,19 @@ function nameButton(name, ...children) {
   const button = element("button", { type: "button", class: "pick", "data-name": name, title: `A: ${name}; with shift B` }, ...children);
   pressed(button);
   return button;
+}
+
+// A codec as A and as B without a key: for fingers.
+function sideButtons(name) {
+  return CODECS.map((side) => {
+    const button = element("button", { type: "button", class: `side-${side}`, "data-take": side, value: name, "aria-label": `${side.toUpperCase()}: ${name}`, onclick: () => choose(name, side === "b") }, side.toUpperCase());
+    taken(button);
+    return button;
+  });
+}
+
+function taken(button) {
+  button.setAttribute("aria-pressed", String(state[button.dataset.take] === button.value));
 }
 
 document.addEventListener("click", (event) => {

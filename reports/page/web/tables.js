@@ -149,14 +149,16 @@ function addTools(sheet) {
   tools.append(markdown, csv, said);
 }
 
-for (const sheet of document.querySelectorAll("[data-sheet]")) {
+function tendSheet(sheet) {
   for (const header of sheet.querySelectorAll("thead th")) {
-    header.querySelector("button").addEventListener("click", () => sortBy(header));
+    header.querySelector("button")?.addEventListener("click", () => sortBy(header));
   }
   const field = sheet.querySelector("[data-filter]");
   if (field) field.addEventListener("input", () => filter(sheet));
   addTools(sheet);
 }
+
+for (const sheet of document.querySelectorAll("[data-sheet]")) tendSheet(sheet);
 // A link to each heading.
 for (const heading of document.querySelectorAll("section[id] > h2")) {
   const link = element("a", { class: "anchor", href: `#${heading.parentNode.id}` }, "#");

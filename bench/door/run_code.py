@@ -1,0 +1,76 @@
+"""What `run` keeps of code for its page: every codec of the catalogue in all languages, that of the answers run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import islice
+from pathlib import Path
+
+from ...encodings.catalogue import ENCODINGS
+from ...encodings.codecs.codec import Codec
+from ...encodings.storages.rules import storage_of
+from ...gbuffer.gl.shader import ShaderError
+from ...reports.page.codec_key import CodecKey
+from ..ground.output.errors import MissingError, UsageError
+from ..keep.runs import Done
+from ..shaders.code.emit import LANGUAGES
+from ..shaders.code.files import code_of
+from ..show.kept_code import Written, write_code
+from ..tables.registry import TABLES
+from ..tables.shared_columns import ENCODING
+from ..tables.table import UNEXPECTED, Row
+from .code_command import proven, unproven_head
+
+# How many codecs are written; and how many of each answer, the best first, are run, which takes seconds for each.
+MOST, MOST_PROVEN = 400, 1
+
+
+def keep_code(folder: Path, done: Done) -> None:
+    """The code of a finished run's codecs, in its folder; nothing where none is the catalogue's."""
+    finished = {name: done.finished_rows(name) for name in done.tables if ENCODING in TABLES[name].columns}
+    codecs = _codecs(row for rows in finished.values() for row in rows)
+    best = _codecs(row for name, rows in finished.items() for row in _best(name, rows))
+    written = {label: _written(codec, label in best) for label, codec in islice({**best, **codecs}.items(), MOST)}
+    if made := {label: one for label, one in written.items() if one.texts}:
+        write_code(folder, {name: language.title for name, language in LANGUAGES.items()}, made)
+
+
+def _codecs(rows: Iterable[Row]) -> dict[str, Codec]:
+    """The catalogue's codecs of rows, by label."""
+    found: dict[str, Codec] = {}
+    for row in rows:
+        key = CodecKey.said_by(row)
+        if key and key.label not in found and (codec := _codec(key)):
+            found[key.label] = codec
+    return found
+
+
+def _codec(key: CodecKey) -> Codec | None:
+    """A codec of the catalogue; None where the encoding is not, or the storage is none that code is written for."""
+    encoding = ENCODINGS.get(key.encoding)
+    try:
+        storage = storage_of(key.storage)
+    except ValueError:
+        return None
+    codec = Codec(encoding, storage, key.rounding) if encoding and storage else None
+    return codec if codec and codec.fits else None
+
+
+def _best(name: str, rows: list[Row]) -> Iterator[Row]:
+    """The rows that answers begin with."""
+    if TABLES[name].section.leads:
+        for sheet in TABLES[name].work.summary(rows):
+            yield from ({**sheet.keys, **row} for row in sheet.rows[:MOST_PROVEN])
+
+
+def _written(codec: Codec, is_proven: bool) -> Written:
+    """A codec in the languages that it can be written in."""
+    try:
+        if is_proven:
+            made = [(one.code, one.head()) for one in proven(codec, list(LANGUAGES)) if not one.why_not]
+        else:
+            made = [(code, unproven_head(code)) for code in (code_of(codec, name) for name in LANGUAGES)]
+    except (UsageError, MissingError, ShaderError, *UNEXPECTED):
+        return Written()
+    texts = {code.language: code.text(head) for code, head in made}
+    return Written(texts, is_proven, any(code.interface.tables for code, _ in made))

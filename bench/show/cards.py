@@ -1,0 +1,104 @@
+"""What the page says of each codec besides its rows: formulas, sources, engines, and the numbers that it stores."""
+
+from __future__ import annotations
+
+import inspect
+import re
+import sys
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from ...encodings.catalogue import ENCODINGS
+from ...encodings.codecs.codec import Codec
+from ...encodings.codecs.encoding import Encoding
+from ...encodings.storages.rules import rule_of_first, storage_of
+from ...gbuffer.layouts.presets import LAYOUTS
+from ...reports.page.codec_key import CodecKey
+from ...reports.page.sections import TableSection
+from ...reports.sheets import View
+from ..ground.options.option import fields_of
+from ..tables.registry import TABLES
+from ..tables.shared_columns import ENCODING
+
+# What a command may be given of a codec, by the column of a row.
+OPTIONS = ("encoding", "storage", "rounding")
+COMMENT = re.compile(r"\s*// (.*)")
+# The body of a GLSL function, up to the brace that begins a line.
+BODY = r"\b{name}\([^)]*\)\s*\{{\n(.*?)^\}}"
+
+
+def about_codecs(sections: Sequence[TableSection]) -> dict[str, Any]:
+    """Encodings by name, codecs by label, and for each table the options that name a codec."""
+    shown = [section for section in sections if _is_of_normals(section)]
+    rows = [row for section in shown for row in section.rows]
+    keys = dict.fromkeys(key for row in rows if (key := CodecKey.said_by(row)))
+    encodings = [
+        ENCODINGS[name] for name in dict.fromkeys(str(row.get("encoding")) for row in rows) if name in ENCODINGS
+    ]
+    codecs = {key.label: made for key in keys if (made := _codec_record(key))}
+    takes = {section.key: [o for o in OPTIONS if _takes(section.key, o)] for section in shown}
+    return {"encodings": {one.name: _encoding_record(one) for one in encodings}, "codecs": codecs, "takes": takes}
+
+
+def _is_of_normals(section: TableSection) -> bool:
+    """Whether a table's encodings are codes of normals."""
+    columns = TABLES[section.key].columns
+    is_among_codecs = section.about.view is View.CODECS and ENCODING.name in {column.name for column in columns}
+    return ENCODING in columns or is_among_codecs
+
+
+def _takes(table: str, option: str) -> bool:
+    """Whether `run` passes an option on to a table."""
+    known = fields_of(TABLES[table].options)
+    return option in known and known[option].option.in_run
+
+
+def _codec_record(key: CodecKey) -> dict[str, Any]:
+    """The storage of a codec in words, its bits, and what numbers it stores; empty where that is not known."""
+    encoding = ENCODINGS.get(key.encoding)
+    try:
+        storage = storage_of(key.storage)
+    except ValueError:
+        storage = None
+    if not encoding or not storage:
+        return {}
+    codec = Codec(encoding, storage, key.rounding)
+    numbers = f"{rule_of_first(codec.storage, encoding.components)} {codec.rounding}"
+    return {"storage": codec.storage.title, "bits": codec.bits, "numbers": numbers}
+
+
+def _encoding_record(encoding: Encoding) -> dict[str, Any]:
+    module = sys.modules.get(getattr(encoding.encode, "__module__", ""))
+    made = {
+        "title": encoding.title,
+        "says": _first_sentence(module),
+        "domain": encoding.domain,
+        "components": encoding.components,
+        "sign": encoding.sign_bits,
+        "source": encoding.citation,
+        "precise": encoding.is_precise,
+        "tables": bool(encoding.tables()) if encoding.tables is not dict else False,
+        "used": list(dict.fromkeys(_engines(encoding))),
+    }
+    return made | {what: _formula(encoding, what) for what in ("encode", "decode")}
+
+
+def _first_sentence(documented: Any) -> str:
+    """The first paragraph of a docstring, on a line."""
+    text = inspect.getdoc(documented) or ""
+    return " ".join(text.partition("\n\n")[0].split())
+
+
+def _formula(encoding: Encoding, what: str) -> list[str]:
+    """What a function does: in words, and the formulas that stand above its lines."""
+    source = encoding.glsl.read_text(encoding="utf-8")
+    found = re.search(BODY.format(name=f"{encoding.prefix}_{what}"), source, re.MULTILINE | re.DOTALL)
+    comments = (COMMENT.fullmatch(line) for line in (found[1] if found else "").splitlines())
+    return [_first_sentence(getattr(encoding, what)), *(comment[1] for comment in comments if comment)]
+
+
+def _engines(encoding: Encoding) -> Iterator[tuple[str, int, str]]:
+    """The engines whose layouts keep normals by an encoding, in its own axes or turned; the year, and the storage."""
+    for layout in sorted(LAYOUTS.values(), key=lambda one: (one.engine.lower(), one.year)):
+        if layout.engine and layout.encoding.name.partition(":")[0] == encoding.name:
+            yield layout.engine, layout.year, layout.normal_storage

@@ -1,0 +1,98 @@
+"""The code of a run's codecs, as `run` keeps it for the page: texts by codec and language, what they share once."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from types import MappingProxyType
+from typing import Annotated, Any, NamedTuple
+
+from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, with_config
+from typing_extensions import TypedDict
+
+from ...encodings.codecs.files import file_bytes
+from ..ground.output.writing import whole_file
+
+FILE = "code.json"
+MOST_BYTES = 2**23
+# What a text falls into: the lines of its head, which languages share, and paragraphs, which codecs share.
+PIECES = re.compile(r"(?<=\n\n)")
+LINES = re.compile(r"(?<=\n)")
+Name = Annotated[str, Field(max_length=200)]
+Place = Annotated[int, Field(ge=0)]
+
+
+@with_config(ConfigDict(strict=True, extra="forbid"))
+class CodecCode(TypedDict):
+    """A codec in each language: the places of its pieces; and whether it was run, and comes with look-up tables."""
+
+    texts: dict[Name, list[Place]]
+    proven: bool
+    tables: bool
+
+
+@with_config(ConfigDict(strict=True, extra="forbid"))
+class KeptCode(TypedDict):
+    """All of it: titles of languages by name, pieces, and codecs by label."""
+
+    languages: dict[Name, Name]
+    pieces: list[str]
+    codecs: dict[Name, CodecCode]
+
+
+KEPT: TypeAdapter[Any] = TypeAdapter(KeptCode)
+
+
+class Shared:
+    """Texts as places in one list of pieces."""
+
+    def __init__(self) -> None:
+        self._places: dict[str, int] = {}
+
+    def places(self, text: str) -> list[int]:
+        """The places of a text's pieces."""
+        head, *rest = PIECES.split(text)
+        pieces = [*LINES.split(head), *rest]
+        return [self._places.setdefault(piece, len(self._places)) for piece in pieces if piece]
+
+    @property
+    def pieces(self) -> list[str]:
+        """All pieces, by place."""
+        return list(self._places)
+
+
+class Written(NamedTuple):
+    """A codec's texts by language; whether they were run, and whether they come with look-up tables."""
+
+    texts: Mapping[str, str] = MappingProxyType({})
+    proven: bool = False
+    tables: bool = False
+
+
+def write_code(folder: Path, languages: Mapping[str, str], codecs: Mapping[str, Written]) -> None:
+    """Keep codes in a run's folder.
+
+    Args:
+        languages: titles by name.
+        codecs: by label.
+    """
+    shared = Shared()
+    made = {
+        label: {**one._asdict(), "texts": {name: shared.places(text) for name, text in one.texts.items()}}
+        for label, one in codecs.items()
+    }
+    with whole_file(folder / FILE) as partial:
+        kept = {"languages": dict(languages), "pieces": shared.pieces, "codecs": made}
+        partial.write_text(json.dumps(kept, separators=(",", ":")), encoding="utf-8")
+
+
+def read_code(folder: Path) -> dict[str, Any]:
+    """The codes of a run; empty where it keeps none, or its file is damaged."""
+    try:
+        kept = KEPT.validate_python(json.loads(file_bytes(folder / FILE, MOST_BYTES)))
+    except (OSError, ValueError, RecursionError, ValidationError):
+        return {}
+    texts = (places for one in kept["codecs"].values() for places in one["texts"].values())
+    return kept if all(at < len(kept["pieces"]) for places in texts for at in places) else {}

@@ -1,0 +1,118 @@
+"""The block that the page's cards of codecs are built from: what is said of each, and which columns are its figures."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from ..sheets import Column, Role, Row
+from .codec_key import CodecKey
+from .found import Found
+from .packing import packed
+from .sections import TableSection, whole
+from .verdict import is_number
+
+# What the list of codecs shows of each, the first of these columns that a row has.
+MEAN, LARGEST, SLOTS = ("angle_mean_deg",), ("angle_sup_deg", "angle_max_deg"), ("slots_once",)
+# Figures that the whole texel decides, and not only the numbers that are stored.
+OF_TEXELS = ("bytes_per_pixel", "bits_per_texel", "free_bits")
+# Of a codec's keys, what names it or is the same figure measured again.
+OWN = ("encoding", "storage", "rounding", "backend")
+
+
+def block(found: Found, names: Sequence[str]) -> str:
+    """What cards.js reads, packed; empty where the run has no codecs.
+
+    Args:
+        names: of the codecs that the page shows.
+    """
+    about = found.extras.get("cards")
+    if not about or not names:
+        return ""
+    sections = [section for section in found.sections if section.rows and section.key in about["takes"]]
+    first = _first_rows(sections, about["codecs"])
+    codecs = {name: first.get(name, {}) | about["codecs"].get(name, {}) for name in names}
+    shown = set(map(of_encoding, names))
+    encodings = {name: one for name, one in about["encodings"].items() if name in shown}
+    tables = [_table(section, about["takes"][section.key]) for section in sections]
+    made = {"codecs": codecs, "encodings": encodings, "tables": tables, "code": _code(found, names)}
+    return packed(json.dumps(made, allow_nan=False, separators=(",", ":")))
+
+
+def of_encoding(codec: str) -> str:
+    """The encoding of a codec's name."""
+    return codec.partition(" ")[0]
+
+
+def _table(section: TableSection, takes: Sequence[str]) -> dict[str, Any]:
+    """A table as a card shows it: what tells its rows apart, its figures, those that matter most first, which of these
+    the whole texel decides, and why figures are missing."""
+    columns = [section.column(name) for name in whole(section.rows)[0]]
+    keys = [column.name for column in columns if column.role is Role.KEY and column.name not in OWN]
+    figures = sorted(filter(_is_figure, columns), key=lambda column: column.drops > 0)
+    found = {"key": section.key, "title": section.about.title, "view": section.about.view, "takes": list(takes)}
+    found |= {"keys": keys, "figures": [column.name for column in figures]}
+    found |= {"texel": [column.name for column in figures if section.about.of_texels or column.name in OF_TEXELS]}
+    return found | {"reasons": [column.name for column in columns if column.role is Role.REASON]}
+
+
+def _is_figure(column: Column) -> bool:
+    return bool(column.better) and column.shown and column.role is Role.FIGURE
+
+
+def _first_rows(sections: Sequence[TableSection], known: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+    """What the list shows of each codec, from a row of it or of one that stores the same numbers: of normals that it is
+    made for before others, of an answer before other tables. `of` is the set of normals."""
+    rows: dict[tuple[str, str], list[tuple[bool, bool, str, Row]]] = {}
+    labels: dict[str, None] = {}
+    for section in sections:
+        for row in section.rows:
+            key = CodecKey.said_by(row)
+            if key and _first(row, MEAN) is not None:
+                labels.setdefault(key.label)
+                one = (bool(row.get("lost_percent")), not section.about.leads, key.label, row)
+                rows.setdefault(_stored(key.label, known), []).append(one)
+    return {label: _headline(_best_row(label, rows[_stored(label, known)])) for label in labels}
+
+
+def _best_row(label: str, rows: Sequence[tuple[bool, bool, str, Row]]) -> Row:
+    return min(rows, key=lambda one: (*one[:2], one[2] != label))[3]
+
+
+def _stored(label: str, known: Mapping[str, Any]) -> tuple[str, str]:
+    """The encoding of a codec and the numbers that it stores; itself where that is not known."""
+    return of_encoding(label), known[label]["numbers"] if label in known else label
+
+
+def _headline(row: Row) -> dict[str, Any]:
+    figures: Row = {"mean": _first(row, MEAN), "largest": _first(row, LARGEST), "slots": _first(row, SLOTS)}
+    figures |= {"bits": _first(row, ("bits",)), "of": str(row.get("normals"))}
+    return {name: value for name, value in figures.items() if value is not None}
+
+
+def _first(row: Row, names: Sequence[str]) -> float | None:
+    values = (row[name] for name in names if is_number(row.get(name)))
+    return next((value for value in values if math.isfinite(value)), None)
+
+
+def _code(found: Found, names: Sequence[str]) -> dict[str, Any]:
+    """The code that the run keeps of these codecs, with the pieces that these need alone."""
+    kept = found.extras.get("code")
+    if not kept:
+        return {"languages": {}, "pieces": [], "codecs": {}}
+    codecs = {name: kept["codecs"][name] for name in names if name in kept["codecs"]}
+    # Sorted, so that what is alike lies close together and packs small.
+    places = {at: i for i, at in enumerate(sorted(set(_places(codecs)), key=kept["pieces"].__getitem__))}
+    texts = {
+        name: one | {"texts": {word: [places[at] for at in text] for word, text in one["texts"].items()}}
+        for name, one in codecs.items()
+    }
+    return {"languages": kept["languages"], "pieces": [kept["pieces"][at] for at in places], "codecs": texts}
+
+
+def _places(codecs: Mapping[str, Any]) -> Iterator[int]:
+    for one in codecs.values():
+        for text in one["texts"].values():
+            yield from text
