@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -17,7 +18,10 @@ from .embedded import small_uri
 FOLDER = Path(__file__).parent / "web" / "live"
 # In the order in which the page runs them, as one script.
 MEASURING = ("checks.js", "probe.js", "measure.js", "timing.js", "measuring.js", "keep.js")
-SCRIPTS = ("gl.js", "view.js", "see.js", "inspect.js", "own.js", *MEASURING, "live.js")
+SEEING = ("scenes.js", "see.js", "orbit.js", "inspect.js", "trips.js", "own.js", "share.js", "files.js", "dropped.js")
+SCRIPTS = ("view.js", "gl.js", *SEEING, *MEASURING, "live.js")
+# The encoder that a reader begins with.
+EXAMPLE = "first.glsl"
 # What the names of every codec's functions begin with.
 NAMES = "codec"
 
@@ -51,16 +55,17 @@ class Live:
 
     def data(self, about: Mapping[str, str]) -> str:
         """All of it as text; `about` says what the page is of, by name."""
-        shaders = {path.name: path.read_text(encoding="utf-8") for path in sorted(FOLDER.glob("shaders/**/*.*"))}
         made = {
             **about,
             "codecs": [_named(codec) for codec in self.codecs],
+            # Away from the texts, which pack better next to each other.
+            "sums": [codec.get("checks") for codec in self.codecs],
             "storages": [_named(one) for one in self.storages],
             "helpers": self.helpers,
             "scenes": list(self._scenes()),
             "unpacking": dict(self.unpacking),
             "checks": dict(self.checks),
-            "shaders": shaders,
+            "shaders": {path.name: _shader(path) for path in sorted(FOLDER.glob("shaders/**/*.*"))},
             "colours": colour_map(),
         }
         return json.dumps(made, sort_keys=True)
@@ -78,9 +83,21 @@ class Live:
 
 def _named(codec: Record) -> Record:
     key = CodecKey(codec["encoding"], codec["storage"], codec["rounding"])
-    return {**codec, "label": key.label, "names": NAMES}
+    texts = {name: value for name, value in codec.items() if name != "checks"}
+    return {**texts, "label": key.label, "names": NAMES}
+
+
+def _shader(path: Path) -> str:
+    """A shader's text; a reader sees the comments of the example alone."""
+    text = path.read_text(encoding="utf-8")
+    return text if path.name == EXAMPLE else _bare(re.sub(r" +//.*", "", text))
 
 
 def script() -> str:
-    """The laboratory's scripts as one."""
-    return "\n".join((FOLDER / name).read_text(encoding="utf-8") for name in SCRIPTS)
+    """The laboratory's scripts as one. No text of theirs has several lines."""
+    return "\n".join(_bare((FOLDER / name).read_text(encoding="utf-8")) for name in SCRIPTS)
+
+
+def _bare(text: str) -> str:
+    """Without indents and lines of comment, which a page does not need."""
+    return re.sub(r"^\s*(//.*\n|(?=\S))", "", text, flags=re.MULTILINE)

@@ -94,8 +94,9 @@ GL_ARGUMENTS = [
 
 DRAWN = """async () => {
   const frame = () => new Promise((done) => requestAnimationFrame(done));
-  const turns = () => live.see.isTurning || live.device.isLost;
-  for (await frame(), await frame(); !live.see.isDone && !turns(); await frame());
+  const turns = () => live.see.moves || live.device.isLost;
+  const works = () => !live.see.isDone || live.own?.isBusy || live.share?.writing;
+  for (await frame(), await frame(); works() && !turns(); await frame());
 }"""
 
 
@@ -131,7 +132,7 @@ RESET = """({ controls, unfolded, pixel }) => {
   place.replaceChildren();
   live.measuring = new Measuring(place, live.device, live.data);
   for (const [at, one] of document.querySelectorAll("details").entries()) one.open = unfolded[at];
-  live.see.turn(false);
+  for (const name of ["turn", "wobble"]) live.see.move(name, false);
   for (const [at, one] of root.querySelectorAll("input, select, textarea, button").entries()) {
     const [value, checked] = controls[at] ?? [];
     if (one.value === value && !!one.checked === checked) continue;
@@ -140,6 +141,7 @@ RESET = """({ controls, unfolded, pixel }) => {
     if (!one.matches("[data-own], [data-inspect]")) one.dispatchEvent(new Event("input"));
   }
   live.own.run();
+  live.dropped.forget();
   live.inspect.at = pixel;
   live.see.change();
   document.querySelector("nav [data-to=see]").focus({ preventScroll: true });
@@ -161,6 +163,7 @@ class Laboratory(Opened):
             self.page.locator("nav [data-to=see]").click()
         self.page.wait_for_selector("#live[data-ready]")
         self.page.evaluate("live.root.scrollIntoView()")
+        self.page.locator(".drawer").evaluate("drawer => drawer.open = true")
         self.settle()
 
     def state(self) -> dict:

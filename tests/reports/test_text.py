@@ -54,7 +54,8 @@ def test_figures_of_a_page_sort_by_all_their_digits():
 
 def test_no_name_of_the_pages_scripts_is_there_twice():
     """They share one scope, the laboratory's with them, which is added when it is opened: a second `const` ends it."""
-    texts = [(page.WEB / name).read_text(encoding="utf-8") for name in page.SCRIPTS] + [live.script()]
+    paths = [page.WEB / name for name in page.SCRIPTS] + [live.FOLDER / name for name in live.SCRIPTS]
+    texts = [path.read_text(encoding="utf-8") for path in paths]
     declared = re.compile(r"^(const|let|class|function|async function)\s+(\w+)([^\n]*)", re.MULTILINE)
     found = [one.groups() for text in texts for one in declared.finditer(text)]
     # Several to a line: const VERSION = "v1", CODECS = [...].
@@ -62,3 +63,15 @@ def test_no_name_of_the_pages_scripts_is_there_twice():
     names = [name for _, name, _ in found] + [name for several in more for name in several]
     assert len(names) > 100
     assert not {name for name in names if names.count(name) > 1}
+
+
+def test_no_text_of_the_laboratorys_scripts_has_several_lines():
+    """The page holds them without indents and lines of comment."""
+    wrong = [
+        f"{name}: {line}"
+        for name in live.SCRIPTS
+        for line in (live.FOLDER / name).read_text(encoding="utf-8").splitlines()
+        if line.count("`") % 2 or "/*" in line.split("//")[0].replace("/*[", "").replace("\\/\\*", "")
+    ]
+    assert not wrong, wrong
+    assert not re.search(r"^(\s|//)", live.script(), re.MULTILINE)

@@ -175,11 +175,11 @@ function setTheme(name) {
   document.querySelector("#theme span").textContent = THEMES[name];
 }
 
-function remembered(name) {
+function remembered(key, value) {
   // A file's page may not be let to remember anything.
   try {
-    if (name === undefined) return localStorage.getItem("normalbench-theme") || "";
-    localStorage.setItem("normalbench-theme", name);
+    if (value === undefined) return localStorage.getItem(`normalbench-${key}`) || "";
+    localStorage.setItem(`normalbench-${key}`, value);
   } catch (error) {
     if (!(error instanceof DOMException)) throw error;
   }
@@ -191,9 +191,9 @@ themeButton.addEventListener("click", () => {
   const names = Object.keys(THEMES), now = document.documentElement.dataset.theme || "";
   const next = names[(names.indexOf(now) + 1) % names.length];
   setTheme(next);
-  remembered(next);
+  remembered("theme", next);
 });
-const kept = remembered();
+const kept = remembered("theme");
 setTheme(kept in THEMES ? kept : "");
 
 // The sphere: the mean or the largest angle of each cell.

@@ -66,6 +66,7 @@ class LiveDevice {
       const found = gl.getExtension(extension);
       for (const [name, property] of Object.entries(found ? names : {})) this.formats[found[property] ?? gl[name]] = name;
     }
+    this.parallel = gl.getExtension("KHR_parallel_shader_compile");
     this.empty = gl.createVertexArray();
   }
 
@@ -80,12 +81,29 @@ class LiveDevice {
   //   parts: names of shaders, in order; `screen.vert` is the vertex shader.
   //   options.defines: names that are defined; options.precision: of the codec's own arithmetic.
   // Kept until the context is lost. Raises an Error with the compiler's log.
-  program(codec, parts, { defines = [], precision = "highp" } = {}) {
+  program(codec, parts, options) {
+    const [key, made] = this.begun(codec, parts, options);
+    if (!made.shaders) return made;
+    try {
+      return this.checked(made);
+    } catch (error) {
+      this.programs.delete(key);
+      throw error;
+    }
+  }
+
+  // Begins to compile it, which does not wait for the compiler.
+  begun(codec, parts, { defines = [], precision = "highp" } = {}) {
     const key = [codec?.label, codec?.source, precision, ...defines, ...parts].join("\0");
-    if (this.programs.has(key)) return this.programs.get(key);
-    const made = this.link(this.text(codec, parts, defines, precision));
-    this.programs.set(key, made);
-    return made;
+    if (!this.programs.has(key)) this.programs.set(key, this.link(this.text(codec, parts, defines, precision)));
+    return [key, this.programs.get(key)];
+  }
+
+  // Compiles programs, each given as `program` takes it, while the page goes on. `program` says whether it could.
+  async compiled(...wanted) {
+    const begun = wanted.map((one) => this.begun(...one)[1]);
+    const isOpen = ({ program, shaders }) => shaders && !this.isLost && !this.gl.getProgramParameter(program, this.parallel.COMPLETION_STATUS_KHR);
+    if (this.parallel) while (begun.some(isOpen)) await paused(4);
   }
 
   // Forgets the programs of a codec.
@@ -106,25 +124,29 @@ class LiveDevice {
   link(fragment) {
     const { gl } = this, program = gl.createProgram();
     const vertex = `#version 300 es\n${live.data.shaders["screen.vert"]}`;
-    for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
+    const shaders = [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]].map(([kind, text]) => {
       const shader = gl.createShader(kind);
       gl.shaderSource(shader, text);
       gl.compileShader(shader);
       gl.attachShader(program, shader);
-      gl.deleteShader(shader);
-      if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS) && !gl.isContextLost()) {
-        const log = gl.getShaderInfoLog(shader) || "the compiler gives no reason";
-        gl.deleteProgram(program);
-        throw new Error(log);
-      }
-    }
+      return shader;
+    });
     gl.linkProgram(program);
+    return { program, shaders, places: new Map() };
+  }
+
+  checked(made) {
+    const { gl } = this, { program, shaders } = made;
     if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost()) {
-      const log = gl.getProgramInfoLog(program) || "the linker gives no reason";
+      const failed = shaders.find((shader) => !gl.getShaderParameter(shader, gl.COMPILE_STATUS));
+      const log = failed ? gl.getShaderInfoLog(failed) || "the compiler gives no reason" : gl.getProgramInfoLog(program) || "the linker gives no reason";
+      for (const one of shaders) gl.deleteShader(one);
       gl.deleteProgram(program);
       throw new Error(log);
     }
-    return { program, places: new Map() };
+    for (const one of shaders) gl.deleteShader(one);
+    made.shaders = null;
+    return made;
   }
 
   // A texture that can be drawn to and read by texelFetch; null where the device cannot render to the format, a number
@@ -144,6 +166,12 @@ class LiveDevice {
     if (works) return made;
     this.release(made);
     return null;
+  }
+
+  // Whether it can be drawn to.
+  renders(format) {
+    if (!this.renderable.has(format)) this.release(this.target(format, 1, 1));
+    return this.renderable.get(format) ?? false;
   }
 
   release(target) {
@@ -167,6 +195,19 @@ class LiveDevice {
     this.nearest();
     if (linear) for (const end of ["MIN", "MAG"]) gl.texParameteri(gl.TEXTURE_2D, gl[`TEXTURE_${end}_FILTER`], gl.LINEAR);
     return { texture, width, height };
+  }
+
+  // A picture of everything around, by longitude and latitude, with smaller levels where the device makes them.
+  panorama({ width, height, pixels }) {
+    const { gl } = this, made = this.texture("RGBA16F", width, height, null);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA16F, width, height, 0, gl.RGBA, gl.FLOAT, pixels);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, gl.REPEAT);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
+    const isSmaller = this.renders(gl.RGBA16F);
+    gl.bindTexture(gl.TEXTURE_2D, made.texture);
+    if (isSmaller) gl.generateMipmap(gl.TEXTURE_2D);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, isSmaller ? gl.LINEAR_MIPMAP_LINEAR : gl.LINEAR);
+    return made;
   }
 
   // A codec's look-up tables by the names of their samplers.
@@ -225,11 +266,12 @@ class LiveDevice {
     gl.clearBufferuiv(gl.COLOR, 0, new Uint32Array(4).fill(0xffffffff));
   }
 
-  // Waits until everything is drawn on the canvas.
-  finish() {
-    const { gl } = this;
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+  // When everything that was asked of the GPU is done. The page does not wait for it.
+  async done() {
+    const { gl } = this, fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+    do await paused(); while (fence && gl.clientWaitSync(fence, 0, 0) === gl.TIMEOUT_EXPIRED);
+    gl.deleteSync(fence);
   }
 
   // Texels of a target of RGBA32UI, four words each.

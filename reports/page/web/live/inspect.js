@@ -10,19 +10,20 @@ class Inspect {
     this.at = [0.4, 0.45];
     this.listen();
     see.listeners.push(() => this.show());
-    this.show();
+    see.ask();
   }
 
   listen() {
     const { stage, canvas } = this.see;
-    canvas.addEventListener("pointermove", (event) => this.point(event));
-    canvas.addEventListener("pointerdown", (event) => this.point(event));
+    // What is dragged turns the camera; a press that does not move takes the pixel.
+    canvas.addEventListener("pointermove", (event) => event.buttons || this.point(event));
+    canvas.addEventListener("click", (event) => this.point(event));
     stage.addEventListener("keydown", (event) => {
-      const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
-      if (!step) return;
+      const step = ARROWS[event.key];
+      if (!step || !event.shiftKey) return;
       event.preventDefault();
       const [x, y] = this.pixel;
-      this.go(step.map((by, axis) => [x, y][axis] + by * (event.shiftKey ? 10 : 1)));
+      this.go([x + step[0], y + step[1]]);
     });
     for (const name of ["x", "y"]) {
       this.field[name].addEventListener("input", () => {
@@ -71,13 +72,8 @@ class Inspect {
   // A pixel of one side. Its code is drawn anew, because a side is drawn only where it is seen.
   read(side) {
     const { see } = this, { device } = see, codec = see.codec(side), uniforms = see.uniforms(), [x, y] = this.pixel;
-    const row = see.canvas.height - 1 - y, [surface, textures] = see.surface;
-    let program, given = textures;
-    if (codec) {
-      const made = see.encode(side, codec, uniforms, [x, row, 1, 1]);
-      program = device.program(codec, [surface, "decode.frag", "inspect.frag"], see.options(codec, made));
-      given = { ...given, ...see.texels(codec, made) };
-    } else program = device.program(null, [surface, "inspect.frag"], { defines: ["EXACT"] });
+    const row = see.canvas.height - 1 - y, made = codec ? see.encode(side, codec, uniforms, [x, row, 1, 1]) : null;
+    const program = device.program(...see.inspected(side)), given = codec ? see.texels(codec, made) : { surfaces: see.seen };
     const target = device.target(device.gl.RGBA32UI, 4, 1);
     device.draw(program, target, { ...uniforms, pixel: { ints: [x, row] } }, given);
     const words = device.words(target), three = (at) => Array.from(words.slice(4 * at, 4 * at + 3), floatOf);

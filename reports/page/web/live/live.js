@@ -4,6 +4,7 @@
 async function openLaboratory(root, data) {
   live.root = root;
   live.data = data;
+  for (const [at, codec] of data.codecs.entries()) codec.checks = data.sums[at];
   for (const codec of [...data.codecs, ...data.storages]) live.byLabel.set(codec.label, codec);
   const said = root.querySelector("[data-live=said]");
   try {

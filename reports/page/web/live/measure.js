@@ -32,21 +32,15 @@ function degreesBack(n, at, back, from) {
   return Number.isFinite(degrees) ? degrees : 180;
 }
 
-// A moment for the page: what waits for it is done, and the browser draws.
-const paused = (ms = 0) => new Promise((resolve) => setTimeout(resolve, ms));
-
 // The texels of a target of RGBA32UI or fewer, four words each, once the GPU is done: the page does not wait for it.
-async function wordsLater({ gl }, { framebuffer, width, height }) {
-  const found = new Uint32Array(4 * width * height), buffer = gl.createBuffer();
+async function wordsLater(device, { framebuffer, width, height }) {
+  const { gl } = device, found = new Uint32Array(4 * width * height), buffer = gl.createBuffer();
   gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
   gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
   gl.bufferData(gl.PIXEL_PACK_BUFFER, found.byteLength, gl.STREAM_READ);
   gl.readPixels(0, 0, width, height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, 0);
   gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
-  const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
-  gl.flush();
-  do await paused(); while (gl.clientWaitSync(fence, 0, 0) === gl.TIMEOUT_EXPIRED);
-  gl.deleteSync(fence);
+  await device.done();
   gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
   gl.getBufferSubData(gl.PIXEL_PACK_BUFFER, 0, found);
   gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);

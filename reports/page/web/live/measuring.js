@@ -184,7 +184,7 @@ class Measuring {
 
   async time(on, row) {
     // What else is drawn would be measured as well.
-    live.see.turn(false);
+    for (const name of ["turn", "wobble"]) live.see.move(name, false);
     const timer = new Timer(this.device), timed = new TimedCodec(on, timer);
     await seen();
     row.encode_ms = await timed.encode();

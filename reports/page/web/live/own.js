@@ -1,21 +1,9 @@
 "use strict";
 
 // Your own encoder: compiled as it is typed, stored by the functions of any storage, and seen in the picture above.
-const OWN = "your encoder", WAIT_MS = 250, LONGEST_TEXT = 2 ** 16, TRIED = 256, DISC = 160;
+const OWN = "your encoder", WAIT_MS = 250, LONGEST_TEXT = 2 ** 16, MOST_SAID = 8, KEPT_TEXT = "encoder";
 // Lines of the page's own shaders, in messages of the compiler, begin here.
 const OTHERS = 100000;
-const FIRST_TEXT = `// A unit normal to numbers in [-1, 1], and back.
-vec2 mine_encode(vec3 n) {
-    vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
-    return n.z < 0.0 ? (1.0 - abs(p.yx)) * sign_not_zero(p) : p;
-}
-
-vec3 mine_decode(vec2 e) {
-    float z = 1.0 - abs(e.x) - abs(e.y);
-    vec2 p = e - sign_not_zero(e) * max(-z, 0.0);
-    return normalize(vec3(p, z));
-}
-`;
 
 class OwnEncoder {
   constructor(root, see) {
@@ -23,40 +11,90 @@ class OwnEncoder {
     this.device = live.device;
     this.field = Object.fromEntries(Array.from(root.querySelectorAll("[data-own]"), (one) => [one.dataset.own, one]));
     this.options = ["left", "right"].map((side) => see.control[side].appendChild(element("option", { disabled: "" }, OWN)));
-    see.failed = (error) => this.refuse(error);
+    // Sides that show it as soon as it runs.
+    this.wanted = [];
+    see.failed = (error) => this.refuse(error.message);
+    see.followers.push(() => this.compare());
     const storages = new Map(live.data.storages.map(({ storage, title }) => [storage, title]));
     this.field.storage.append(...Array.from(storages, ([storage, title]) => element("option", { value: storage }, title)));
     const texts = live.data.codecs.filter(({ text }) => text);
     this.field.from.append(...Array.from(new Map(texts.map((codec) => [codec.encoding, codec])).keys(), (name) => element("option", { value: name }, name)));
-    this.field.text.value = FIRST_TEXT;
+    this.first = live.data.shaders["first.glsl"];
+    this.field.text.value = this.first;
     this.listen();
     this.device.on("lost", () => this.lost());
-    this.read().then((isShared) => isShared || this.run());
   }
 
   listen() {
-    const { text, storage, domain, from, share, keep, run } = this.field;
+    const { text, storage, domain, from, keep, run, lines } = this.field;
     text.addEventListener("input", () => this.later());
+    text.addEventListener("scroll", () => (lines.scrollTop = text.scrollTop));
     for (const one of [storage, domain]) one.addEventListener("input", () => this.run());
     from.addEventListener("input", () => {
-      text.value = live.data.codecs.find(({ encoding, text: own }) => own && encoding === from.value)?.text ?? FIRST_TEXT;
+      text.value = live.data.codecs.find(({ encoding, text: own }) => own && encoding === from.value)?.text ?? this.first;
       this.run();
     });
     run.addEventListener("click", () => this.run());
-    share.addEventListener("click", () => this.share());
     keep.addEventListener("click", () => saveText("mine.glsl", text.value));
-    shows.push((state, before) => state.live !== before.live && this.read());
   }
 
   later() {
+    this.number();
+    this.remember(false);
     clearTimeout(this.waiting);
     this.waiting = setTimeout(() => this.run(), WAIT_MS);
+  }
+
+  // The text as it is now, and whether it ran: after a reload it is there again.
+  remember(isSound) {
+    const { text, storage, domain } = this.field;
+    if (text.value !== this.first || this.kept) remembered(KEPT_TEXT, (this.kept = JSON.stringify({ text: text.value, storage: storage.value, domain: domain.value, isSound })));
+  }
+
+  // What was typed before, or an object without a text.
+  get before() {
+    try {
+      return JSON.parse(remembered(KEPT_TEXT)) ?? {};
+    } catch {
+      return {};
+    }
+  }
+
+  // Begins with what was typed before. What did not end well is not run by itself.
+  begin() {
+    const { text, isSound, ...chosen } = this.before;
+    if (typeof text !== "string" || text.length > LONGEST_TEXT) return this.run();
+    this.fill(text, chosen);
+    this.kept = remembered(KEPT_TEXT);
+    return isSound === true ? this.run() : this.offer("This is the encoder that you typed here before. It did not run to its end.");
+  }
+
+  // Takes what an address brought. It is run by itself where this browser ran the very same before.
+  receive(text, chosen) {
+    const { text: known, isSound } = this.before;
+    this.fill(text, chosen);
+    return text === this.first || (text === known && isSound === true) ? this.run() : this.offer("This encoder came with the link. Read it, then run it.");
+  }
+
+  fill(text, chosen) {
+    this.field.text.value = text;
+    for (const name of ["storage", "domain"]) if (Array.from(this.field[name].options).some(({ value }) => value === chosen[name])) this.field[name].value = chosen[name];
+    this.number();
+  }
+
+  offer(said) {
+    this.turn = null;
+    this.withdraw();
+    this.clear();
+    this.say(said);
+    this.field.run.hidden = false;
   }
 
   // An encoder that takes the GPU away is not run again until somebody asks for it.
   lost() {
     if (performance.now() - (this.ran ?? -1e9) > 5000) return;
     this.withdraw();
+    this.clear();
     this.say("The GPU was lost while this encoder ran: does a loop of it not end?");
   }
 
@@ -68,37 +106,92 @@ class OwnEncoder {
     live.byLabel.delete(OWN);
   }
 
-  // What a compiler says of the text, in the page's own shaders too.
-  refuse(error) {
+  // What a compiler says of the text. Nothing of an older text stays next to it.
+  refuse(log) {
     this.withdraw();
-    this.say(...linesOf(error.message, this.field.text.value));
+    this.clear();
+    const said = linesOf(log, this.field.text.value);
+    this.field.said.replaceChildren(...said.map(({ at, text }) => element("p", {}, ...(at ? [this.link(at), `: ${text}`] : [text]))));
     this.field.text.setAttribute("aria-invalid", "true");
+    this.number(said.map(({ at }) => at).filter(Boolean));
+  }
+
+  clear() {
+    this.trips = null;
+    this.field.globe.hidden = true;
+    this.compare();
   }
 
   say(...lines) {
     this.field.said.replaceChildren(...lines.map((line) => element("p", {}, line)));
   }
 
-  run() {
+  // A line's name, which leads there.
+  link(at) {
+    const go = (event) => {
+      event.preventDefault();
+      const { text } = this.field, lines = text.value.split("\n"), from = lines.slice(0, at - 1).join("\n").length + (at > 1);
+      text.focus();
+      text.setSelectionRange(from, from + lines[at - 1].length);
+    };
+    return element("a", { href: "#own-text", onclick: go }, `Line ${at}`);
+  }
+
+  // Numbers of the lines; those with a mistake are marked.
+  number(wrong = []) {
+    const count = this.field.text.value.split("\n").length, parts = [];
+    let from = 1;
+    const plain = (until) => parts.push(Array.from({ length: Math.max(0, until - from) }, (_, at) => `${from + at}\n`).join(""));
+    for (const at of [...new Set(wrong)].sort((a, b) => a - b)) {
+      plain(at);
+      parts.push(element("mark", {}, `${at}`), "\n");
+      from = at + 1;
+    }
+    plain(count + 1);
+    this.field.lines.replaceChildren(...parts);
+    this.field.lines.scrollTop = this.field.text.scrollTop;
+  }
+
+  async run() {
     clearTimeout(this.waiting);
+    this.waiting = 0;
     this.field.run.hidden = true;
     if (this.device.isLost) return;
+    this.number();
     this.ran = performance.now();
-    const codec = this.made();
+    const turn = (this.turn = {});
+    await this.attempt(turn, this.made());
+    if (turn === this.turn) this.turn = null;
+  }
+
+  async attempt(turn, codec) {
+    if (typeof codec === "string") return this.refuse(codec);
     try {
-      if (typeof codec === "string") throw new Error(codec);
-      const program = this.device.program(codec, ["angle.frag", "trip.frag", "figures.frag"]);
+      const trips = await tripsOf(this.device, codec, codec.domain);
+      if (turn !== this.turn || this.device.isLost) return;
       this.forget(codec);
-      this.show(codec, program);
+      await this.show(codec, trips);
     } catch (error) {
-      this.say(...linesOf(error.message, this.field.text.value));
-      this.field.text.setAttribute("aria-invalid", "true");
+      if (turn === this.turn) this.refuse(error.message);
       return;
     }
-    this.field.text.removeAttribute("aria-invalid");
+    if (turn !== this.turn) return;
+    this.remember(true);
+    this.offerSides(codec);
+  }
+
+  get isBusy() {
+    return Boolean(this.turn || this.waiting);
+  }
+
+  // It may be chosen, and is where an address wants it.
+  offerSides(codec) {
+    const { control } = this.see;
     live.byLabel.set(OWN, codec);
     for (const option of this.options) option.disabled = false;
-    if (["left", "right"].some((side) => this.see.control[side].value === OWN)) this.see.change();
+    for (const side of this.wanted) control[side].value = OWN;
+    this.wanted = [];
+    if (["left", "right"].some((side) => control[side].value === OWN)) this.see.change();
   }
 
   forget(codec) {
@@ -126,111 +219,49 @@ class OwnEncoder {
     return { ...stored, label: OWN, source, calls, views, domain: this.field.domain.value };
   }
 
-  show(codec, program) {
-    const { device } = this, target = device.target(device.gl.RGBA32UI, TRIED, TRIED), isHalf = this.field.domain.value === "hemisphere";
-    const uniforms = { halves: isHalf ? 1 : 2 };
-    device.clearWords(target);
-    device.draw(program, target, uniforms, device.tablesOf(codec));
-    const found = new Float32Array(device.words(target).buffer);
-    let sum = 0, squares = 0, differences = 0, worst = -1, at = 0, lost = 0;
-    for (let i = 0; i < found.length; i += 4) {
-      const off = found[i];
-      if (!(off >= 0)) {
-        lost++;
-        continue;
-      }
-      sum += off;
-      squares += off * off;
-      differences += found[i + 1];
-      if (off > worst) [worst, at] = [off, i];
-    }
-    const count = found.length / 4 - lost;
-    device.draw(device.program(codec, ["angle.frag", "trip.frag", "figures.frag"], { defines: ["DIRECTION"] }), target, uniforms, device.tablesOf(codec));
-    const direction = Array.from(device.words(target).slice(at, at + 3), floatOf);
-    device.release(target);
-    // Of the three components, with a peak of 1, as in the tables.
-    const decibels = -10 * Math.log10(differences / (3 * count));
+  async show(codec, trips) {
+    const { count, lost, mean, rms, worst, direction, decibels } = trips;
     const figures = count
-      ? `On ${count} random directions: mean ${digits(sum / count)}°, RMS ${digits(Math.sqrt(squares / count))}°, largest ${digits(worst)}°, at ${vectorText(direction)}; PSNR ${digits(decibels, 4)} dB.`
+      ? `On ${count} random directions: mean ${digits(mean)}°, RMS ${digits(rms)}°, largest ${digits(worst)}°, at ${vectorText(direction)}; PSNR ${digits(decibels, 4)} dB.`
       : "No direction comes back as a number.";
     this.say(`${codec.bits} bits in ${codec.title}. ${figures}`, ...(lost && count ? [`${lost} directions come back as no number.`] : []));
+    this.field.text.removeAttribute("aria-invalid");
     this.field.command.textContent = `normalbench quality --encoding mine.glsl --storage ${codec.storage} --normals ${codec.domain}`;
-    this.map(codec, count ? worst : 1);
+    this.trips = trips;
+    this.compare();
+    // Full colour is the largest angle that was met.
+    await drawGlobe(this.device, codec, count ? worst : 1, this.see.colours, this.field.sphere);
+    this.field.most.textContent = `${digits(count ? worst : 1)}°`;
+    this.field.globe.hidden = false;
   }
 
-  // The error over the sphere; full colour is the largest that was met.
-  map(codec, worst) {
-    const { device } = this, { gl } = device, canvas = this.field.sphere, target = device.target(gl.RGBA8, 2 * DISC, DISC);
-    const program = device.program(codec, ["angle.frag", "trip.frag", "sphere.frag"]);
-    const given = { ...device.tablesOf(codec), colours: this.see.colours };
-    device.draw(program, target, { size: { ints: [2 * DISC, DISC] }, full: worst }, given);
-    const bytes = new Uint8ClampedArray(8 * DISC * DISC);
-    gl.readPixels(0, 0, 2 * DISC, DISC, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
-    device.release(target);
-    [canvas.width, canvas.height] = [2 * DISC, DISC];
-    const image = new ImageData(2 * DISC, DISC), line = 8 * DISC;
-    for (let y = 0; y < DISC; y++) image.data.set(bytes.subarray((DISC - 1 - y) * line, (DISC - y) * line), y * line);
-    canvas.getContext("2d").putImageData(image, 0, 0);
-    this.field.most.textContent = `${digits(worst)}°`;
-  }
-
-  // A link to this page that holds the text behind its #, which no server is sent.
-  async share() {
-    const { text, storage, domain } = this.field;
-    const packed = await deflated(JSON.stringify({ text: text.value, storage: storage.value, domain: domain.value }));
-    const link = `${location.href.split("#")[0]}${hashOf({ ...state, view: "see", at: "", live: packed })}`;
-    this.field.link.value = link;
-    this.field.link.parentNode.hidden = false;
-    copy(link, this.field.copied);
-  }
-
-  // What a link brought; whether it brought anything. It is shown, and run when somebody asks for it.
-  async read() {
-    if (!state.live) return false;
-    try {
-      const { text, storage, domain } = JSON.parse(await inflated(state.live)) ?? {};
-      if (typeof text !== "string") throw new Error("it holds no text");
-      this.field.text.value = text;
-      for (const [name, value] of [["storage", storage], ["domain", domain]]) {
-        if (Array.from(this.field[name].options).some((one) => one.value === value)) this.field[name].value = value;
-      }
-      this.say("This encoder came with the link. Read it, then run it.");
-      this.field.run.hidden = false;
-    } catch (error) {
-      this.say(`The link cannot be read: ${error.message.replace(/\.$/, "")}.`);
-    }
-    return true;
+  // Its figures next to those of both sides.
+  async compare() {
+    const sides = ["left", "right"].map((side) => this.see.codec(side)).filter((codec) => codec && codec !== this.codec), domain = this.field.domain.value;
+    const key = [domain, ...sides.map(({ label }) => label)].join(), { trips, codec } = this;
+    if (this.compared?.key === key && this.compared.trips === trips) return;
+    this.compared = { key, trips };
+    if (!live.see?.first || this.device.isLost) return (this.compared = null);
+    const others = await Promise.all(sides.map(async (one) => [one, await knownTrips(this.device, one, domain)]));
+    if (this.compared?.key !== key || this.compared.trips !== trips) return;
+    const rows = [...(trips && codec ? [[codec, trips]] : []), ...others];
+    this.field.figures.replaceChildren(...rows.map(([one, found]) => {
+      const cells = [one.bits, ...[found.mean, found.rms, found.worst].map((value) => `${digits(value)}°`), `${digits(found.decibels, 4)} dB`];
+      return element("tr", {}, element("th", { scope: "row" }, one.label), ...cells.map((text) => element("td", { class: "n" }, String(text))));
+    }));
   }
 }
 
-// What a compiler says, by the line of the text.
+// What a compiler says: { at, text }, where `at` is the line of the text or 0.
 function linesOf(log, text) {
   const last = text.split("\n").length, lines = log.replaceAll("\0", "").split("\n").map((line) => line.trim()).filter(Boolean);
-  return lines.slice(0, 8).map((line) => {
+  return lines.slice(0, MOST_SAID).map((line) => {
     const [, at, said] = line.match(/^(?:ERROR|WARNING): \d+:(\d+): ?(.*)$/) ?? [];
-    if (!at) return line;
-    if (Number(at) <= last) return `Line ${at}: ${said}`;
-    if (Number(at) < OTHERS) return `At the end of the text: ${said}`;
-    return /redefinition/.test(said) ? `The page uses this name itself; choose another one: ${said}` : `Where the page calls it: ${said}`;
+    if (!at) return { at: 0, text: line };
+    if (Number(at) <= last) return { at: Number(at), text: said };
+    if (Number(at) < OTHERS) return { at: 0, text: `At the end of the text: ${said}` };
+    return { at: 0, text: /redefinition/.test(said) ? `The page uses this name itself; choose another one: ${said}` : `Where the page calls it: ${said}` };
   });
-}
-
-async function deflated(text) {
-  const stream = new Blob([text]).stream().pipeThrough(new CompressionStream("deflate-raw"));
-  const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
-  return btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join("")).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
-}
-
-// Read in pieces, so that a small link cannot become a large text.
-async function inflated(packed) {
-  const bytes = bytesOf(packed.replaceAll("-", "+").replaceAll("_", "/"));
-  const reader = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw")).pipeThrough(new TextDecoderStream()).getReader();
-  let text = "";
-  for (let part = await reader.read(); !part.done; part = await reader.read()) {
-    text += part.value;
-    if (text.length > 2 * LONGEST_TEXT) throw new Error("it is too long");
-  }
-  return text;
 }
 
 live.parts.push((root) => {

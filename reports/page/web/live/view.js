@@ -10,6 +10,9 @@ function browserName() {
   return known ? `${known.brand} ${known.version}` : navigator.userAgent.split(" ").at(-1);
 }
 
+// A moment for the page: what waits for it is done, and the browser draws.
+const paused = (ms = 0) => new Promise((resolve) => setTimeout(resolve, ms));
+
 const dot3 = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const cross3 = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const scaled = (a, s) => a.map((x) => x * s);

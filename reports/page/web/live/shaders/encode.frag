@@ -1,5 +1,4 @@
 // Each pixel's normal as its code: into the codec's own format, or as integers where that cannot be rendered to.
-uniform ivec2 size;
 uniform float levels;  // of each number, in place of the storage's; 0 for the storage's
 
 #ifdef PACKED
@@ -9,7 +8,7 @@ out vec4 texel;
 #endif
 
 void main() {
-    Surface seen = surface_at(ivec2(gl_FragCoord.xy), size);
+    Surface seen = surface_at(ivec2(gl_FragCoord.xy));
     CODE code = ENCODE(seen.n, seen.view);
 #ifdef PACKED
     texel = levels > 0.0 ? floatBitsToUint(PADDED(fewer_bits(code, levels))) : PACK(code);

@@ -1,10 +1,10 @@
 // One pixel in numbers: the normal, what comes back, the texel and the position, as the bits of floats.
-uniform ivec2 size, pixel;
+uniform ivec2 pixel;
 
 out uvec4 found;
 
 void main() {
-    Surface seen = surface_at(pixel, size);
+    Surface seen = surface_at(pixel);
 #ifdef EXACT
     vec3 n = seen.n;
     uvec4 words = uvec4(0u);

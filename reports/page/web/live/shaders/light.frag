@@ -1,38 +1,88 @@
-// The picture that is shown of a codec: lit by its normals, or its error, its normals or its code.
-uniform ivec2 size;
-uniform int shown;  // 0 lit, 1 error, 2 normals, 3 code
+// The picture that is shown of what came back, by SHOWN: lit, error, normals, code, zebra or studio, as scenes.js counts them.
+uniform highp usampler2D decoded;
 uniform float power;
+uniform float roughness;
 uniform float full;  // degrees that full colour stands for
-uniform float gain;  // of an error that is laid over the lit picture; 0 for none
+uniform float gain;  // of an error that is laid over the picture; 0 for none
+uniform float backdrop;  // how wide the surroundings behind everything are blurred
 uniform vec3 light;  // towards the light, view space
+uniform mat3 to_view;
+uniform vec3 eye;
 uniform highp sampler2D colours;
 
 out vec4 colour;
 
-vec3 lit(Surface seen, vec3 n) {
-    vec3 towards_eye = -normalize(seen.view), between = normalize(light + towards_eye);
+// Reflected light, and in w how much is mirrored head-on: walls, spheres, the column, paint, water and skin.
+const vec4 MATERIALS[11] = vec4[](
+    vec4(0.0), vec4(0.4, 0.4, 0.4, 0.3), vec4(0.3, 0.32, 0.36, 0.0), vec4(0.36, 0.32, 0.3, 0.0), vec4(0.55, 0.16, 0.12, 0.3),
+    vec4(0.14, 0.32, 0.52, 0.3), vec4(0.5, 0.42, 0.12, 0.3), vec4(0.18, 0.42, 0.26, 0.3), vec4(0.03, 0.11, 0.3, 0.35),
+    vec4(0.05, 0.05, 0.055, 0.12), vec4(0.42, 0.3, 0.25, 0.06));
+
+#if SHOWN == 0
+vec3 lit(vec3 base, vec3 n, vec3 v) {
+    vec3 between = normalize(light + v);
     float diffuse = max(dot(n, light), 0.0), specular = pow(max(dot(n, between), 0.0), power);
-    vec3 linear = seen.colour * (0.25 + 0.75 * diffuse) + vec3(diffuse > 0.0 ? 0.8 * specular : 0.0);
-    return pow(min(linear, vec3(1.0)), vec3(1.0 / 2.2));
+    return base * (0.25 + 0.75 * diffuse) + vec3(diffuse > 0.0 ? 0.8 * specular : 0.0);
 }
+#elif SHOWN == 5
+// All in the world's axes. `blur` is a pixel's share of the mirrored lobe's width.
+vec3 in_studio(vec4 material, vec3 n, vec3 v, vec3 place, float blur) {
+    float n_v = max(dot(n, v), 1e-3), a = roughness * roughness;
+    // A mirrored direction moves by twice the half vector's angle in the plane of both, and by n.v times that across it (J. Wang
+    // et al., All-Frequency Rendering of Dynamic, Spatially-Varying Reflectance, 2009): here by their geometric mean.
+    float width = sqrt(4.0 * a * a * n_v + blur * blur);
+    vec2 share = share_of_surroundings(roughness, n_v);
+    vec3 made = surroundings(reflect(-v, n), width) * (material.w * share.x + share.y);
+    made += material.rgb * (1.0 - material.w) * scattered(n);
+    for (int i = 0; i < LAMPS && studio >= 0; ++i) {
+        vec4 lamp = LAMP[studio * LAMPS + i];
+        vec3 apart = lamp.xyz - place, l = normalize(apart);
+        float power = lamp.w / dot(apart, apart);
+        made += power * (material.rgb * max(dot(n, l), 0.0) / PI + vec3(ggx(n, v, l, roughness, material.w)));
+    }
+    return made;
+}
+
+// A. Narkowicz, ACES Filmic Tone Mapping Curve, 2016.
+vec3 on_screen(vec3 x) {
+    x *= 0.6;
+    return clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
+}
+#endif
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    Surface seen = surface_at(pixel, size);
-    if (!seen.covered) {
-        colour = vec4(0.0, 0.0, 0.0, 1.0);
-        return;
-    }
-#ifdef EXACT
-    vec3 n = seen.n;
-    vec3 code = vec3(0.0);
+    Surface seen = surface_at(pixel);
+    uvec4 found = texelFetch(decoded, pixel, 0);
+    vec3 n = uintBitsToFloat(found.xyz), v = -normalize(seen.view), made = vec3(0.0);
+    vec4 material = MATERIALS[seen.material];
+#if SHOWN == 0
+    made = lit(material.rgb, n, v);
+#elif SHOWN == 2
+    made = n * 0.5 + 0.5;
+#elif SHOWN == 3
+    made = vec3((found.www >> uvec3(0u, 10u, 20u)) & 1023u) / 1023.0;
+#elif SHOWN > 3
+    // How far the exact reflection moves to the next pixel: what is mirrored is smoothed over that, for every codec.
+    vec3 exact = reflect(-v, seen.n) * to_view, mirror = normalize(n) * to_view, eyeward = v * to_view;
+#if SHOWN == 4
+    float share = stripes(reflect(-eyeward, mirror), clamp(fwidth(line_at(exact)), 1e-4, 4.0));
+    made = mix(material.rgb * 0.25 + 0.02, material.rgb * 0.3 + 0.62, material.w > 0.0 ? share : 0.3);
 #else
-    CODE stored = code_at(pixel);
-    vec3 n = DECODE(stored, seen.view);
-    vec3 code = PADDED(stored * 0.5 + 0.5).xyz;
+    float blur = clamp(0.5 * length(fwidth(exact)), 1e-4, 0.2);
+    made = on_screen(seen.covered ? in_studio(material, mirror, eyeward, eye + seen.view * to_view, blur) : surroundings(ray_at(pixel) * to_view, backdrop));
 #endif
-    float degrees = degrees(angle_between(seen.n, n));
-    vec3 made = shown == 0 ? lit(seen, n) : shown == 1 ? false_colour(colours, degrees / full)
-        : shown == 2 ? n * 0.5 + 0.5 : code;
-    colour = vec4(shown == 0 && gain > 0.0 ? mix(made, false_colour(colours, degrees / full), gain) : made, 1.0);
+#endif
+#if SHOWN != 2 && SHOWN != 3
+    made = pow(min(made, vec3(1.0)), vec3(1.0 / 2.2));
+#endif
+#if SHOWN != 5
+    made = seen.covered ? made : vec3(0.0);
+#endif
+    bool over = gain > 0.0 && SHOWN != 2 && SHOWN != 3;
+    if (seen.covered && (SHOWN == 1 || over)) {
+        vec3 error = false_colour(colours, degrees(angle_between(seen.n, n)) / full);
+        made = SHOWN == 1 ? error : mix(made, error, gain);
+    }
+    colour = vec4(made, 1.0);
 }
