@@ -101,6 +101,10 @@ Arithmetics = Annotated[
 ]
 Repeats = Annotated[int, Option("--repeats", "Frames that times are taken over; of render, 0 takes none.")]
 Images = Annotated[Path | None, Option("--images", "Write pictures into this folder.")]
+Live = Annotated[
+    Path | None,
+    Option("--live", "Write the GLSL ES of each codec, which a page runs in the reader's browser, into this folder."),
+]
 Plot = Annotated[Path | None, Option("--plot", "Draw the table into this PNG, SVG or PDF file.")]
 
 

@@ -27,15 +27,19 @@ PLACES = (BEST, AGAINST, MORE_EXACT, MOST_EXACT, CHEAPER, FEWER_BITS)
 
 def write(folder: Path, chosen: Sequence[Case], rows: Sequence[Row], drawing: Pictures) -> None:
     """The images of every code that has a place, and of the exact normals."""
-    placed = {CodecKey.of(row) for row in rows if set(places_of(row)) & set(PLACES)}
-    drawn = (one for one in chosen if _key_of_case(one) in placed)
-    for case, maker in ((one, maker) for one in drawn if not one.is_beside for maker in one.makers):
+    for case, maker in ((one, maker) for one in placed(chosen, rows) for maker in one.makers):
         # A code that the device has no room for has no image.
         with suppress(LayoutError, *render.UNMEASURABLE):
             for power, (image, exact) in drawing.shown(case, maker).items():
                 scene = _scene_stem(maker.name, "" if power is None else f"{power:g}")
                 _write(folder / f"{scene}-reference.png", exact)
                 _write(folder / _file_name(scene, _key_of_case(case)), image)
+
+
+def placed(chosen: Sequence[Case], rows: Sequence[Row]) -> Iterator[Case]:
+    """The cases whose code the answer names."""
+    named = {CodecKey.of(row) for row in rows if set(places_of(row)) & set(PLACES)}
+    yield from (case for case in chosen if not case.is_beside and _key_of_case(case) in named)
 
 
 def _key_of_case(case: Case) -> CodecKey:

@@ -12,6 +12,7 @@ from ...ground.options.option import (
     Encodings,
     Families,
     Images,
+    Live,
     Names,
     Option,
     Reading,
@@ -118,6 +119,7 @@ class PickOutputs:
     """What `pick` writes beside its rows."""
 
     images: Images = None
+    live: Live = None
 
 
 COLUMNS = (
@@ -271,7 +273,7 @@ TABLE = Table(
     also=ALSO,
     partial=True,
     single={"encoding": "octahedral", "storage": "rg8"},
-    files={"images": "images"},
+    files={"images": "images", "live": "live"},
     usual=({"survey": True},),
     section=Section(
         title="Which code should I take?",

@@ -216,8 +216,8 @@ def _steps(options: PickOptions, outputs: PickOutputs) -> list[Step]:
     device, why = found_device()
     if not device:
         tell(f"no images: {why}")
-    if outputs.images:
-        check_folder(outputs.images)
+    for folder in filter(None, (outputs.images, outputs.live)):
+        check_folder(folder)
     return [
         Step(_key(chosen), Part(chosen, device), _name(chosen), sum(not case.is_beside for case in chosen))
         for chosen in asked
@@ -267,6 +267,12 @@ def _failures(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def _write(done: Measured, _: Tick) -> None:
+    if done.outputs.live:
+        # It imports what writes GLSL ES, which rows alone do not need.
+        from ...measures.live.kept import write_live
+
+        placed = (case for step in done.steps for case in pictures.placed(step.case.cases, done.rows))
+        write_live((case.codec for case in placed), done.outputs.live)
     if not done.outputs.images or not done.steps or not (device := done.steps[0].case.device):
         return
     drawing = measure.Pictures(device)

@@ -14,6 +14,7 @@ from ...ground.options.option import (
     Count,
     Encodings,
     Images,
+    Live,
     Names,
     Option,
     Reading,
@@ -65,12 +66,7 @@ class QualityOutputs:
     maps: Annotated[
         Path | None, Option("--maps", "Write the angle in each direction, an array for each codec, into this folder.")
     ] = None
-    live: Annotated[
-        Path | None,
-        Option(
-            "--live", "Write the GLSL ES of each codec, which a page runs in the reader's browser, into this folder."
-        ),
-    ] = None
+    live: Live = None
 
 
 def _supremum_column(name: str, says: str, role: Role = Role.FIGURE, unit: str = "", drops: int = 0) -> Column:
