@@ -186,6 +186,8 @@ def test_one_action_leads_from_the_answer_to_the_card(browser, codecs_page):
     assert page.page.locator("#card-h").is_visible() and page.page.evaluate("state.at") == "cards"
     page.page.locator("nav [data-to=choose]").click()
     page.page.wait_for_selector("[data-card]:empty", state="attached")
+    page.page.emulate_media(media="print")
+    assert not page.page.locator("#cards").is_visible(), "paper has no empty card"
     page.context.close()
 
 
@@ -207,6 +209,8 @@ def test_a_folded_section_is_opened_and_landed_on(browser, codecs_page):
     plot = page.locator("#angles .plot").first
     drawn = plot.locator("svg").get_attribute("viewBox").split()[2]
     assert float(drawn) == pytest.approx(plot.bounding_box()["width"], abs=1.5), "drawn at the size that it is seen in"
+    page.emulate_media(media="print")
+    assert page.locator("#quality-h").is_visible() and not page.locator("#quality table").first.is_visible()
     context.close()
 
 
