@@ -22,7 +22,7 @@ const Bump FACE[BUMPS] = Bump[](
     Bump(vec3(0.0, 0.4472, -0.8944), 3.0, 0.2));      // the back
 const vec3 AXES = vec3(0.7, 0.92, 0.74), MIDDLE = vec3(0.0, 1.2, 0.0);
 const float SMOOTH = 0.22, REACH = 2.2;
-const int STEPS = 28;
+const int STEPS = 22;
 
 // How far a place is from the head's surface, nearly, and the gradient of that.
 vec4 head(vec3 p) {
