@@ -21,7 +21,8 @@ def random_states(opened) -> list[dict]:
         asked = {
             key: str(rng.integers(9)) if rng.random() < 0.3 else "" for key in ("most", "readers", "worth", "enough")
         }
-        yes = {key: ("", "yes", "no")[rng.integers(3)] for key in ("holes", "lengths")}
+        yes = {key: ("", "yes", "no")[rng.integers(3)] for key in ("holes", "lengths", "tables")}
+        yes |= {"uses": ("", "none", "filter,blend")[rng.integers(3)], "gpu": ("", "navi31")[rng.integers(2)]}
         about = {"view": views[rng.integers(len(views))], "for": words[rng.integers(len(words))], **asked, **yes}
         made.append({**about, "a": a, "b": b, "at": "", "live": "", "others": others})
     return made

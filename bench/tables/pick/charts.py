@@ -10,7 +10,7 @@ from ..table import Row
 from .answer import groups, mean, why_unfit
 from .sentences import called, question
 
-HEIGHT = 400
+HEIGHT = 300
 # What the title of a chart finds; the page's script fills it in for a reader's own constraints.
 FOUND = "{where}: no other code beats {front} of {all} in both slots and mean error"
 

@@ -34,13 +34,15 @@ class See {
 
   // A stands to the left, and B or the exact normals to the right, where the laboratory has them.
   sidesOf({ a, b }) {
-    const has = (name) => live.byLabel.has(name);
+    const has = (name) => live.data.codecs.some(({ label }) => label === name);
     if (!has(a)) return { left: EXACT, right: (live.byLabel.get("octahedral rgba8") ?? live.data.codecs[0])?.label ?? EXACT };
     return { left: a, right: has(b) ? b : EXACT };
   }
 
   take(state) {
-    for (const [side, name] of Object.entries(this.sidesOf(state))) this.control[side].value = name;
+    const sides = this.sidesOf(state), lacks = CODECS.filter((side) => state[side] && !Object.values(sides).includes(state[side]));
+    for (const [side, name] of Object.entries(sides)) this.control[side].value = name;
+    this.root.querySelector("[data-live=said]").textContent = lacks.map((side) => `${side.toUpperCase()}, ${state[side]}, is not in this laboratory.`).join(" ");
     this.change();
   }
 
