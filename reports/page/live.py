@@ -95,7 +95,7 @@ def _shader(path: Path) -> str:
 
 def script() -> str:
     """The laboratory's scripts as one. No text of theirs has several lines."""
-    return "\n".join(_bare((FOLDER / name).read_text(encoding="utf-8")) for name in SCRIPTS)
+    return _bare("\n".join((FOLDER / name).read_text(encoding="utf-8") for name in SCRIPTS))
 
 
 def _bare(text: str) -> str:
