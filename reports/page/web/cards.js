@@ -336,11 +336,9 @@ if (cardsRoot) {
 
 // From the answer to everything about A, in one step.
 const everything = document.querySelector("[data-everything]");
-if (everything && cardsRoot) {
-  const link = element("button", { type: "button", onclick: () => change({ view: cardsRoot.closest(".view").dataset.view, at: "cards" }) });
-  everything.append(link);
+if (everything) {
   shows.push(({ a }) => {
     everything.hidden = !a;
-    link.textContent = `Everything about A, ${a}`;
+    everything.textContent = `Everything about A, ${a}`;
   });
 }
