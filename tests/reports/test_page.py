@@ -266,6 +266,24 @@ def test_the_first_screen_is_painted_soon(browser, report):
     page.context.close()
 
 
+SHIFTS = """window.shifts = [];
+const own = (list) => list.getEntries().filter((one) => !one.hadRecentInput);
+new PerformanceObserver((list) => shifts.push(...own(list).map((one) => one.value)))
+  .observe({ type: "layout-shift", buffered: true });"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("size", [(1440, 900), (390, 844)], ids=str)
+def test_nothing_moves_while_a_view_fills(browser, report, size):
+    """https://web.dev/articles/cls: below 0.1 is good; here half of that."""
+    for view in ("compare", "see", "codecs", "data"):
+        page = Opened(browser, report, size=size, fragment=f"#v1/{view}", before=SHIFTS)
+        page.page.wait_for_timeout(1000)
+        moved = page.page.evaluate("shifts.reduce((sum, one) => sum + one, 0)")
+        page.context.close()
+        assert moved < 0.05, f"{view} at {size}: {moved:.3f}"
+
+
 @pytest.mark.slow
 def test_the_theme_is_the_systems_until_the_button_says_another(opened):
     def paper() -> float:
