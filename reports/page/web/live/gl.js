@@ -99,10 +99,18 @@ class LiveDevice {
     return [key, this.programs.get(key)];
   }
 
-  // Compiles programs, each given as `program` takes it, while the page goes on. `program` says whether it could.
+  // Compiles programs, each given as `program` takes it, while the page goes on. `program` says whether it could. A browser that
+  // compiles in the page's own time is asked for one at a time.
   async compiled(...wanted) {
-    const begun = wanted.map((one) => this.begun(...one)[1]);
-    const isOpen = ({ program, shaders }) => shaders && !this.isLost && !this.gl.getProgramParameter(program, this.parallel.COMPLETION_STATUS_KHR);
+    const status = this.parallel?.COMPLETION_STATUS_KHR ?? this.gl.LINK_STATUS, begun = [];
+    const isOpen = ({ program, shaders }) => shaders && !this.isLost && !this.gl.getProgramParameter(program, status);
+    for (const one of wanted) {
+      const [, made] = this.begun(...one);
+      begun.push(made);
+      if (this.parallel || !made.shaders) continue;
+      isOpen(made);
+      await paused();
+    }
     if (this.parallel) while (begun.some(isOpen)) await paused(4);
   }
 
@@ -283,10 +291,11 @@ class LiveDevice {
   }
 
   // Bits of the mantissa that a precision really keeps: the least power of two that, added to 1, is lost.
-  mantissa(precision) {
-    const target = this.target(this.gl.RGBA32UI, 1, 1);
-    this.draw(this.program(null, [`mantissa_${precision}.frag`]), target, { one: 1 });
-    const [bits] = this.words(target);
+  async mantissa(precision) {
+    const wanted = [null, [`mantissa_${precision}.frag`]], target = this.target(this.gl.RGBA32UI, 1, 1);
+    await this.compiled(wanted);
+    this.draw(this.program(...wanted), target, { one: 1 });
+    const [bits] = await wordsLater(this, target);
     this.release(target);
     return bits;
   }

@@ -13,6 +13,7 @@ class OwnEncoder {
     this.options = ["left", "right"].map((side) => see.control[side].appendChild(element("option", { disabled: "" }, OWN)));
     // Sides that show it as soon as it runs.
     this.wanted = [];
+    this.comparing = 0;
     see.failed = (error) => this.refuse(error.message);
     see.followers.push(() => this.compare());
     const storages = new Map(live.data.storages.map(({ storage, title }) => [storage, title]));
@@ -181,7 +182,7 @@ class OwnEncoder {
   }
 
   get isBusy() {
-    return Boolean(this.turn || this.waiting);
+    return Boolean(this.turn || this.waiting || this.comparing);
   }
 
   // It may be chosen, and is where an address wants it.
@@ -242,7 +243,8 @@ class OwnEncoder {
     if (this.compared?.key === key && this.compared.trips === trips) return;
     this.compared = { key, trips };
     if (!live.see?.first || this.device.isLost) return (this.compared = null);
-    const others = await Promise.all(sides.map(async (one) => [one, await knownTrips(this.device, one, domain)]));
+    this.comparing++;
+    const others = await Promise.all(sides.map(async (one) => [one, await knownTrips(this.device, one, domain)])).finally(() => this.comparing--);
     if (this.compared?.key !== key || this.compared.trips !== trips) return;
     const rows = [...(trips && codec ? [[codec, trips]] : []), ...others];
     this.field.figures.replaceChildren(...rows.map(([one, found]) => {

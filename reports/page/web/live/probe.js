@@ -35,7 +35,7 @@ class Probe {
         Object.assign(found, await this.ofFormat(format));
         check();
       }
-      for (const precision of ["highp", "mediump"]) Object.assign(found, this.ofPrecision(precision));
+      for (const precision of ["highp", "mediump"]) Object.assign(found, await this.ofPrecision(precision));
       return { ...found, NaN: this.ofNaN(), "subnormal halves": this.ofSubnormals() };
     } finally {
       this.release();
@@ -160,9 +160,9 @@ class Probe {
     return isWhole ? { framebuffer, width, height: 1 } : null;
   }
 
-  ofPrecision(precision) {
+  async ofPrecision(precision) {
     const { gl } = this, asked = { highp: gl.HIGH_FLOAT, mediump: gl.MEDIUM_FLOAT }[precision];
-    const bits = this.device.mantissa(precision);
+    const bits = await this.device.mantissa(precision);
     const promised = gl.getShaderPrecisionFormat(gl.FRAGMENT_SHADER, asked)?.precision ?? 0;
     return { [`${precision} mantissa bits`]: bits, [`${precision} mantissa bits, as the driver says`]: promised };
   }

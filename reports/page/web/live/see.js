@@ -111,8 +111,8 @@ class See {
   }
 
   // What half precision is on this device.
-  half() {
-    const [half, full] = ["mediump", "highp"].map((precision) => this.device.mantissa(precision)), isThere = half < full;
+  async half() {
+    const [half, full] = [await this.device.mantissa("mediump"), await this.device.mantissa("highp")], isThere = half < full;
     this.control.half.disabled = !isThere;
     if (!isThere) this.control.half.checked = false;
     this.out.half.textContent = isThere
@@ -416,5 +416,5 @@ live.parts.push(async (root) => {
   live.see = new See(root);
   // The first picture is there before anything else is begun.
   while (!live.see.first && live.see.size && !live.device.isLost) await paused(4);
-  live.see.half();
+  await live.see.half();
 });
