@@ -22,6 +22,8 @@ from ..tables.shared_columns import ENCODING
 
 # What a command may be given of a codec, by the column of a row.
 OPTIONS = ("encoding", "storage", "rounding")
+# What an encoding is made for, by its domain.
+DOMAINS = {"sphere": "all directions", "hemisphere": "normals with z >= 0", "view": "normals that face the viewer"}
 COMMENT = re.compile(r"\s*// (.*)")
 # The body of a GLSL function, up to the brace that begins a line.
 BODY = r"\b{name}\([^)]*\)\s*\{{\n(.*?)^\}}"
@@ -72,7 +74,7 @@ def _encoding_record(encoding: Encoding) -> dict[str, Any]:
     made = {
         "title": encoding.title,
         "says": _first_sentence(module),
-        "domain": encoding.domain,
+        "domain": DOMAINS.get(encoding.domain, encoding.domain),
         "components": encoding.components,
         "sign": encoding.sign_bits,
         "source": encoding.citation,

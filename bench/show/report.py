@@ -5,10 +5,9 @@ from __future__ import annotations
 import json
 import pickle
 import shlex
-import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import nullcontext, suppress
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
@@ -119,26 +118,44 @@ def write_report(
     """
     check_writable(target)
     pictures = f"{target.stem}-{PICTURES}" if pictures_beside else ""
-    with nullcontext("") if charts else tempfile.TemporaryDirectory(prefix="normalbench-") as other:
-        beside = target.parent / charts if charts else Path(other)
-        for one in (beside, target.parent / pictures):
+    beside = target.parent / charts if charts else None
+    for one in (beside, target.parent / pictures):
+        if one:
             check_folder(one)
-        run = gathered(folder, done)
-        # Pictures are packed while charts are drawn; either takes a core for seconds.
-        with ThreadPoolExecutor(1) as pool:
-            is_answered = any(section.about.leads and section.rows for section in run.sections)
-            budget = embedded.BUDGET_OF_A_RUN if is_answered else embedded.BUDGET
-            packing = pool.submit(embedded.gallery, run.subjects, pictures, budget)
-            specs, failed = _drawn(run, beside, drawn)
-            gallery = packing.result()
-    if gallery.damaged:
-        failed.append(f"These pictures cannot be read: {'; '.join(gallery.damaged)}.")
+    run, gallery, specs = drawn_page(gathered(folder, done), beside, pictures, drawn)
     _write_beside(target.parent / pictures, gallery.files)
     with whole_file(target) as partial:
         files = {path.name for path in folder.iterdir()} if target.parent.resolve() == folder.resolve() else set()
-        made = page.html(run.with_remarks(failed), gallery, specs, wire.library() if specs else "", files)
-        partial.write_text(made, encoding="utf-8")
+        partial.write_text(page.html(run, gallery, specs, library_of(specs), files), encoding="utf-8")
     return target
+
+
+def drawn_page(
+    run: Found, charts: Path | None = None, pictures: str = "", drawn: Mapping[str, str] = NOTHING
+) -> tuple[Found, embedded.Gallery, dict[str, wire.Spec]]:
+    """A run with what could not be drawn, its pictures, and its charts by name.
+
+    Args:
+        run: as it was gathered.
+        charts: the folder that files of its charts are written into; None for no files.
+        pictures: the folder of pictures, from that of the page; empty for those in the page.
+        drawn: charts that are there already, as `draw_ahead` gives them.
+    """
+    # Pictures are packed while charts are drawn; either takes a core for seconds.
+    with ThreadPoolExecutor(1) as pool:
+        is_answered = any(section.about.leads and section.rows for section in run.sections)
+        budget = embedded.BUDGET_OF_A_RUN if is_answered else embedded.BUDGET
+        packing = pool.submit(embedded.gallery, run.subjects, pictures, budget)
+        specs, failed = _drawn(run, charts, drawn)
+        gallery = packing.result()
+    if gallery.damaged:
+        failed.append(f"These pictures cannot be read: {'; '.join(gallery.damaged)}.")
+    return run.with_remarks(failed), gallery, specs
+
+
+def library_of(specs: Mapping[str, wire.Spec]) -> str:
+    """The script that draws charts; empty where there are none."""
+    return wire.library() if specs else ""
 
 
 def _write_beside(folder: Path, files: Mapping[str, str]) -> None:
@@ -171,12 +188,13 @@ def _what_it_shows(drawing: drawings.Drawing) -> str:
     return cache.key_of(pickle.dumps(drawing.draw))
 
 
-def _drawn(run: Found, folder: Path, drawn: Mapping[str, str]) -> tuple[dict[str, wire.Spec], list[str]]:
-    """Writes every chart as files. Gives those of the page by name, and a sentence for each that cannot be drawn."""
+def _drawn(run: Found, folder: Path | None, drawn: Mapping[str, str]) -> tuple[dict[str, wire.Spec], list[str]]:
+    """Writes every chart as files, if there is a folder for them. Gives those of the page by name, and a sentence for
+    each that cannot be drawn."""
     specs, failed = {}, []
     for drawing in page.drawings(run):
         try:
-            if not (drawing.name in drawn and drawn[drawing.name] == _what_it_shows(drawing)):
+            if folder and not (drawing.name in drawn and drawn[drawing.name] == _what_it_shows(drawing)):
                 _write_chart(drawing, folder)
             if drawing.spec:
                 made = drawing.spec()

@@ -31,14 +31,25 @@ def block(found: Found, names: Sequence[str]) -> str:
     about = found.extras.get("cards")
     if not about or not names:
         return ""
-    sections = [section for section in found.sections if section.rows and section.key in about["takes"]]
-    first = _first_rows(sections, about["codecs"])
-    codecs = {name: first.get(name, {}) | about["codecs"].get(name, {}) for name in names}
+    sections = sections_of(found)
+    codecs = codecs_of(found, names)
     shown = set(map(of_encoding, names))
     encodings = {name: one for name, one in about["encodings"].items() if name in shown}
     tables = [_table(section, about["takes"][section.key]) for section in sections]
     made = {"codecs": codecs, "encodings": encodings, "tables": tables, "code": _code(found, names)}
     return packed(json.dumps(made, allow_nan=False, separators=(",", ":")))
+
+
+def sections_of(found: Found) -> list[TableSection]:
+    """The sections whose rows are of codecs of normals."""
+    return [section for section in found.sections if section.rows and section.key in found.extras["cards"]["takes"]]
+
+
+def codecs_of(found: Found, names: Sequence[str]) -> dict[str, dict[str, Any]]:
+    """What is known of each codec: its storage, and the figures that codecs are compared by."""
+    known = found.extras["cards"]["codecs"]
+    first = _first_rows(sections_of(found), known)
+    return {name: first.get(name, {}) | known.get(name, {}) for name in names}
 
 
 def of_encoding(codec: str) -> str:
@@ -51,14 +62,15 @@ def _table(section: TableSection, takes: Sequence[str]) -> dict[str, Any]:
     the whole texel decides, and why figures are missing."""
     columns = [section.column(name) for name in whole(section.rows)[0]]
     keys = [column.name for column in columns if column.role is Role.KEY and column.name not in OWN]
-    figures = sorted(filter(_is_figure, columns), key=lambda column: column.drops > 0)
+    figures = sorted(filter(is_figure, columns), key=lambda column: column.drops > 0)
     found = {"key": section.key, "title": section.about.title, "view": section.about.view, "takes": list(takes)}
     found |= {"keys": keys, "figures": [column.name for column in figures]}
     found |= {"texel": [column.name for column in figures if section.about.of_texels or column.name in OF_TEXELS]}
     return found | {"reasons": [column.name for column in columns if column.role is Role.REASON]}
 
 
-def _is_figure(column: Column) -> bool:
+def is_figure(column: Column) -> bool:
+    """Whether codecs are compared by it."""
     return bool(column.better) and column.shown and column.role is Role.FIGURE
 
 

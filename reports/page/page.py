@@ -83,15 +83,21 @@ class Table:
 
 def table(title: str, rows: Sequence[Row], says: Callable[[str], str]) -> Table:
     """Rows as a table to show; columns that say the same in each row are said once."""
-    return _table(Sheet(title, rows), lambda name: Column(name, says(name)), ())
+    return sheet_table(Sheet(title, rows), lambda name: Column(name, says(name)))
 
 
 def shown_sheet(sheet: Sheet) -> Table:
     """A sheet whose columns need no definition."""
-    return _table(sheet, undefined, ())
+    return sheet_table(sheet, undefined)
 
 
-def _table(sheet: Sheet, column: Callable[[str], Column], encodings: Container[str]) -> Table:
+def sheet_table(sheet: Sheet, column: Callable[[str], Column], encodings: Container[str] = ()) -> Table:
+    """A sheet as a table to show.
+
+    Args:
+        column: what is known of a column, by its name.
+        encodings: names; rows of these say which codec they are of.
+    """
     rows = whole(sheet.rows)
     shown, constants = tables.without_constants(rows)
     heads = [Heading(column(name), tables.title_of(name), tables.is_numeric(shown, name)) for name in shown[0]]
@@ -183,6 +189,16 @@ class Shown:
     parts: Sequence[tuple[str, str]]
 
 
+@dataclass(frozen=True)
+class Home:
+    """What the page says where it is the first page of a site: what a search shows of it, and links to the others, each
+    a path and a title."""
+
+    title: str
+    description: str
+    links: Sequence[tuple[str, str]]
+
+
 def views(found: Found, has_codecs: bool, has_pictures: bool) -> list[Shown]:
     """What a reader may look at, in the order of the page."""
     parts: dict[View, list[tuple[str, str]]] = {view: [] for view in View}
@@ -197,15 +213,16 @@ def views(found: Found, has_codecs: bool, has_pictures: bool) -> list[Shown]:
     return [Shown(view, TITLES[view], mine) for view, mine in parts.items() if mine]
 
 
-def beginning(parts: Sequence[Part], names: Sequence[str]) -> dict[str, Any]:
+def beginning(parts: Sequence[Part], names: Sequence[str], is_laboratory: bool = False) -> dict[str, Any]:
     """What the script begins with: every codec; which are A and B until a reader says, the answer and what stands next
-    to it; and the view of what was measured first, an answer before all."""
+    to it; and the view: the laboratory if the page is one, else that of what was measured first, answers before all."""
     measured = sorted((part for part in parts if part.is_there), key=lambda part: not part.section.about.leads)
     leading = [part for part in measured if part.section.about.leads]
     answers = (table for part in leading for table in part.tables if table.said)
     shown = dict.fromkeys(line.codec for table in list(answers)[:1] for line in table.rows if line.codec in {*names})
     first, second = [*shown, "", ""][:2]
-    view = measured[0].section.about.view if measured else View.DATA
+    of_rows = measured[0].section.about.view if measured else View.DATA
+    view = View.SEE if is_laboratory else of_rows
     return {"codecs": list(names), "a": first, "b": second, "view": view}
 
 
@@ -245,6 +262,7 @@ def html(
     specs: Mapping[str, Spec],
     library_script: str,
     files: Container[str] = (),
+    home: Home | None = None,
 ) -> str:
     """The page.
 
@@ -254,13 +272,19 @@ def html(
         specs: its charts, by the names of their drawings; one that is missing is not shown.
         library_script: what draws them.
         files: names of those that lie beside the page.
+        home: what it says as the first page of a site, where it begins with the laboratory; None for a page alone.
     """
     laboratory = live.script() if found.live else ""
-    parts = [_part(found, section, specs) for section in found.sections]
+    parts = [part_of(found, section, specs) for section in found.sections]
     names, leading = codecs(found, specs), [part for part in parts if part.section.about.leads and part.is_there]
-    maps, begins, choices = found.extras.get("maps", ()), beginning(parts, names), found.extras.get("choices")
+    maps, begins, choices = (
+        found.extras.get("maps", ()),
+        beginning(parts, names, bool(home and found.live)),
+        found.extras.get("choices"),
+    )
     return template("page.html.j2").render(
         found=found,
+        home=home,
         remarks=remarks(found),
         most_remarks=MOST_REMARKS,
         views=views(found, bool(names), bool(gallery.subjects)),
@@ -326,8 +350,9 @@ def sources_of(scripts: Sequence[str], is_beside: bool = False) -> str:
     return " ".join([*(f"'sha256-{digest}'" for digest in digests), *(["'self'", "file:"] if is_beside else [])])
 
 
-def _part(found: Found, section: TableSection, specs: Mapping[str, Spec]) -> Part:
+def part_of(found: Found, section: TableSection, specs: Mapping[str, Spec]) -> Part:
+    """A section as the template shows it, with those of its charts that are there."""
     encodings = found.encodings
-    shown = [_table(sheet, section.column, encodings) for sheet in section.sheets]
+    shown = [sheet_table(sheet, section.column, encodings) for sheet in section.sheets]
     charts = [Chart(drawing, specs[drawing.name]) for drawing in section.drawings if drawing.name in specs]
     return Part(section, charts, shown, section.measured())

@@ -1,15 +1,62 @@
-"""A site of devices: an index that is searched, and a page for each. Nothing here knows how a device is measured."""
+"""The pages of a site besides the laboratory: lists that are searched, devices, encodings, and what a run says without
+scripts. Nothing here knows how anything is measured."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import posixpath
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from .. import tables
 from ..sheets import undefined
-from .page import Cell, Heading, Line, Table, base, template
+from .page import Cell, Heading, Line, Part, Table, base, template
 
 SCRIPTS = ("tables.js", "site.js")
+LONGEST = 60
+
+
+@dataclass(frozen=True)
+class Site:
+    """What its pages lead to.
+
+    Attributes:
+        pages: titles by path; every page leads to these.
+        devices: the path of the list of devices.
+        laboratory: the path of the page that measures a device; empty where the site has none.
+    """
+
+    pages: Mapping[str, str]
+    devices: str
+    laboratory: str = ""
+
+    def leads(self, path: str) -> dict[str, Any]:
+        """What base pages need to lead from a path to the others."""
+        links = [(linked(to, path), title, to == path) for to, title in self.pages.items()]
+        about = {"links": links if len(links) > 1 else [link for link in links if not link[2]]}
+        return about | {"laboratory": linked(self.laboratory, path) if self.laboratory else ""}
+
+
+def linked(to: str, path: str) -> str:
+    """A path of the site, as a page of it links to it."""
+    file, mark, fragment = to.partition("#")
+    return posixpath.relpath(file, posixpath.dirname(path) or ".") + mark + fragment
+
+
+def paths(names: Iterable[str], folder: str, other: str) -> Iterator[str]:
+    """For each name a file of its own in a folder, of letters that every file system has; next to an index.
+
+    Args:
+        other: what one is called whose name has no such letters.
+    """
+    taken = {"index"}
+    for name in names:
+        plain = re.sub(r"[^a-z0-9_]+", "-", name.lower()).strip("-")[:LONGEST] or other
+        numbered = (plain, *(f"{plain}-{number}" for number in range(2, len(taken) + 2)))
+        path = next(one for one in numbered if one not in taken)
+        taken.add(path)
+        yield f"{folder}/{path}.html"
 
 
 @dataclass(frozen=True)
@@ -61,16 +108,67 @@ def words_table(title: str, rows: Sequence[Mapping[str, str | None]]) -> Table:
     return Table(title, heads, lines, "")
 
 
-def index_html(said: Sequence[str], searched: Sequence[Searched]) -> str:
-    """The index.
+@dataclass(frozen=True)
+class Index:
+    """A list that is searched.
 
-    Args:
-        said: what all devices together show, in sentences.
+    Attributes:
+        path: of the page, from the site's folder.
+        title: what the page is of.
+        description: what a search shows of it.
+        question: its heading.
+        said: what all rows together show, in sentences.
+        label: of the field to search by.
         searched: its tables.
+        measures: whether it says how a reader's device is measured and added.
     """
-    return template("site.html.j2").render(said=said, searched=searched, **base(SCRIPTS))
+
+    path: str
+    title: str
+    description: str
+    question: str
+    said: Sequence[str]
+    label: str
+    searched: Sequence[Searched]
+    measures: bool = False
 
 
-def device_html(device: DevicePage) -> str:
+@dataclass(frozen=True)
+class ViewPage:
+    """What a view of the run's page says, without scripts.
+
+    Attributes:
+        path: of the page, from the site's folder.
+        title: what the page is of.
+        description: what a search shows of it.
+        question: its heading.
+        view: the path of the view in the run's page, and what a reader does there.
+        parts: its sections.
+    """
+
+    path: str
+    title: str
+    description: str
+    question: str
+    view: tuple[str, str]
+    parts: Sequence[Part]
+
+
+def index_html(index: Index, site: Site) -> str:
+    """A list that is searched."""
+    return template("site.html.j2").render(index=index, **_around(index.path, site))
+
+
+def device_html(device: DevicePage, site: Site) -> str:
     """A device's page."""
-    return template("device.html.j2").render(device=device, **base(SCRIPTS))
+    return template("device.html.j2").render(device=device, **_around(device.path, site))
+
+
+def view_html(shown: ViewPage, site: Site) -> str:
+    """What a view says."""
+    view = linked(shown.view[0], shown.path)
+    return template("view.html.j2").render(shown=shown, view=view, choices=None, **_around(shown.path, site))
+
+
+def _around(path: str, site: Site) -> dict[str, Any]:
+    return base(SCRIPTS) | site.leads(path)

@@ -30,7 +30,7 @@ from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.shaders.isa import null_device
 from normalbench.bench.show.import_command import import_command
 from normalbench.bench.show.report import write_report
-from normalbench.bench.tables.devices.site.command import site_command
+from normalbench.bench.show.site_command import site_command
 from normalbench.bench.tables.table import Step
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
@@ -85,7 +85,7 @@ def report(folder: Path) -> None:
 
 
 def site(folder: Path) -> None:
-    site_command(folder / "devices", folder / "site")
+    site_command([folder / "devices"], folder / "site")
 
 
 def another_site(folder: Path) -> None:

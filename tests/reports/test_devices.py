@@ -6,7 +6,7 @@ from browsing import AXE, DESKTOP, PHONE, Opened
 from slowly import all_but
 from test_report import a_run, quality_row
 
-from normalbench.bench.tables.devices.site.command import site_command
+from normalbench.bench.show.site_command import site_command
 
 MARKUP = "<script>document.title = 'taken'</script>\"'><img src=x onerror=document.title='taken'>"
 
@@ -15,7 +15,7 @@ MARKUP = "<script>document.title = 'taken'</script>\"'><img src=x onerror=docume
 def site(tmp_path_factory):
     folder = tmp_path_factory.mktemp("site")
     made.write_ten(folder / "files")
-    assert site_command(folder / "files", folder / "site") == 0
+    assert site_command([folder / "files"], folder / "site") == 0
     return folder / "site"
 
 

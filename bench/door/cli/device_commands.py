@@ -1,4 +1,4 @@
-"""The commands of device files: into a run, and as a site."""
+"""The commands of readers' devices: into a run, and as a site."""
 
 from __future__ import annotations
 
@@ -14,7 +14,12 @@ Files = Annotated[
     list[Path], typer.Argument(help='Device files, which a page saves by "Save this device".', metavar="FILE...")
 ]
 RunFolder = Annotated[Path | None, typer.Option("-o", "--output", help="The run's folder.", metavar="RUN")]
-Folder = Annotated[Path, typer.Argument(help="A folder of device files; those in its folders count too.")]
+Folders = Annotated[
+    list[Path],
+    typer.Argument(
+        help="A run's folder, folders of device files, or both; folders in these count.", metavar="FOLDER..."
+    ),
+]
 SiteFolder = Annotated[Path, typer.Option("-o", "--output", help="The folder of the site.")]
 
 
@@ -34,9 +39,11 @@ def import_command(files: Files, output: RunFolder = None) -> int:
     return add(files, output)
 
 
-def site_command(folder: Folder, output: SiteFolder = Path("site")) -> int:
-    """A static site of readers' devices: an index to search, and a page for each with the codec to take on it."""
-    from ...tables.devices.site.command import site_command as make
+def site_command(folders: Folders, output: SiteFolder = Path("site")) -> int:
+    """A static site of a run: the laboratory, the answer, and a page for each encoding. Of readers' devices: a list to
+    search, and a page for each with the codec to take on it.
+    """
+    from ...show.site_command import site_command as make
 
     check_is_folder(output, "site writes into")
-    return make(folder, output)
+    return make(folders, output)

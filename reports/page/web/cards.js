@@ -159,7 +159,7 @@ class Cards {
       fact("encode", ...formula(about.encode));
       fact("decode", ...formula(about.decode));
       fact("source", about.source);
-      fact("made for", { sphere: "all directions", hemisphere: "normals with z >= 0", view: "normals that face the viewer" }[about.domain]);
+      fact("made for", about.domain);
       fact("used by", usersOf(about.used, rest[0]));
     } else fact("what", `An encoding of your own, ${encoding}: its formulas are in its file.`);
     const more = about?.sign ? " The sign takes one bit elsewhere." : "", table = about?.tables ? " It comes with look-up tables." : "";

@@ -18,7 +18,7 @@ MODULES = {
     "ground/output/writing.py": "table",
     "keep/journal.py": "import",
     "shaders/isa/null_device.py": "library",
-    "tables/devices/site/files.py": "site",
+    "show/site_files.py": "site",
 }
 
 

@@ -10,10 +10,10 @@ from pathlib import Path
 import devices as made
 import pytest
 
+from normalbench.bench.show.site_files import MARKER
 from normalbench.bench.tables.devices.device_file import read_device_file
 from normalbench.bench.tables.devices.reading import codec_rows, devices
 from normalbench.bench.tables.devices.site.answers import Known, answers
-from normalbench.bench.tables.devices.site.files import MARKER
 
 MOST_SECONDS = 10
 MARKUP = "<script>alert(1)</script>\"'><img src=x onerror=alert(2)>"
@@ -38,11 +38,11 @@ class Read(HTMLParser):
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
     """The site of the ten altered devices."""
-    from normalbench.bench.tables.devices.site.command import site_command
+    from normalbench.bench.show.site_command import site_command
 
     folder = tmp_path_factory.mktemp("site")
     made.write_ten(folder / "files" / "deeper")
-    assert site_command(folder / "files", folder / "site") == 0
+    assert site_command([folder / "files"], folder / "site") == 0
     return folder / "site"
 
 

@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from .....reports.page.page import Table, table
-from .....reports.page.site import Answer, DevicePage, Searched, device_html, index_html, words_table
+from .....reports.page.site import (
+    Answer,
+    DevicePage,
+    Index,
+    Searched,
+    Site,
+    device_html,
+    index_html,
+    linked,
+    paths,
+    words_table,
+)
 from ...table import Row, Sheet
 from ..agreement import (
     codec_name,
@@ -26,7 +36,8 @@ from ..table import TABLE
 from .answers import Known, answers
 
 INDEX, FOLDER = "index.html", "devices"
-LONGEST = 60
+# A site of nothing but devices.
+ALONE = Site({INDEX: "All devices"}, INDEX)
 # What a device's page leaves to its heading and its facts.
 OF_DEVICE = ("device", "browser", "row_of", "made", "program", "sources", "renderer", "vendor")
 # The columns of the index that no table has.
@@ -60,26 +71,15 @@ class Entry:
         return " ".join(dict.fromkeys([*known, self.device.file.renderer, self.device.file.vendor]))
 
 
-def pages(devices: Sequence[Device]) -> dict[str, str]:
-    """The pages by their paths in the site's folder."""
-    rows, paths = [codec_rows(one) for one in devices], _paths(one.called for one in devices)
+def pages(devices: Sequence[Device], site: Site = ALONE) -> dict[str, str]:
+    """The pages of devices by their paths in the site's folder."""
+    rows, files = [codec_rows(one) for one in devices], paths((one.called for one in devices), FOLDER, "device")
     known = Known(rows)
     entries = [
-        Entry(one, path, own, list(answers(own, known))) for one, path, own in zip(devices, paths, rows, strict=True)
+        Entry(one, path, own, list(answers(own, known))) for one, path, own in zip(devices, files, rows, strict=True)
     ]
-    made = {entry.path: device_html(_device_page(entry)) for entry in entries}
-    return made | {INDEX: _index_page(entries)}
-
-
-def _paths(names: Iterable[str]) -> Iterator[str]:
-    """For each name a file of its own, of letters that every file system has."""
-    taken: set[str] = set()
-    for name in names:
-        plain = re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")[:LONGEST] or "device"
-        numbered = (plain, *(f"{plain}-{number}" for number in range(2, len(taken) + 2)))
-        path = next(one for one in numbered if one not in taken)
-        taken.add(path)
-        yield f"{FOLDER}/{path}.html"
+    made = {entry.path: device_html(_device_page(entry), site) for entry in entries}
+    return made | {site.devices: index_html(_index(entries, site), site)}
 
 
 def _device_page(entry: Entry) -> DevicePage:
@@ -115,19 +115,28 @@ def _shown_table(title: str, rows: Sequence[Row]) -> Table:
     return table(title, [{name: row[name] for name in order} for row in rows], says)
 
 
-def _index_page(entries: Sequence[Entry]) -> str:
+def _index(entries: Sequence[Entry], site: Site) -> Index:
     rows = [row for entry in entries for row in entry.rows]
-    return index_html(sentences(rows), [_device_list(entries), _codec_list(rows), _taken_list(entries)])
+    return Index(
+        path=site.devices,
+        title="readers' devices",
+        description="Which GPUs and browsers store the codes of normals as the run does, and the code to take on each.",
+        question="Which devices store the same codes?",
+        said=sentences(rows) if rows else ("No device has been added yet.",),
+        label="Search by device, codec or storage",
+        searched=[_device_list(entries, site), _codec_list(rows), _taken_list(entries, site)] if entries else [],
+        measures=bool(site.laboratory),
+    )
 
 
 def _table(title: str, rows: Sequence[Row]) -> Table:
     return table(title, rows, lambda name: INDEXED.get(name, ""))
 
 
-def _device_list(entries: Sequence[Entry]) -> Searched:
+def _device_list(entries: Sequence[Entry], site: Site) -> Searched:
     rows = [{"device": e.device.called} | _row_without(overview(e.rows)[0], ("device", "browser")) for e in entries]
     intro = "A row for each GPU and browser. Its name leads to its page."
-    words, links = [entry.words for entry in entries], [entry.path for entry in entries]
+    words, links = [entry.words for entry in entries], [linked(entry.path, site.devices) for entry in entries]
     return Searched("devices", "Devices", intro, _table("Agreement by device", rows), words, links)
 
 
@@ -150,12 +159,12 @@ def _codec_row(rows: Sequence[Row]) -> Row:
     return about | {"fastest_on": device_of(quick) if quick else None, "fastest_ms": time_of(quick) if quick else None}
 
 
-def _taken_list(entries: Sequence[Entry]) -> Searched:
+def _taken_list(entries: Sequence[Entry], site: Site) -> Searched:
     """The code to take on each device, with a column for each storage."""
     titles = dict.fromkeys(_column_name(sheet) for entry in entries for sheet in entry.answers)
     rows = [{"device": e.device.called} | {**dict.fromkeys(titles), **_codecs_taken_on(e)} for e in entries]
     intro = "The answer of pick for each storage, by the errors of the device."
-    words, links = [entry.words for entry in entries], [entry.path for entry in entries]
+    words, links = [entry.words for entry in entries], [linked(entry.path, site.devices) for entry in entries]
     shown = words_table("The code to take, by device and storage", rows)
     return Searched("take", "What to take", intro, shown, words, links)
 

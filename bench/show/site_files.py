@@ -13,14 +13,14 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
-from .....encodings.codecs.files import file_json
-from ....ground.output.errors import UsageError
-from ....ground.output.writing import check_folder, clear_away, partial_of, whole_file
+from ...encodings.codecs.files import file_json
+from ..ground.output.errors import UsageError
+from ..ground.output.writing import check_folder, clear_away, partial_of, whole_file
 
 MARKER = ".normalbench-site.json"
 # What a site's own files are called; a marker that lists others was not written by this program.
-OWN = re.compile(r"index\.html|devices/[a-z0-9-]+\.html")
-INDEX, DEVICES = "index.html", "devices"
+OWN = re.compile(r"(index|choose|layouts)\.html|(codecs|devices)/[a-z0-9_-]+\.html")
+INDEX, FOLDERS = "index.html", ("codecs", "devices")
 
 
 def write_site(folder: Path, made: Mapping[str, str]) -> None:
@@ -49,7 +49,7 @@ def _files_before(folder: Path) -> list[str]:
     if folder.exists() and not folder.is_dir():
         raise UsageError(f"{folder} is not a folder; site writes into one")
     # Behind a link lies somebody else's folder.
-    if any((folder / name).is_symlink() for name in (MARKER, INDEX, DEVICES)):
+    if any((folder / name).is_symlink() for name in (MARKER, INDEX, *FOLDERS)):
         raise UsageError(f"{folder} has a link in the place of a site's files; name another folder")
     if not (folder / MARKER).exists():
         return []

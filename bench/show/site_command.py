@@ -1,0 +1,125 @@
+"""What `site` does: a run and folders of device files become a static site."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+from ...reports.page import page
+from ...reports.page.codec_pages import INDEX as CODECS
+from ...reports.page.codec_pages import codec_pages
+from ...reports.page.found import Found
+from ...reports.page.site import Site, ViewPage, view_html
+from ...reports.sheets import View
+from ..ground.output.errors import UsageError, tell
+from ..ground.output.writing import say
+from ..keep.runs import RUN, read_to_show
+from ..tables.devices.agreement import many
+from ..tables.devices.device_file import Read, read_device_file
+from ..tables.devices.reading import SAVED, Device, checked_number, devices
+from ..tables.devices.site.pages import FOLDER, INDEX, pages
+from .report import drawn_page, gathered, library_of
+from .site_files import write_site
+
+CHOOSE, LAYOUTS = "choose.html", "layouts.html"
+TITLE = "Normals of a G-buffer in few bits"
+DESCRIPTION = (
+    "See on your own GPU what an encoding of normals does to reflections, and find the one that your bits need."
+)
+
+
+def site_command(folders: Sequence[Path], output: Path) -> int:
+    """Write the site of a run, of the device files in folders and their folders, or of both.
+
+    Returns:
+        the exit status: 1 where a file was left out because something is wrong with it.
+
+    Raises:
+        UsageError: several folders are runs, there is no device file, or the site cannot be written.
+    """
+    runs, others = [one for one in folders if _is_run(one)], [one for one in folders if not _is_run(one)]
+    if len(runs) > 1:
+        raise UsageError(f"{runs[0]} and {runs[1]} are both runs; a site is of one")
+    found, wrong = _devices_in(others)
+    made = _pages_of_run(runs[0], found) if runs else pages(found)
+    write_site(output, made)
+    say(f"{output / INDEX}: {_counted(made, found, bool(runs))}\n")
+    return int(wrong > 0)
+
+
+def _is_run(folder: Path) -> bool:
+    return (folder / RUN).is_file()
+
+
+def _counted(made: dict[str, str], found: Sequence[Device], is_run: bool) -> str:
+    devices_there = many(len(found), "device")
+    return f"{many(len(made), 'page')}, {devices_there}" if is_run else devices_there
+
+
+def _devices_in(folders: Sequence[Path]) -> tuple[list[Device], int]:
+    """The devices of folders, and how many files are not theirs. Raises UsageError where folders have none."""
+    read, wrong = _device_files(checked_number([path for folder in folders for path in _files_in(folder)]))
+    if folders and not read:
+        raise UsageError(f"{folders[0]}: there is no device file in it; {SAVED}")
+    return devices(read), wrong
+
+
+def _files_in(folder: Path) -> list[Path]:
+    """Every *.json in a folder and its folders. Raises UsageError."""
+    if not folder.is_dir():
+        raise UsageError(f"{folder}: there is no such folder" if not folder.exists() else f"{folder} is not a folder")
+    found = [Path(root) / name for root, _, names in os.walk(folder) for name in names if name.endswith(".json")]
+    # A site may lie among them, with its marker.
+    return sorted(path for path in found if not path.name.startswith("."))
+
+
+def _device_files(paths: list[Path]) -> tuple[list[Read], int]:
+    """The files that are devices', and how many are not, each of which is told."""
+    found, wrong = [], 0
+    for path in paths:
+        try:
+            found.append(read_device_file(path))
+        except UsageError as error:
+            wrong += 1
+            tell(f"{error}; it is left out")
+    return found, wrong
+
+
+def _pages_of_run(folder: Path, found: Sequence[Device]) -> dict[str, str]:
+    """A run's page, which begins with the laboratory, and the pages that need no scripts."""
+    run, gallery, specs = drawn_page(gathered(folder, read_to_show(folder)))
+    names = page.codecs(run, specs)
+    titles = {INDEX: "Laboratory"} | {one.path: one.title for one in _views(run)}
+    titles |= {CODECS: "Encodings"} if names else {}
+    site = Site(titles | {f"{FOLDER}/{INDEX}": "Devices"}, f"{FOLDER}/{INDEX}", f"{INDEX}#live" if run.live else "")
+    home = page.Home(TITLE, DESCRIPTION, [(path, title) for path, title in site.pages.items() if path != INDEX])
+    made = {INDEX: page.html(run, gallery, specs, library_of(specs), home=home)}
+    made |= {one.path: view_html(one, site) for one in _views(run)}
+    return made | codec_pages(run, names, site, INDEX) | pages(found, site)
+
+
+def _views(run: Found) -> list[ViewPage]:
+    """The views whose text and tables a reader without scripts finds, less those that the run has nothing of."""
+    choose = ViewPage(
+        CHOOSE,
+        "Which encoding to take",
+        "The encoding of normals to take for each storage, with its error in degrees and its price in issue slots.",
+        "Which encoding of normals should I take?",
+        (f"{INDEX}#v1/{View.CHOOSE}", "Change what is asked, and see the pictures"),
+        _parts(run, View.CHOOSE),
+    )
+    layouts = ViewPage(
+        LAYOUTS,
+        "Layouts of the G-buffer",
+        "What the image loses when normals and the rest of the G-buffer are stored in few bits.",
+        "What does the image lose to the layout of the G-buffer?",
+        (f"{INDEX}#v1/{View.LAYOUTS}", "See the charts"),
+        _parts(run, View.LAYOUTS),
+    )
+    return [one for one in (choose, layouts) if one.parts]
+
+
+def _parts(run: Found, view: View) -> list[page.Part]:
+    sections = [section for section in run.sections if section.about.view == view and section.rows]
+    return [page.part_of(run, section, {}) for section in sections]

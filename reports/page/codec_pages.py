@@ -1,0 +1,175 @@
+"""A page for each encoding of a run, whose text and tables need no scripts, and the list of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from typing import Any
+
+from ..sheets import Role, Row, Sheet
+from . import cards
+from .found import Found
+from .page import Table, base, sheet_table, table, template
+from .sections import TableSection, whole
+from .site import SCRIPTS, Index, Searched, Site, index_html, linked, paths
+
+FOLDER, INDEX = "codecs", "codecs/index.html"
+# The columns of the lists, and what they say.
+LISTED = {
+    "angle_mean_deg": "The mean angle between a normal and its decode. Unit: degrees.",
+    "angle_max_deg": "The largest angle that is known. Unit: degrees.",
+    "slots": "Issue slots to encode and decode once.",
+    "normals": "The set of normals that the angles are of.",
+    "bits": "What a code occupies.",
+}
+FIGURES = {"bits": "bits", "angle_mean_deg": "mean", "angle_max_deg": "largest", "slots": "slots", "normals": "of"}
+OWN = "An encoding of a reader's own: its formulas are in its file."
+# Lines of a fact: whether it is code, and its text.
+Lines = Sequence[tuple[bool, str]]
+
+
+@dataclass(frozen=True)
+class CodecPage:
+    """An encoding's page: what it is, its storages, its rows in each table, and its code by storage and language."""
+
+    name: str
+    title: str
+    description: str
+    question: str
+    says: str
+    facts: Sequence[tuple[str, Lines]]
+    storages: Table
+    tables: Sequence[tuple[str, str, Table]]
+    code: Sequence[tuple[str, Sequence[tuple[str, str]]]]
+    look_ups: bool
+
+
+def codec_pages(found: Found, names: Sequence[str], site: Site, run_page: str) -> dict[str, str]:
+    """The pages by their paths in the site's folder; nothing where the run has no codecs.
+
+    Args:
+        names: of the codecs that the run's page shows.
+        run_page: the path of that page.
+    """
+    codecs = cards.codecs_of(found, names)
+    groups = {name: list(labels) for name, labels in groupby(names, cards.of_encoding)}
+    files = dict(zip(groups, paths(groups, FOLDER, "encoding"), strict=True))
+    made = {}
+    for name, path in files.items():
+        about, card = _page(found, name, {label: codecs[label] for label in groups[name]}), _card(groups[name][0])
+        around = base(SCRIPTS) | site.leads(path)
+        made[path] = template("codec.html.j2").render(codec=about, card=linked(run_page + card, path), **around)
+    return made | ({INDEX: _index_page(found, codecs, files, site)} if groups else {})
+
+
+def _card(label: str) -> str:
+    return f"#v1/codecs?a={label.replace(' ', '%20')}"
+
+
+def _page(found: Found, name: str, codecs: Mapping[str, Row]) -> CodecPage:
+    known = found.extras["cards"]["encodings"].get(name, {})
+    code = list(_code(found, codecs))
+    return CodecPage(
+        name=name,
+        title=f"{name}, an encoding of normals: formula, error, cost and code",
+        description=_description(name, known, codecs),
+        question=f"What does {name} do to a normal?",
+        says=known.get("says") or OWN,
+        facts=list(_facts(known)),
+        storages=_codec_table(f"{name} by storage", codecs),
+        tables=[one for section in cards.sections_of(found) if (one := _rows(section, name))],
+        code=code,
+        look_ups=bool(known.get("tables")),
+    )
+
+
+def _description(name: str, known: Mapping[str, Any], codecs: Mapping[str, Row]) -> str:
+    """What a search shows: what it is, and its figures in the storage where it is the best known."""
+    says = known.get("says") or f"{name}, an encoding of normals."
+    measured = [(label, one) for label, one in codecs.items() if "mean" in one]
+    if not measured:
+        return says
+    label, one = measured[0]
+    slots = f", {one['slots']:g} issue slots to encode and decode" if "slots" in one else ""
+    return f"{says} {label}: mean error {one['mean']:.3g} degrees on {one['of']}{slots}."
+
+
+def _facts(known: Mapping[str, Any]) -> Iterator[tuple[str, Lines]]:
+    """What is known of an encoding of the catalogue."""
+    for what in ("encode", "decode"):
+        if known.get(what):
+            says, *formulas = known[what]
+            yield what, [(False, says), *((True, line) for line in formulas)]
+    for title, name in (("source", "source"), ("made for", "domain")):
+        if known.get(name):
+            yield title, [(False, str(known[name]))]
+    if known:
+        used = [f"{engine} ({year}), in {storage}" for engine, year, storage in known["used"]]
+        yield "used by", [(False, line) for line in used or ["No engine whose source is known here."]]
+
+
+def _codec_table(title: str, codecs: Mapping[str, Row]) -> Table:
+    rows = [
+        {"codec": label, "storage": one.get("storage"), **{name: one.get(key) for name, key in FIGURES.items()}}
+        for label, one in codecs.items()
+    ]
+    return table(title, rows, lambda name: LISTED.get(name, ""))
+
+
+def _rows(section: TableSection, name: str) -> tuple[str, str, Table] | None:
+    """An encoding's rows in a table: what tells them apart, and the figures that codecs are compared by."""
+    rows = [row for row in whole(section.rows) if row.get("encoding") == name]
+    known = {column for row in rows for column, value in row.items() if value is not None and column != "encoding"}
+    columns = [section.column(column) for column in (rows[0] if rows else ()) if column in known]
+    keys = [column.name for column in columns if column.role in (Role.KEY, Role.REASON)]
+    figures = [column.name for column in columns if cards.is_figure(column)]
+    if not figures:
+        return None
+    shown = [{column: row[column] for column in (*keys, *figures)} for row in rows]
+    made = sheet_table(Sheet(f"{name} in the table {section.key}", shown), section.column)
+    return section.key, section.about.title, made
+
+
+def _code(found: Found, codecs: Mapping[str, Row]) -> Iterator[tuple[str, Sequence[tuple[str, str]]]]:
+    """The code that the run keeps of an encoding, by codec and language."""
+    kept = found.extras.get("code") or {"codecs": {}}
+    for label in codecs:
+        if label in kept["codecs"]:
+            texts = kept["codecs"][label]["texts"].items()
+            yield label, [(kept["languages"][word], "".join(kept["pieces"][at] for at in text)) for word, text in texts]
+
+
+def _index_page(found: Found, codecs: Mapping[str, Row], files: Mapping[str, str], site: Site) -> str:
+    links = {name: linked(path, INDEX) for name, path in files.items()}
+    index = Index(
+        path=INDEX,
+        title="encodings of normals",
+        description=f"{len(files)} encodings of normals: formula, source, error, cost and code of each.",
+        question="Which encodings of normals are there?",
+        said=(f"{len(files)} encodings in {len(codecs)} codecs. Each has a page.",),
+        label="Search by encoding, storage or source",
+        searched=[_encoding_list(found, codecs, links), _codec_list(codecs, links)],
+    )
+    return index_html(index, site)
+
+
+def _encoding_list(found: Found, codecs: Mapping[str, Row], links: Mapping[str, str]) -> Searched:
+    known = found.extras["cards"]["encodings"]
+    rows = [
+        {
+            "encoding": name,
+            "what it does": known.get(name, {}).get("says") or OWN,
+            "source": known.get(name, {}).get("source"),
+        }
+        for name in links
+    ]
+    words = [" ".join(label for label in codecs if cards.of_encoding(label) == name) for name in links]
+    shown = table("Encodings and their sources", rows, lambda _: "")
+    return Searched("encodings", "Encodings", "Its name leads to its page.", shown, words, list(links.values()))
+
+
+def _codec_list(codecs: Mapping[str, Row], links: Mapping[str, str]) -> Searched:
+    shown = _codec_table("Codecs: an encoding in a storage", codecs)
+    to = [links[cards.of_encoding(label)] for label in codecs]
+    return Searched("codecs", "Codecs", "What each loses and costs.", shown, list(codecs), to)
