@@ -2,6 +2,7 @@
 # make test    set up what is missing, then run the tests that take little time; with ALL=1 the slow ones too,
 #              with ALL=nightly every one
 # make slow    the other tests: whole runs and what seldom breaks; .ci/nightly has those that take longest
+# make site    make a website in site of the newest run; of another with RUN=FOLDER
 # make setup   virtual environment in .venv, packages, GL driver, shader compilers
 # make lint    ruff and the type checker
 
@@ -10,7 +11,9 @@ BIN = .venv/bin
 # Modules are compiled once, not by each of the many processes that tests start, whatever the shell says.
 export PYTHONDONTWRITEBYTECODE =
 
-.PHONY: bench test slow setup lint
+RUN ?= $(lastword $(sort $(wildcard results/*/run.json)))
+
+.PHONY: bench test slow site setup lint
 
 bench: .venv/ready
 	$(BIN)/normalbench run
@@ -21,6 +24,10 @@ test: .venv/ready
 
 slow: .venv/ready
 	$(BIN)/python -m pytest -n 4 -m "slow and not nightly"
+
+site: .venv/ready
+	@test -n "$(RUN)" || { echo "there is no run in results; make bench measures one" >&2; exit 1; }
+	$(BIN)/normalbench site $(RUN:/run.json=)
 
 setup: .venv/ready
 

@@ -1060,7 +1060,7 @@ FAULTS = (
         "dropped term",
         'return bool(row["one_step"] or row["further"])',
         'return bool(row["further"])',
-        "test_import.py test_site.py test_devices.py",
+        "test_import.py test_devices_site.py test_devices.py",
     ),
     Fault(
         "counts-need-not-add-up",
@@ -1084,7 +1084,7 @@ FAULTS = (
         "dropped step",
         "        _clear(folder, set(before) - set(made), made)\n",
         "",
-        "test_site.py",
+        "test_devices_site.py",
     ),
     Fault(
         "holes-are-the-answer",

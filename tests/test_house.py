@@ -314,10 +314,10 @@ def test_what_rows_are_shown_as_is_said_once():
 
 # Who asks a table of one name: a code's figures, what `doctor` measures, devices added to a run, and their site.
 ASKING = {
-    "bench/door/cli/device_commands.py",
     "bench/door/code_figures.py",
     "bench/door/examine.py",
     "bench/show/import_command.py",
+    "bench/show/site_command.py",
 }
 
 

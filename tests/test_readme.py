@@ -27,7 +27,7 @@ from normalbench.bench.door import code_command, examine, gbuffer_command, run, 
 from normalbench.bench.door.cli import app as cli
 from normalbench.bench.keep import machine
 from normalbench.bench.run import measuring
-from normalbench.bench.show import report
+from normalbench.bench.show import report, site_command
 from normalbench.bench.tables.registry import TABLES
 from normalbench.gbuffer.scenes.mesh import sphere
 
@@ -99,7 +99,7 @@ def test_every_example_is_used():
 # What takes more than a second of processor time: it renders, tunes, draws, compiles or measures many rows.
 LONG = re.compile(
     r"normalbench (pick|budget|mix|maps|render|effects|motion|lights|sweep|tune|run|report|frames|check|code"
-    r"|published)\b(?! --help)|python|normalbench (doctor|vectors)$"
+    r"|published|site before)\b(?! --help)|python|normalbench (doctor|vectors)$"
     r"|.*(--on |--plot|--report|--worst-case|--encoding all|--arithmetic float|--far|--normals (scene|frame))"
 )
 LONG_COMMANDS = [command for command in COMMANDS if LONG.match(command)]
@@ -121,6 +121,7 @@ BEGINNINGS = (
     (code_command, "agreement"),
     (gbuffer_command, "agreement"),
     (report, "read_to_show"),
+    (site_command, "_is_run"),
     (examine, "examined"),
     (machine, "examine"),
 )

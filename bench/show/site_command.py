@@ -23,6 +23,8 @@ from .report import drawn_page, gathered, library_of
 from .site_files import write_site
 
 CHOOSE, LAYOUTS = "choose.html", "layouts.html"
+# What the links to its other pages are called.
+LABORATORY, ENCODINGS, DEVICES = "Laboratory", "Every encoding", "Devices"
 TITLE = "Normals of a G-buffer in few bits"
 DESCRIPTION = (
     "See on your own GPU what an encoding of normals does to reflections, and find the one that your bits need."
@@ -90,36 +92,37 @@ def _pages_of_run(folder: Path, found: Sequence[Device]) -> dict[str, str]:
     """A run's page, which begins with the laboratory, and the pages that need no scripts."""
     run, gallery, specs = drawn_page(gathered(folder, read_to_show(folder)))
     names = page.codecs(run, specs)
-    titles = {INDEX: "Laboratory"} | {one.path: one.title for one in _views(run)}
-    titles |= {CODECS: "Encodings"} if names else {}
-    site = Site(titles | {f"{FOLDER}/{INDEX}": "Devices"}, f"{FOLDER}/{INDEX}", f"{INDEX}#live" if run.live else "")
-    home = page.Home(TITLE, DESCRIPTION, [(path, title) for path, title in site.pages.items() if path != INDEX])
+    views, devices_there = _views(run), f"{FOLDER}/{INDEX}"
+    titles = {one.path: one.title for one in views} | ({CODECS: ENCODINGS} if names else {}) | {devices_there: DEVICES}
+    home = page.Home(TITLE, DESCRIPTION, list(titles.items()))
+    site = Site({INDEX: LABORATORY} | titles, devices_there, f"{INDEX}#live" if run.live else "")
     made = {INDEX: page.html(run, gallery, specs, library_of(specs), home=home)}
-    made |= {one.path: view_html(one, site) for one in _views(run)}
+    made |= {one.path: view_html(one, site) for one in views}
     return made | codec_pages(run, names, site, INDEX) | pages(found, site)
 
 
 def _views(run: Found) -> list[ViewPage]:
     """The views whose text and tables a reader without scripts finds, less those that the run has nothing of."""
-    choose = ViewPage(
-        CHOOSE,
-        "Which encoding to take",
-        "The encoding of normals to take for each storage, with its error in degrees and its price in issue slots.",
-        "Which encoding of normals should I take?",
-        (f"{INDEX}#v1/{View.CHOOSE}", "Change what is asked, and see the pictures"),
-        _parts(run, View.CHOOSE),
-    )
-    layouts = ViewPage(
-        LAYOUTS,
-        "Layouts of the G-buffer",
-        "What the image loses when normals and the rest of the G-buffer are stored in few bits.",
-        "What does the image lose to the layout of the G-buffer?",
-        (f"{INDEX}#v1/{View.LAYOUTS}", "See the charts"),
-        _parts(run, View.LAYOUTS),
-    )
-    return [one for one in (choose, layouts) if one.parts]
+    choose, layouts = _parts(run, View.CHOOSE), _parts(run, View.LAYOUTS)
+    made = []
+    if choose:
+        about = "The encoding of normals to take for each storage, its error in degrees and its price in issue slots."
+        link = (f"{INDEX}#v1/{View.CHOOSE}", "Ask something else, and see charts and pictures")
+        question = "Which encoding of normals should I take?"
+        made.append(ViewPage(CHOOSE, "What to take", about, question, _answer(choose), link, choose))
+    if layouts:
+        about = "What the image loses when normals and the rest of the G-buffer are stored in few bits."
+        link = (f"{INDEX}#v1/{View.LAYOUTS}", "See the charts")
+        question = "What does the image lose to the layout of the G-buffer?"
+        made.append(ViewPage(LAYOUTS, "Layouts", about, question, _answer(layouts), link, layouts))
+    return made
+
+
+def _answer(parts: Sequence[page.Part]) -> str:
+    """The first answer of these sections; empty where they have none."""
+    return next((table.said[0] for part in parts for table in part.tables if table.said), "")
 
 
 def _parts(run: Found, view: View) -> list[page.Part]:
     sections = [section for section in run.sections if section.about.view == view and section.rows]
-    return [page.part_of(run, section, {}) for section in sections]
+    return [page.part_of(run, section, {}) for section in sorted(sections, key=lambda one: not one.about.leads)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
@@ -85,12 +86,12 @@ def _page(found: Found, name: str, codecs: Mapping[str, Row]) -> CodecPage:
 
 
 def _description(name: str, known: Mapping[str, Any], codecs: Mapping[str, Row]) -> str:
-    """What a search shows: what it is, and its figures in the storage where it is the best known."""
+    """What a search shows: what it is, and its figures where it takes the fewest bits."""
     says = known.get("says") or f"{name}, an encoding of normals."
     measured = [(label, one) for label, one in codecs.items() if "mean" in one]
     if not measured:
         return says
-    label, one = measured[0]
+    label, one = min(measured, key=lambda one: one[1].get("bits") or math.inf)
     slots = f", {one['slots']:g} issue slots to encode and decode" if "slots" in one else ""
     return f"{says} {label}: mean error {one['mean']:.3g} degrees on {one['of']}{slots}."
 
@@ -105,16 +106,28 @@ def _facts(known: Mapping[str, Any]) -> Iterator[tuple[str, Lines]]:
         if known.get(name):
             yield title, [(False, str(known[name]))]
     if known:
-        used = [f"{engine} ({year}), in {storage}" for engine, year, storage in known["used"]]
-        yield "used by", [(False, line) for line in used or ["No engine whose source is known here."]]
+        yield "used by", [(False, _users(known["used"]) or "No engine whose source is known here.")]
+
+
+def _users(used: Sequence[tuple[str, int, str]]) -> str:
+    """Engines with the storages that they keep normals in."""
+    storages: dict[str, dict[str, None]] = {}
+    for engine, _, storage in used:
+        storages.setdefault(engine, {})[storage] = None
+    return "; ".join(f"{engine} in {', '.join(kept)}" for engine, kept in storages.items())
 
 
 def _codec_table(title: str, codecs: Mapping[str, Row]) -> Table:
+    """The figures of codecs; of those that have none only where no other has any."""
     rows = [
         {"codec": label, "storage": one.get("storage"), **{name: one.get(key) for name, key in FIGURES.items()}}
-        for label, one in codecs.items()
+        for label, one in _measured(codecs).items()
     ]
     return table(title, rows, lambda name: LISTED.get(name, ""))
+
+
+def _measured(codecs: Mapping[str, Row]) -> Mapping[str, Row]:
+    return {label: one for label, one in codecs.items() if "mean" in one} or codecs
 
 
 def _rows(section: TableSection, name: str) -> tuple[str, str, Table] | None:
@@ -147,7 +160,7 @@ def _index_page(found: Found, codecs: Mapping[str, Row], files: Mapping[str, str
         title="encodings of normals",
         description=f"{len(files)} encodings of normals: formula, source, error, cost and code of each.",
         question="Which encodings of normals are there?",
-        said=(f"{len(files)} encodings in {len(codecs)} codecs. Each has a page.",),
+        said=(f"{len(files)} encodings, {len(codecs)} codecs.",),
         label="Search by encoding, storage or source",
         searched=[_encoding_list(found, codecs, links), _codec_list(codecs, links)],
     )
@@ -166,10 +179,18 @@ def _encoding_list(found: Found, codecs: Mapping[str, Row], links: Mapping[str, 
     ]
     words = [" ".join(label for label in codecs if cards.of_encoding(label) == name) for name in links]
     shown = table("Encodings and their sources", rows, lambda _: "")
-    return Searched("encodings", "Encodings", "Its name leads to its page.", shown, words, list(links.values()))
+    return Searched(
+        "encodings",
+        "Encodings",
+        "A row for each encoding. Its name leads to its page.",
+        shown,
+        words,
+        list(links.values()),
+    )
 
 
 def _codec_list(codecs: Mapping[str, Row], links: Mapping[str, str]) -> Searched:
     shown = _codec_table("Codecs: an encoding in a storage", codecs)
-    to = [links[cards.of_encoding(label)] for label in codecs]
-    return Searched("codecs", "Codecs", "What each loses and costs.", shown, list(codecs), to)
+    labels, intro = list(_measured(codecs)), "A row for each encoding in a storage: what it loses and costs."
+    to = [links[cards.of_encoding(label)] for label in labels]
+    return Searched("codecs", "Codecs", intro, shown, labels, to)

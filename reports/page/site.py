@@ -142,6 +142,7 @@ class ViewPage:
         title: what the page is of.
         description: what a search shows of it.
         question: its heading.
+        said: the answer in a sentence; empty for none.
         view: the path of the view in the run's page, and what a reader does there.
         parts: its sections.
     """
@@ -150,6 +151,7 @@ class ViewPage:
     title: str
     description: str
     question: str
+    said: str
     view: tuple[str, str]
     parts: Sequence[Part]
 

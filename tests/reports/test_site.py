@@ -1,0 +1,154 @@
+"""The website of a run: what is in it, that its links lead somewhere, and that it is read without scripts."""
+
+from pathlib import Path
+from urllib.parse import unquote
+
+import devices as made
+import pytest
+from browsing import AXE, DESKTOP, PHONE, Opened
+from test_codecs import ANSWER, QUALITY, SHORT
+from test_report import Read, a_run
+
+from normalbench.bench.door import run_code
+from normalbench.bench.keep.runs import read_run
+from normalbench.bench.show.kept_code import read_code
+from normalbench.bench.show.site_command import site_command
+from normalbench.bench.tables.registry import TABLES
+
+ENCODINGS = {"mine", "octahedral", "spheremap", "stereographic", "xy"}
+LAID_OUT = {"pipeline": "hybrid", "layout": "fp32", "encoding": "octahedral", "storage": "rg8", "rounding": "nearest"}
+LAID_OUT |= {"scene": "studio", "size": "640x480", "psnr_db": 24.8, "normal_psnr_db": 50.0, "exact": False}
+
+
+@pytest.fixture(scope="module")
+def run_folder(tmp_path_factory):
+    tables = {"pick": ANSWER, "quality": QUALITY, "render": [TABLES["render"].empty() | LAID_OUT]}
+    folder = a_run(tmp_path_factory.mktemp("site") / "run", tables)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(run_code, "LANGUAGES", SHORT)
+        run_code.keep_code(folder, read_run(folder))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def site(run_folder):
+    """Of the run and one device."""
+    made.write(run_folder.parent / "files" / "a.json")
+    assert site_command([run_folder, run_folder.parent / "files"], run_folder.parent / "site") == 0
+    return run_folder.parent / "site"
+
+
+@pytest.fixture(scope="module")
+def pages(site) -> dict[str, Read]:
+    found = sorted(site.rglob("*.html"))
+    return {str(path.relative_to(site)): Read(path.read_text(encoding="utf-8")) for path in found}
+
+
+def test_the_pages_are_those_of_the_run(pages):
+    device = "devices/swiftshader-chromium-156.html"
+    top = {"index.html", "choose.html", "layouts.html", "codecs/index.html", "devices/index.html", device}
+    assert set(pages) == top | {f"codecs/{name}.html" for name in ENCODINGS}
+
+
+def test_every_link_leads_to_a_page_and_a_place_in_it(site, pages):
+    checked = 0
+    for name, read in pages.items():
+        for link in (one["href"] for one in read.all("a")):
+            file, _, place = link.partition("#")
+            to = str(((site / name).parent / file).resolve().relative_to(site.resolve())) if file else name
+            assert to in pages, f"{name}: {link}"
+            if place.startswith("v1/"):
+                view = place[3:].partition("?")[0]
+                assert any(one.get("data-view") == view for one in pages[to].all("div")), f"{name}: {link}"
+            # A laboratory is in a run that keeps codes for it.
+            elif place:
+                assert any(one.get("id") == unquote(place) for _, one in pages[to].tags), f"{name}: {link}"
+            checked += 1
+    assert checked > 50, checked
+
+
+def test_every_page_leads_to_the_others(site, pages):
+    for name, read in pages.items():
+        files = [one["href"].partition("#")[0] for one in read.all("a")]
+        linked = {str(((site / name).parent / file).resolve().relative_to(site.resolve())) for file in files if file}
+        assert linked >= {"choose.html", "layouts.html", "codecs/index.html", "devices/index.html"} - {name}, name
+    assert {f"codecs/{one}.html" for one in ENCODINGS} <= {
+        f"codecs/{one['href']}" for one in pages["codecs/index.html"].all("a")
+    }
+
+
+def test_titles_and_descriptions_are_a_pages_own(site, pages):
+    titles = {name: (site / name).read_text().split("<title>")[1].split("</title>")[0] for name in pages}
+    said = {
+        name: [one["content"] for one in read.all("meta") if one.get("name") == "description"]
+        for name, read in pages.items()
+    }
+    assert len(set(titles.values())) == len(titles), titles
+    assert all(len(one) == 1 and len(one[0]) > 30 for one in said.values()), said
+    assert len({one[0] for one in said.values()}) == len(said), said
+    assert "octahedral" in titles["codecs/octahedral.html"] and "mean error" in said["codecs/octahedral.html"][0]
+
+
+def test_the_large_page_is_there_once(site):
+    sizes = {path.name: path.stat().st_size for path in site.rglob("*.html") if path.name != "index.html"}
+    assert max(sizes.values()) < 2**19, sizes
+
+
+def test_an_encoding_is_read_without_scripts(browser, site, run_folder):
+    """Its formula, its source, its figures and its code, as the run keeps it."""
+    context = browser.new_context(java_script_enabled=False, offline=True)
+    page = context.new_page()
+    page.goto((site / "codecs/octahedral.html").as_uri())
+    text = page.locator("main").inner_text()
+    assert "p = n.xy / (|n.x| + |n.y| + |n.z|)" in text and "Meyer" in text and "Unreal Engine" in text
+    rows = page.locator("#figures tbody tr")
+    assert {row.split("\t")[0] for row in rows.all_inner_texts()} == {
+        "octahedral rgba8",
+        "octahedral rgb10a2",
+        "octahedral rg8",
+    }
+    assert "49.85" in page.locator("#quality").inner_text() and "61.57" in page.locator("#quality").inner_text()
+    kept = read_code(run_folder)
+    places = kept["codecs"]["octahedral rgba8"]["texts"]["c"]
+    shown = page.get_by_label("octahedral rgba8 in C", exact=True)
+    assert shown.text_content() == "".join(kept["pieces"][at] for at in places)
+    page.goto((site / "choose.html").as_uri())
+    assert "take octahedral" in page.locator("h1 + p").inner_text()
+    context.close()
+
+
+def test_the_first_page_begins_with_the_laboratory(gl_browser, results, tmp_path):
+    assert site_command([results[0]], tmp_path / "site") == 0
+    page = Opened(gl_browser, tmp_path / "site/index.html")
+    assert page.page.locator("#home").is_visible() and page.page.locator("#live").is_visible()
+    page.page.wait_for_function("document.querySelectorAll('[data-see=left] option').length > 3")
+    assert page.asked == [(tmp_path / "site/index.html").as_uri()]
+    device = Opened(gl_browser, tmp_path / "site/devices/index.html")
+    device.page.get_by_role("link", name="the laboratory").click()
+    device.page.wait_for_url("**/index.html#**")
+    device.page.locator("#live").wait_for(state="visible")
+    assert page.said == [] == device.said
+    for one in (page, device):
+        one.context.close()
+
+
+@pytest.mark.parametrize("size, theme", [(DESKTOP, "light"), (PHONE, "dark")])
+@pytest.mark.parametrize(
+    "name",
+    ["index.html", "choose.html", "layouts.html", "codecs/index.html", "codecs/octahedral.html", "devices/index.html"],
+)
+def test_no_page_keeps_anybody_out(browser, site, name, size, theme):
+    from axe_playwright_python.base import AXE_FILE_PATH
+
+    page = Opened(browser, site / name, size, theme)
+    page.page.evaluate(AXE_FILE_PATH.read_text() + "; 0")
+    assert page.page.evaluate(AXE) == [] == page.said
+    assert page.asked == [(site / name).as_uri()]
+    assert page.page.evaluate("document.documentElement.scrollWidth") == size[0]
+    page.context.close()
+
+
+def test_two_runs_are_one_line(run, run_folder, tmp_path):
+    status, out, err = run("site", str(run_folder), str(run_folder), "-o", str(tmp_path / "site"))
+    assert (status, out, err.count("\n")) == (2, "", 1) and "a site is of one" in err
+    assert not Path(tmp_path / "site").exists()
