@@ -160,7 +160,7 @@ def _index_page(found: Found, codecs: Mapping[str, Row], files: Mapping[str, str
         title="encodings of normals",
         description=f"{len(files)} encodings of normals: formula, source, error, cost and code of each.",
         question="Which encodings of normals are there?",
-        said=(f"{len(files)} encodings, {len(codecs)} codecs.",),
+        said=(f"{len(files)} encodings, {len(_measured(codecs))} codecs.",),
         label="Search by encoding, storage or source",
         searched=[_encoding_list(found, codecs, links), _codec_list(codecs, links)],
     )

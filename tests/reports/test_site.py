@@ -1,5 +1,6 @@
 """The website of a run: what is in it, that its links lead somewhere, and that it is read without scripts."""
 
+from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote
 
@@ -87,6 +88,33 @@ def test_titles_and_descriptions_are_a_pages_own(site, pages):
     assert all(len(one) == 1 and len(one[0]) > 30 for one in said.values()), said
     assert len({one[0] for one in said.values()}) == len(said), said
     assert "octahedral" in titles["codecs/octahedral.html"] and "mean error" in said["codecs/octahedral.html"][0]
+
+
+class Nested(HTMLParser):
+    """Elements that are closed in another order than they were opened in."""
+
+    EMPTY = frozenset(("meta", "link", "br", "img", "input"))
+
+    def __init__(self, text: str):
+        super().__init__()
+        self.open, self.wrong = [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):  # noqa: ARG002 - the name that HTMLParser gives it
+        if tag not in self.EMPTY:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        if not self.open or self.open.pop() != tag:
+            self.wrong.append((tag, self.getpos()))
+
+
+def test_elements_are_closed_and_their_ids_are_their_own(site, pages):
+    for name, read in pages.items():
+        nested = Nested((site / name).read_text(encoding="utf-8")) if name != "index.html" else None
+        assert not nested or (nested.wrong, nested.open) == ([], []), f"{name}: {nested.wrong} {nested.open}"
+        ids = [one["id"] for _, one in read.tags if "id" in one]
+        assert len(set(ids)) == len(ids), f"{name}: {[one for one in ids if ids.count(one) > 1]}"
 
 
 def test_the_large_page_is_there_once(site):
