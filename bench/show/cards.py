@@ -66,7 +66,8 @@ def _codec_record(key: CodecKey) -> dict[str, Any]:
         return {}
     codec = Codec(encoding, storage, key.rounding)
     numbers = f"{rule_of_first(codec.storage, encoding.components)} {codec.rounding}"
-    return {"storage": codec.storage.title, "bits": codec.bits, "numbers": numbers}
+    about = {"storage": codec.storage.title, "bits": codec.bits, "numbers": numbers}
+    return about | {"domain": encoding.domain}
 
 
 def _encoding_record(encoding: Encoding) -> dict[str, Any]:

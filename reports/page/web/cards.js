@@ -69,7 +69,7 @@ class CardTable {
   // A figure's place among the rows of its context, of codecs of as many bits where there are storages.
   place(context, row, figure, codecs) {
     const name = this.nameOf(row), bits = codecs[name]?.bits, { better } = this.columns[figure];
-    const alike = this.groups.get(context).filter((one) => one.name.includes(" ") === name.includes(" ") && codecs[one.name]?.bits === bits);
+    const alike = this.groups.get(context).filter((one) => one.name.includes(" ") === name.includes(" ") && codecs[one.name]?.bits === bits && codecs[one.name]?.domain === codecs[name]?.domain);
     return { ...standing(this.value(figure, row), alike.map((one) => this.value(figure, one.row)), better), bits };
   }
 }
@@ -85,6 +85,8 @@ function usersOf(used, storage) {
 class Cards {
   constructor(root, made) {
     Object.assign(this, { root, ...made, read: new Map(), turn: 0 });
+    // Codes are compared that hold the same normals; of a reader's own all, as far as is known.
+    for (const one of Object.values(this.codecs)) one.domain ??= "sphere";
     this.list = root.querySelector("[data-card-list]");
     this.card = root.querySelector("[data-card]");
     this.list.append(this.listed());
@@ -103,7 +105,7 @@ class Cards {
     });
     const cell = (value, text, of) => element("td", { class: "n", ...(value === undefined || value === null ? {} : { "data-v": String(value) }) }, of ? `${text}\n${of}` : text);
     const line = (name) => {
-      const { mean, largest, slots, of } = this.codecs[name], bits = this.bits(name), aside = of === this.usual ? "" : of;
+      const { mean, largest, slots, of, domain } = this.codecs[name], bits = this.bits(name), aside = [of === this.usual ? "" : of, { hemisphere: "z >= 0 alone", view: "facing alone" }[domain]].filter(Boolean).join(", ");
       const figures = [cell(bits, String(bits ?? "")), cell(mean, mean === undefined ? "" : degrees(mean), mean === undefined ? "" : aside), cell(largest, largest === undefined ? "" : degrees(largest)), cell(slots, String(slots ?? ""))];
       return element("tr", { "data-codec": name }, element("th", { scope: "row" }, nameButton(name, name)), element("td", { class: "take" }, ...sideButtons(name)), ...figures);
     };
@@ -175,7 +177,7 @@ class Cards {
     const cell = (key, text, name) => {
       const value = this.codecs[name][key], bits = this.bits(name), { of } = this.codecs[name];
       if (value === undefined) return element("td", {}, "not measured");
-      const place = standing(value, this.others(bits, of).map((one) => one[key] ?? null), "less");
+      const place = standing(value, this.others(bits, of, this.codecs[name].domain).map((one) => one[key] ?? null), "less");
       return placedCell(text(value), place, placeText(place, bits), { "data-codec": name, "data-figure": key }, place.rank === 1 && place.of > 1);
     };
     const rows = figures.map(([key, title, text]) => element("tr", {}, element("th", { scope: "row" }, title), ...sides.map(([, name]) => cell(key, text, name))));
@@ -186,8 +188,8 @@ class Cards {
   }
 
   // What the list has of codecs of as many bits on a set of normals, once of those that store the same numbers.
-  others(bits, of) {
-    const alike = Object.entries(this.codecs).filter(([, one]) => (one.bits ?? null) === bits && one.of === of);
+  others(bits, of, domain) {
+    const alike = Object.entries(this.codecs).filter(([, one]) => (one.bits ?? null) === bits && one.of === of && one.domain === domain);
     return [...new Map(alike.map(([name, one]) => [`${name.split(" ")[0]} ${one.numbers ?? name}`, one])).values()];
   }
 
@@ -294,8 +296,9 @@ class Cards {
 
   // Where it stands best, and where worst.
   finding(table, figures, lines) {
-    const places = lines.flatMap(({ context, row }) => figures.filter((figure) => table.value(figure, row) !== null).map((figure) => ({ figure, ...table.place(context, row, figure, this.codecs) }))).filter(({ of }) => of > 1);
-    if (!places.length) return "No other codec of as many bits is in this table.";
+    // Among a few, a place says nothing.
+    const places = lines.flatMap(({ context, row }) => figures.filter((figure) => table.value(figure, row) !== null).map((figure) => ({ figure, ...table.place(context, row, figure, this.codecs) }))).filter(({ of }) => of > 3);
+    if (!places.length) return "Too few other codecs of as many bits are in this table to rank it.";
     const by = (one) => (one.rank - 1) / (one.of - 1), best = places.reduce((x, y) => (by(y) < by(x) ? y : x)), worst = places.reduce((x, y) => (by(y) > by(x) ? y : x));
     const said = (one) => `${placeText(one, one.bits)} by ${table.columns[one.figure].title}`;
     return best === worst ? `It is ${said(best)}.` : `At best it is ${said(best)}, at worst ${said(worst)}.`;

@@ -68,7 +68,7 @@ function answerOf(question, asked, { hidden, affordable, step, same, least, much
   const rungs = above.reduce((kept, code) => (!kept.length || loss(kept.at(-1)) - loss(code) >= least ? [...kept, code] : kept), []).slice(0, 2);
   if (exact !== best && gain(exact) >= least) rungs.push(exact);
   const near = fit.filter((code) => rungs.includes(code) && code.storage !== best.storage && isMuchBetter(code)).slice(0, 1);
-  return { codes, best, fit, out, why, rungs, price, isSame: (a, b) => Math.abs(Math.log2(price(a) / price(b))) < same, others: elsewhere.length ? elsewhere : near, gain };
+  return { codes, best, fit, out, why, rungs, exact, price, isSame: (a, b) => Math.abs(Math.log2(price(a) / price(b))) < same, others: elsewhere.length ? elsewhere : near, gain };
 }
 
 // Its first sentence, as pick writes it.
@@ -99,6 +99,9 @@ const COMPARED = [
   ["bits free", (code) => String(code.free ?? ""), (code) => code.free, "more"],
 ];
 
+// Errors are those after the mixing that is asked for.
+const titleUnder = (title, mixing) => (mixing && title.endsWith(" error") ? `${title} after ${mixing.replaceAll(",", ", ")}` : title);
+
 class Choose {
   constructor(root, { constants, questions, found }) {
     Object.assign(this, { root, constants, questions, title: found });
@@ -113,7 +116,7 @@ class Choose {
   }
 
   take(key, { type, checked, value, validity }) {
-    if (!validity.valid) return;
+    if (!validity.valid) return void this.control[key].reportValidity();
     const next = { [key]: type === "checkbox" ? (checked ? "yes" : "no") : value };
     change(key === "for" ? { ...next, ...this.sidesOf(value) } : next, type === "number");
   }
@@ -130,17 +133,17 @@ class Choose {
     if (before && ["for", "a", "b", ...Object.keys(LIMITS)].every((key) => state[key] === before[key])) return;
     const question = this.questions.find(({ where }) => where === state.for) ?? this.questions[0], asked = askedOf(question, state);
     const found = answerOf(question, asked, this.constants), isOwn = JSON.stringify(asked) !== JSON.stringify(question.asked);
+    Object.assign(this, { question, found, asked });
     this.root.querySelector("[data-pair]").replaceChildren(...this.pair(found, question, state));
     // The table stays under the pointer that chose a code in it.
     if (before && ["for", ...Object.keys(LIMITS)].every((key) => state[key] === before[key])) return;
     this.fill(question, asked, isOwn);
     for (const reply of this.root.querySelectorAll("[data-question]")) reply.hidden = isOwn || reply.dataset.question !== question.where;
     for (const place of this.root.querySelectorAll("[data-of]")) place.hidden = place.dataset.of !== question.chart;
-    Object.assign(this, { question, found, asked });
     for (const plot of this.root.querySelectorAll(`[data-of="${question.chart}"] .plot`)) this.plot(plot);
     const own = this.root.querySelector("[data-own-reply]");
     own.hidden = !isOwn;
-    own.replaceChildren(element("h2", { class: "lead" }, sentenceOf(question, asked, found)), element("ul", {}, ...this.said(found, asked).map((line) => element("li", {}, line))));
+    own.replaceChildren(element("h2", { class: "lead" }, sentenceOf(question, asked, found)), element("ul", {}, ...this.said(found, asked, question).map((line) => element("li", {}, line))));
     this.root.querySelector("[data-left]").textContent = `${found.fit.length} of ${found.fit.length + found.out.length} codes are left`;
     this.root.querySelector("[data-codes]").replaceChildren(...(found.fit.length ? [this.table(found, asked)] : []), this.leftOut(found));
   }
@@ -153,15 +156,16 @@ class Choose {
     const { x } = (view.panelAsRun ??= view.panel), rows = (view.rowsAsRun ??= view.tables[tableOf("points")]), isKnown = ({ codec }) => codeOf.get(codec).once !== null && codeOf.get(codec).mean;
     const points = rows.filter(isKnown).map((row) => {
       const code = codeOf.get(row.codec), why = found.why.get(code);
-      return { ...row, x: code.once, y: code.mean, why, rest: Boolean(why) };
+      return { ...row, x: code.once, y: Number(code.mean.toPrecision(4)), why, rest: Boolean(why) };
     });
     view.tables[tableOf("points")] = points;
     for (const axis of ["x", "y"]) view.panel = { ...view.panel, [axis]: { ...view.panel[axis], domain: d3.extent([...view.panelAsRun[axis].domain, ...points.map((point) => point[axis])]) } };
     view.panel.x.title = x.title.replace(question.asked.family, asked.family);
+    view.panel.y.title = view.panelAsRun.y.title.replace("mean error", titleUnder("mean error", asked.mixing));
     const left = points.filter(({ rest }) => !rest).sort((one, other) => before([one.x, one.y], [other.x, other.y]));
     const front = left.reduce((kept, point) => (!kept.length || point.y < kept.at(-1).y ? [...kept, point] : kept), []);
     view.tables[tableOf("lines")] = front;
-    const figure = plot.closest("figure"), title = this.title.replace("{where}", question.where).replace("{front}", front.length).replace("{all}", left.length);
+    const figure = plot.closest("figure"), title = !left.length ? `${question.where}: no code is left` : this.title.replace("{where}", question.where).replace("{front}", front.length).replace("{all}", left.length);
     figure.dataset.title = title;
     figure.querySelector("[data-finding]").textContent = title;
     view.draw();
@@ -184,23 +188,34 @@ class Choose {
     this.root.querySelector("[data-again]").hidden = !isOwn;
   }
 
-  said({ best, fit, out, why, rungs, gain, price, isSame }, asked) {
+  // How many codes are left without each of the constraints.
+  without(question, asked) {
+    const uses = (asked.mixing || "").split(",").filter(Boolean), left = (change) => answerOf(question, { ...asked, ...change }, this.constants).fit.length;
+    const relaxed = uses.map((use) => [use, left({ mixing: uses.filter((one) => one !== use).join(",") || null })]);
+    if (asked.most_instructions !== null) relaxed.push([`the limit of ${asked.most_instructions} issue slots`, left({ most_instructions: null })]);
+    if (relaxed.length < 1) return [];
+    if (uses.length > 1) relaxed.push(["any use of mixing", left({ mixing: null })]);
+    return [`Without ${relaxed.map(([what, count]) => `${what}, ${count || "none"}`).join("; without ")} left.`];
+  }
+
+  said({ best, fit, out, why, rungs, exact, gain, price, isSame }, asked, question) {
     const dear = out.filter((code) => code.once !== null && why.get(code).startsWith("more than ")).map((code) => code.once);
-    const decodeFirst = asked.mixing && !asked.mixing.split(",").includes("upsample") ? ["Or decode each texel and mix normals (upsample), which no code minds."] : [];
-    if (!best) return [...(dear.length ? [`The cheapest code that is left out for its slots alone takes ${Math.min(...dear)}.`] : ["Every code is left out for another reason: see what does not qualify."]), ...decodeFirst];
+    const decodeFirst = asked.mixing && !asked.mixing.split(",").includes("upsample") ? ["Or decode each texel before you mix: every code survives upsample alone."] : [];
+    if (!best) return [...(dear.length ? [`The cheapest code that is left out for its slots alone takes ${Math.min(...dear)}.`] : this.without(question, asked)), ...decodeFirst];
     const isEnough = (code) => code.largest !== null && 2 * code.largest <= asked.enough, limit = degrees(asked.enough);
     const moved = isEnough(best) ? [`A reflection moves by at most ${degrees(2 * best.largest)}, which is enough. Of codes that are enough and cost little, that of the fewest bits is taken.`] : fit.some(isEnough) || !asked.enough ? [] : [`No code that is left moves a reflection by ${limit} or less.`];
+    const image = best.image === null ? [] : [`Of its images, without mixing, the worst has ${best.image.toFixed(1)} dB.`];
     const slots = best.priced ? `It takes ${best.encode} issue slots to encode and ${best.decode} to decode, and has ${best.bits} bits.` : "What it costs is not known on this machine.";
     const rung = (code) => {
       const better = gain(code), ratio = price(code) / price(best);
-      return `${better >= 0 ? "More exact" : "Less exact"}: ${code.name}, ${Math.abs(better).toFixed(1)} dB, ${isSame(code, best) ? "for the same price" : `for ${Number(ratio.toPrecision(2))} times the price`}.`;
+      return `${better < 0 ? "Less exact" : code === exact ? "Most exact" : "More exact"}: ${code.name}, ${Math.abs(better).toFixed(1)} dB, ${isSame(code, best) ? "for the same price" : `for ${Number(ratio.toPrecision(2))} times the price`}.`;
     };
-    return [`Its mean error is ${degrees(best.mean)}, its largest ${degrees(best.largest)}.`, ...moved, slots, ...rungs.map(rung)];
+    return [`${asked.mixing ? `After ${asked.mixing.replaceAll(",", ", ")} its` : "Its"} mean error is ${degrees(best.mean)}, its largest ${degrees(best.largest)}. A mirror's reflection moves by ${degrees(2 * best.mean)} in the mean and at most ${degrees(2 * best.largest)}.`, ...moved, slots, ...image, ...rungs.map(rung)];
   }
 
-  table({ fit, price }, { readers }) {
+  table({ fit, price }, { readers, mixing }) {
     const most = Math.max(...fit.map((code) => price(code))), least = fit.length ? price(fit[0]) : 1;
-    const heads = [element("th", { scope: "col" }, "code"), ...COMPARED.map(([title]) => element("th", { scope: "col", class: "n" }, title)), element("th", { scope: "col" }, `price with ${readers} readers`)];
+    const heads = [element("th", { scope: "col" }, "code"), ...COMPARED.map(([title]) => element("th", { scope: "col", class: "n" }, titleUnder(title, mixing))), element("th", { scope: "col" }, `price with ${readers} readers`)];
     const rows = fit.map((code) => {
       const bar = element("span", { class: "bar", style: `--share: ${price(code) / most}` });
       const ratio = element("td", { class: "priced" }, bar, code.priced ? `${Number((price(code) / least).toPrecision(2))} ×` : "");
@@ -225,8 +240,8 @@ class Choose {
       const isBest = one && other && value(one) !== null && value(other) !== null && (better === "less" ? value(one) < value(other) : value(one) > value(other));
       return element("td", { class: isBest ? "n best" : "n" }, one ? text(one) : "");
     };
-    const heads = CODECS.map((side, at) => element("th", { scope: "col", class: `n side-${side}` }, `${side.toUpperCase()} ${[a, b][at]?.name ?? "not of this question"}`));
-    const rows = COMPARED.map((column) => element("tr", {}, element("th", { scope: "row" }, column[0]), cell(column, a, b), cell(column, b, a)));
+    const heads = CODECS.map((side, at) => element("th", { scope: "col", class: `n side-${side}` }, `${side.toUpperCase()} ${[a, b][at]?.name ?? (state[side] ? `${state[side]}: see another question` : "none")}`));
+    const rows = COMPARED.map((column) => element("tr", {}, element("th", { scope: "row" }, titleUnder(column[0], this.asked.mixing)), cell(column, a, b), cell(column, b, a)));
     const table = element("table", { class: "pair-figures" }, element("thead", { class: "plain" }, element("tr", {}, element("td", {}), ...heads)), element("tbody", {}, ...rows));
     return [element("div", { class: "scroll", role: "region", "aria-label": "A beside B", tabindex: "0" }, table)];
   }

@@ -63,12 +63,15 @@ class Compare {
       if (of.every(Boolean)) found.push(...comparedIn(table, of));
       await new Promise((done) => setTimeout(done));
     }
-    const rank = ({ isVerdict, figure }) => (figure.hidden ? 2 : Number(isVerdict));
+    // What is equal comes last, whatever it is.
+    const rank = ({ isVerdict, figure, most }) => (most ? (figure.hidden ? 2 : Number(isVerdict)) : 3);
     found.sort((one, other) => rank(one) - rank(other) || other.most - one.most);
     Object.assign(this, { found, isWhole: false });
     for (const side of CODECS) if (lacks[side].length) notes.push(`${side.toUpperCase()}, ${sides[side]}, is not in: ${lacks[side].join("; ")}.`);
     const differs = found.filter(({ most }) => most > 0), tables = new Set(found.map(({ about }) => about.key));
-    const count = element("p", { class: "note" }, `${found.length} figures in ${tables.size} tables have rows of both; ${differs.length} of them differ.`);
+    const several = (number, word) => `${number} ${word}${number === 1 ? "" : "s"}`;
+    const said = found.length ? `${several(found.length, "figure")} in ${several(tables.size, "table")} have rows of both; ${differs.length} of them differ.` : "No table of this run has rows of both A and B.";
+    const count = element("p", { class: "note" }, said);
     const aside = notes.length ? [element("details", { class: "aside" }, element("summary", {}, `What is compared with what (${notes.length})`), ...notes.map((note) => element("p", {}, note)))] : [];
     this.root.replaceChildren(count, ...aside, ...(found.length ? [this.list()] : []));
     return null;

@@ -63,7 +63,7 @@ function at(state, id) {
 function change(next, isDragged = false) {
   const before = state;
   state = changed(state, next);
-  const hash = hashOf(state), isStep = ["a", "b", "view", "at"].some((key) => before[key] !== state[key]);
+  const hash = hashOf(state), isStep = ["a", "b", "view", "at", ...CONSTRAINTS].some((key) => before[key] !== state[key]);
   if (hash !== location.hash) history[isStep && !isDragged ? "pushState" : "replaceState"](null, "", hash);
   show(before);
 }

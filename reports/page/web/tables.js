@@ -74,9 +74,9 @@ function filter(sheet) {
 
 // What is shown of a table: titles and rows, as filtered and sorted.
 function shownOf(table, read) {
-  const titles = cellsOf(table.tHead.rows[0]).map((cell) => cell.textContent.trim());
+  const isText = (cell) => !cell.matches(".take"), titles = cellsOf(table.tHead.rows[0]).filter(isText).map((cell) => cell.textContent.trim());
   const rows = Array.from(table.tBodies[0].rows).filter((row) => !row.hidden);
-  return [titles, ...rows.map((row) => cellsOf(row).map(read))];
+  return [titles, ...rows.map((row) => cellsOf(row).filter(isText).map(read))];
 }
 
 // A figure with four digits, as tables.py shows it.
@@ -94,8 +94,8 @@ function markdownOf(titles, numeric, rows) {
 }
 
 function asMarkdown(table) {
-  const [titles, ...rows] = shownOf(table, (cell) => cell.textContent.trim());
-  return markdownOf(titles, cellsOf(table.tHead.rows[0]).map((cell) => cell.classList.contains("n")), rows);
+  const [titles, ...rows] = shownOf(table, (cell) => cell.textContent.trim().replace("\n", ", "));
+  return markdownOf(titles, cellsOf(table.tHead.rows[0]).filter((cell) => !cell.matches(".take")).map((cell) => cell.classList.contains("n")), rows);
 }
 
 // A spreadsheet shows text behind an apostrophe, and computes nothing. What it takes for a number is harmless.

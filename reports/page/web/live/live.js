@@ -17,6 +17,6 @@ async function openLaboratory(root, data) {
   live.device.on("restored", () => (said.textContent = "The GPU is back."));
   root.querySelector("[data-live=device]").textContent = `${live.device.renderer}; ${browserName()}`;
   for (const part of live.parts) await part(root);
-  if (said.textContent === "Opening") said.textContent = "";
+  said.textContent = "";
   root.dataset.ready = "";
 }

@@ -42,7 +42,7 @@ class See {
   take(state) {
     const sides = this.sidesOf(state), lacks = CODECS.filter((side) => state[side] && !Object.values(sides).includes(state[side]));
     for (const [side, name] of Object.entries(sides)) this.control[side].value = name;
-    this.root.querySelector("[data-live=said]").textContent = lacks.map((side) => `${side.toUpperCase()}, ${state[side]}, is not in this laboratory.`).join(" ");
+    this.root.querySelector("[data-live=lacks]").textContent = lacks.map((side) => `${side.toUpperCase()}, ${state[side]}, is not in this laboratory.`).join(" ");
     this.change();
   }
 
