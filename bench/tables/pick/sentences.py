@@ -47,7 +47,7 @@ MUCH_LOST = 1.0
 # The rungs, as a sentence begins with each.
 RUNGS = {
     MORE_EXACT: "More exact",
-    MOST_EXACT: "Most exact",
+    MOST_EXACT: "Most exact to 0.1 dB",
     CHEAPER: "Cheaper",
     FEWER_BITS: "Fewer bits",
     ACROSS: "Survives an edge, too",

@@ -208,7 +208,7 @@ class Choose {
     const slots = best.priced ? `It takes ${best.encode} issue slots to encode and ${best.decode} to decode, and has ${best.bits} bits.` : "What it costs is not known on this machine.";
     const rung = (code) => {
       const better = gain(code), ratio = price(code) / price(best);
-      return `${better < 0 ? "Less exact" : code === exact ? "Most exact" : "More exact"}: ${code.name}, ${Math.abs(better).toFixed(1)} dB, ${isSame(code, best) ? "for the same price" : `for ${Number(ratio.toPrecision(2))} times the price`}.`;
+      return `${better < 0 ? "Less exact" : code === exact ? "Most exact to 0.1 dB" : "More exact"}: ${code.name}, ${Math.abs(better).toFixed(1)} dB, ${isSame(code, best) ? "for the same price" : `for ${Number(ratio.toPrecision(2))} times the price`}.`;
     };
     return [`${asked.mixing ? `After ${asked.mixing.replaceAll(",", ", ")} its` : "Its"} mean error is ${degrees(best.mean)}, its largest ${degrees(best.largest)}. A mirror's reflection moves by ${degrees(2 * best.mean)} in the mean and at most ${degrees(2 * best.largest)}.`, ...moved, slots, ...image, ...rungs.map(rung)];
   }

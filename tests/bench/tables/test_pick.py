@@ -334,7 +334,7 @@ def test_a_run_measures_the_codes_that_the_default_answer_names():
     kept = ROOT / "tests/manual_tables/kept/answer-normalbench-pick.json"
     said = [line[1] for line in json.loads(kept.read_text())["lines"]]
     taken = {match[1] for text in said if (match := re.search(r": take (\w+)\.", text))}
-    ladder = {match[1] for text in said if (match := re.match(r"(?:Mor|Mos|Few|Che)\w+(?: \w+)?: (\w+),", text))}
+    ladder = {match[1] for text in said if (match := re.match(r"(?:Mor|Mos|Few|Che)\w+(?: [\w.]+)*: (\w+),", text))}
     assert taken == {"octahedral", "xyz_largest"} and ladder >= {"octahedral_precise", "spherical_fibonacci"}
     assert taken | ladder <= set(COMMON) and len(COMMON) <= 20
     for name in ("quality", "render", "cost", "mix", "effects"):
