@@ -74,6 +74,14 @@ class CardTable {
   }
 }
 
+const cardTables = new Map();
+
+// A table of the run, read once.
+function cardTable(about) {
+  if (!cardTables.has(about.key)) cardTables.set(about.key, dataOf(about.key).then((data) => new CardTable(about, data)));
+  return cardTables.get(about.key);
+}
+
 // Which engines keep normals so: in this storage, and in others.
 function usersOf(used, storage) {
   const named = (some) => [...new Map(some.map(([engine, year]) => [engine, `${engine} (${year})`])).values()].join(", ");
@@ -84,7 +92,7 @@ function usersOf(used, storage) {
 
 class Cards {
   constructor(root, made) {
-    Object.assign(this, { root, ...made, read: new Map(), turn: 0 });
+    Object.assign(this, { root, ...made, turn: 0 });
     // Codes are compared that hold the same normals; of a reader's own all, as far as is known.
     for (const one of Object.values(this.codecs)) one.domain ??= "sphere";
     this.list = root.querySelector("[data-card-list]");
@@ -119,11 +127,6 @@ class Cards {
     return element("div", { class: "sheet", "data-sheet": "" }, tools, element("div", { class: "scroll", role: "region", "aria-label": "Every codec", tabindex: "0" }, table), element("p", { class: "note" }, note));
   }
 
-  table(about) {
-    if (!this.read.has(about.key)) this.read.set(about.key, dataOf(about.key).then((data) => new CardTable(about, data)));
-    return this.read.get(about.key);
-  }
-
   // The card, a part of it in each task, so that the page answers in between.
   async show({ a, b }) {
     const turn = ++this.turn, names = [a, b].filter(Boolean);
@@ -131,7 +134,7 @@ class Cards {
     if (!names.length) return this.card.replaceChildren(element("p", { class: "note" }, "Choose a codec in the list: everything about it is shown here."));
     const made = [this.head(a || b, a ? "a" : "b"), this.short(a, b), this.pictures(names), this.written(a || b)];
     for (const about of this.tables) {
-      const part = this.figures(about, await this.table(about), a, b);
+      const part = this.figures(about, await cardTable(about), a, b);
       if (part) made.push(part);
       await new Promise((done) => setTimeout(done));
       if (turn !== this.turn) return null;
@@ -331,7 +334,7 @@ if (cardsRoot) {
     const key = now.view === codecsView ? JSON.stringify([now.a, now.b]) : "";
     if (key === shownCard) return;
     shownCard = key;
-    if (key) built ||= unpacked("#data-cards").then((text) => new Cards(cardsRoot, JSON.parse(text)));
+    if (key) built ||= dataOf("cards").then((made) => new Cards(cardsRoot, made));
     // What is not seen takes no elements.
     built.then((made) => (shownCard ? made.show(state) : made.close()));
   });

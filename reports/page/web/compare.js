@@ -42,19 +42,14 @@ function comparedIn(table, sides) {
 
 class Compare {
   constructor(root, { codecs, tables }) {
-    Object.assign(this, { root, codecs, tables, read: new Map(), turn: 0, isWhole: false, shown: "" });
-  }
-
-  table(about) {
-    if (!this.read.has(about.key)) this.read.set(about.key, dataOf(about.key).then((data) => new CardTable(about, data)));
-    return this.read.get(about.key);
+    Object.assign(this, { root, codecs, tables, turn: 0, isWhole: false });
   }
 
   async show({ a, b }) {
     const turn = ++this.turn, found = [], sides = { a, b }, notes = [], lacks = { a: [], b: [] };
     if (!a || !b) return this.root.replaceChildren(element("p", { class: "note" }, "Choose A and B above, or click a codec's name anywhere: it is A, with shift B."));
     for (const about of this.tables) {
-      const table = await this.table(about), of = CODECS.map((side) => table.rowsOf(sides[side], this.codecs));
+      const table = await cardTable(about), of = CODECS.map((side) => table.rowsOf(sides[side], this.codecs));
       if (turn !== this.turn) return null;
       for (const [at, side] of CODECS.entries()) {
         if (of[at]?.like) notes.push(`${side.toUpperCase()} has no figures in ${about.title}: those of ${of[at].like} hold, which stores the same numbers of as many bits.`);
@@ -121,7 +116,7 @@ if (compareRoot) {
     const key = now.view === compareRoot.closest(".view").dataset.view ? JSON.stringify([now.a, now.b]) : "";
     if (!key || key === shown) return;
     shown = key;
-    built ||= unpacked("#data-cards").then((text) => new Compare(compareRoot, JSON.parse(text)));
+    built ||= dataOf("cards").then((made) => new Compare(compareRoot, made));
     built.then((made) => made.show(now));
   });
 }
