@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import itertools
 import json
 import math
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
@@ -213,17 +214,29 @@ def views(found: Found, has_codecs: bool, has_pictures: bool) -> list[Shown]:
     return [Shown(view, TITLES[view], mine) for view, mine in parts.items() if mine]
 
 
-def beginning(parts: Sequence[Part], names: Sequence[str], is_laboratory: bool = False) -> dict[str, Any]:
+def beginning(
+    parts: Sequence[Part], names: Sequence[str], own: Sequence[str] = (), is_laboratory: bool = False
+) -> dict[str, Any]:
     """What the script begins with: every codec; which are A and B until a reader says, the answer and what stands next
-    to it; and the view: the laboratory if the page is one, else that of what was measured first, answers before all."""
+    to it, or a user's own and the answer; and the view: the laboratory if the page is one, else that of what was
+    measured first, answers before all."""
     measured = sorted((part for part in parts if part.is_there), key=lambda part: not part.section.about.leads)
     leading = [part for part in measured if part.section.about.leads]
     answers = (table for part in leading for table in part.tables if table.said)
     shown = dict.fromkeys(line.codec for table in list(answers)[:1] for line in table.rows if line.codec in {*names})
-    first, second = [*shown, "", ""][:2]
+    # A user's own stands against the answer in its storage.
+    same = (name for name in own for other in shown if name.split()[1:] == other.split()[1:])
+    mine = next(itertools.chain(same, own), None)
+    first, second = [*([mine] if mine else []), *(name for name in shown if name != mine), "", ""][:2]
     of_rows = measured[0].section.about.view if measured else View.DATA
     view = View.SEE if is_laboratory else of_rows
     return {"codecs": list(names), "a": first, "b": second, "view": view}
+
+
+def _own(found: Found, names: Sequence[str]) -> list[str]:
+    """The codecs whose encoding a user has brought."""
+    known = found.extras.get("cards", {}).get("encodings")
+    return [name for name in names if known and cards.of_encoding(name) not in known]
 
 
 def drawings(found: Found) -> list[Drawing]:
@@ -279,7 +292,7 @@ def html(
     names, leading = codecs(found, specs), [part for part in parts if part.section.about.leads and part.is_there]
     maps, begins, choices = (
         found.extras.get("maps", ()),
-        beginning(parts, names, bool(home and found.live)),
+        beginning(parts, names, _own(found, names), bool(home and found.live)),
         found.extras.get("choices"),
     )
     return template("page.html.j2").render(

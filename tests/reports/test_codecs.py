@@ -144,16 +144,33 @@ def test_the_code_that_is_copied_is_what_code_writes(shown, run):
     assert found.partition("#ifndef")[2] == written.partition("#ifndef")[2]
 
 
+def test_the_code_of_a_lies_below_the_answer_too(browser, codecs_page):
+    page = Opened(browser, codecs_page, fragment="#v1/choose?a=octahedral%20rg8")
+    below = page.page.locator("[data-of-cards=code]")
+    assert below.locator("[data-code]").count() == 0, "nothing is built before it is opened"
+    below.locator("summary").click()
+    kept = read_code(codecs_page.parent)
+    first, *_ = kept["codecs"]["octahedral rg8"]["texts"].values()
+    page.says("[data-of-cards=code] h3", "octahedral rg8")
+    assert below.locator("[data-code]").text_content() == "".join(kept["pieces"][at] for at in first)
+    page.page.evaluate("change({ a: 'spheremap rgb10a2' })")
+    page.says("[data-of-cards=code] h3", "spheremap rgb10a2")
+    assert page.said == []
+    page.context.close()
+
+
 def test_an_encoding_of_the_users_own_and_no_codec_at_all(shown):
     assert "An encoding of your own, mine" in card_of(shown, "mine rgba8").inner_text()
     shown.page.evaluate("change({ a: '', b: '' })")
     shown.says("[data-card]", "Choose a codec in the list")
 
 
-def test_an_unknown_codec_is_said_and_the_answers_card_is_shown(browser, codecs_page):
+def test_an_unknown_codec_is_said_and_the_card_of_ones_own_is_shown(browser, codecs_page):
     page = Opened(browser, codecs_page, fragment="#v1/codecs?a=nothing%20rg8")
     page.says("#unknown", "The address names the codec nothing rg8, which this page does not have.")
-    page.page.wait_for_selector('[data-card][data-ready="octahedral rg8"]')
+    page.page.wait_for_selector('[data-card][data-ready="mine rgba8"]')
+    # A user's own encoding stands against the answer.
+    assert page.page.evaluate("[known.a, known.b]") == ["mine rgba8", "octahedral rg8"]
     page.context.close()
 
 
@@ -187,10 +204,10 @@ def test_a_finger_chooses_a_and_b(browser, codecs_page):
 
 def test_one_action_leads_from_the_answer_to_the_card(browser, codecs_page):
     page = Opened(browser, codecs_page)
-    button = page.page.get_by_role("button", name="Everything about A, octahedral rg8")
+    button = page.page.get_by_role("button", name="Everything about A, mine rgba8")
     assert button.bounding_box()["y"] < 900, "on the first screen"
     button.click()
-    page.page.wait_for_selector('[data-card][data-ready="octahedral rg8"]')
+    page.page.wait_for_selector('[data-card][data-ready="mine rgba8"]')
     assert page.page.locator("#card-h").is_visible() and page.page.evaluate("state.at") == "cards"
     page.page.locator("nav [data-to=choose]").click()
     page.page.wait_for_selector("[data-card]:empty", state="attached")

@@ -197,9 +197,9 @@ class Cards {
   }
 
   // Where on the sphere it is off, and what it makes of a picture.
-  pictures(names) {
+  pictures(names, level = "h4") {
     const made = names.flatMap((name) => [...this.globe(name), ...this.picture(name)]);
-    return made.length ? element("div", {}, element("h4", {}, "What it looks like"), element("div", { class: "globes" }, ...made)) : null;
+    return made.length ? element("div", {}, element(level, {}, "What it looks like"), element("div", { class: "globes" }, ...made)) : null;
   }
 
   // The map of a codec, or of one that stores the same numbers.
@@ -227,10 +227,10 @@ class Cards {
   }
 
   // The code to copy, as `normalbench code` writes it.
-  written(name) {
+  written(name, level = "h4") {
     const { languages, pieces, codecs } = this.code, one = codecs[name], [encoding, storage] = name.split(" ");
     const command = `normalbench code ${encoding} --storage ${storage}`;
-    const title = element("h4", {}, "Code to copy");
+    const title = element(level, {}, `Code to copy: ${name}`);
     if (!one) return this.codecs[name].numbers ? element("div", {}, title, element("p", { class: "note" }, "This page keeps no code of it. ", element("code", {}, `${command} --to hlsl`), " writes it.")) : null;
     const select = element("select", { "data-language": "" }, ...Object.keys(one.texts).map((key) => element("option", { value: key }, languages[key])));
     const text = () => one.texts[select.value].map((at) => pieces[at]).join(""), said = element("span", { role: "status" });
@@ -330,11 +330,22 @@ const cardsRoot = document.querySelector("[data-cards]");
 if (cardsRoot) {
   const codecsView = cardsRoot.closest(".view").dataset.view;
   let built = null, shownCard = "";
+  const once = () => (built ||= dataOf("cards").then((made) => new Cards(cardsRoot, made)));
+  // The code of A, and where A and B are off, also below the answer.
+  for (const details of document.querySelectorAll("[data-of-cards]")) {
+    const fill = async () => {
+      const made = await once(), names = CODECS.map((side) => state[side]).filter((name) => made.codecs[name]);
+      const part = names.length ? (details.dataset.ofCards === "code" ? made.written(names[0], "h3") : made.pictures(names, "h3")) : null;
+      details.replaceChildren(details.firstElementChild, ...(details.open ? [part ?? element("p", { class: "note" }, "This page has none of A and B.")] : []));
+    };
+    details.addEventListener("toggle", fill);
+    shows.push((now, before) => details.open && CODECS.some((side) => now[side] !== before[side]) && fill());
+  }
   shows.push((now) => {
     const key = now.view === codecsView ? JSON.stringify([now.a, now.b]) : "";
     if (key === shownCard) return;
     shownCard = key;
-    if (key) built ||= dataOf("cards").then((made) => new Cards(cardsRoot, made));
+    if (key) once();
     // What is not seen takes no elements.
     built.then((made) => (shownCard ? made.show(state) : made.close()));
   });
