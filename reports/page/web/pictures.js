@@ -365,6 +365,7 @@ class Viewer {
     const scaled = ["angle", "apart"].includes(view);
     this.one("#scale").closest("label").hidden = !scaled;
     this.one("#colours").closest("label").hidden = !scaled && view !== "flip";
+    this.one("[data-fit]").hidden = !scaled;
     try {
       for (const side of SIDES) {
         const planes = await this.planes(this.side(side).value);

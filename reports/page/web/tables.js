@@ -172,7 +172,7 @@ const THEMES = { "": "as the system", light: "light", dark: "dark" };
 function setTheme(name) {
   if (name) document.documentElement.dataset.theme = name;
   else delete document.documentElement.dataset.theme;
-  document.querySelector("#theme span").textContent = THEMES[name];
+  document.querySelector("#theme span").textContent = `: ${THEMES[name]}`;
 }
 
 function remembered(key, value) {
