@@ -6,15 +6,14 @@ from collections.abc import Iterable, Iterator
 from itertools import islice
 from pathlib import Path
 
-from ...encodings.catalogue import ENCODINGS
 from ...encodings.codecs.codec import Codec
-from ...encodings.storages.rules import storage_of
 from ...gbuffer.gl.shader import ShaderError
 from ...reports.page.codec_key import CodecKey
 from ..ground.output.errors import MissingError, UsageError
 from ..keep.runs import Done
 from ..shaders.code.emit import LANGUAGES
 from ..shaders.code.files import code_of
+from ..show.cards import codec_of
 from ..show.kept_code import Written, write_code
 from ..tables.registry import TABLES
 from ..tables.shared_columns import ENCODING
@@ -40,20 +39,9 @@ def _codecs(rows: Iterable[Row]) -> dict[str, Codec]:
     found: dict[str, Codec] = {}
     for row in rows:
         key = CodecKey.said_by(row)
-        if key and key.label not in found and (codec := _codec(key)):
+        if key and key.label not in found and (codec := codec_of(key)) and codec.fits:
             found[key.label] = codec
     return found
-
-
-def _codec(key: CodecKey) -> Codec | None:
-    """A codec of the catalogue; None where the encoding is not, or the storage is none that code is written for."""
-    encoding = ENCODINGS.get(key.encoding)
-    try:
-        storage = storage_of(key.storage)
-    except ValueError:
-        return None
-    codec = Codec(encoding, storage, key.rounding) if encoding and storage else None
-    return codec if codec and codec.fits else None
 
 
 def _best(name: str, rows: list[Row]) -> Iterator[Row]:

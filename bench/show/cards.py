@@ -56,18 +56,23 @@ def _takes(table: str, option: str) -> bool:
 
 
 def _codec_record(key: CodecKey) -> dict[str, Any]:
-    """The storage of a codec in words, its bits, and what numbers it stores; empty where that is not known."""
+    """The storage of a codec in words, its bits, what numbers it stores and which normals it holds; empty where that is
+    not known."""
+    if not (codec := codec_of(key)):
+        return {}
+    numbers = f"{rule_of_first(codec.storage, codec.encoding.components)} {codec.rounding}"
+    about = {"storage": codec.storage.title, "bits": codec.bits, "numbers": numbers}
+    return about | {"domain": codec.encoding.domain}
+
+
+def codec_of(key: CodecKey) -> Codec | None:
+    """A codec of the catalogue; None where the encoding is not, or nothing is known of the storage."""
     encoding = ENCODINGS.get(key.encoding)
     try:
         storage = storage_of(key.storage)
     except ValueError:
-        storage = None
-    if not encoding or not storage:
-        return {}
-    codec = Codec(encoding, storage, key.rounding)
-    numbers = f"{rule_of_first(codec.storage, encoding.components)} {codec.rounding}"
-    about = {"storage": codec.storage.title, "bits": codec.bits, "numbers": numbers}
-    return about | {"domain": encoding.domain}
+        return None
+    return Codec(encoding, storage, key.rounding) if encoding and storage else None
 
 
 def _encoding_record(encoding: Encoding) -> dict[str, Any]:

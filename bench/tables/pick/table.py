@@ -216,7 +216,7 @@ COLUMNS = (
     Column("enough", "What a mirror's reflection may move by.", HOW, "degrees", shown=False),
     Column("accept_holes", "Whether codes with a hole may be the answer.", HOW, shown=False),
     Column("accept_lengths", "Whether codes whose decodes are not of length 1 may be the answer.", HOW, shown=False),
-    Column("look_ups", "Whether codes that read a look-up table may be the answer.", HOW, shown=False, before="yes"),
+    Column("look_ups", "Whether codes that read a look-up table may be the answer.", HOW, shown=False),
     Column("most_instructions", "The most issue slots that were allowed, encode and decode once.", HOW),
     Column("needs", "The domain that was asked for.", HOW),
     Column("mixing", "What stored codes must survive, as --needs says it.", HOW),
