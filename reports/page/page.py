@@ -227,7 +227,8 @@ def beginning(
     # A user's own stands against the answer in its storage.
     same = (name for name in own for other in shown if name.split()[1:] == other.split()[1:])
     mine = next(itertools.chain(same, own), None)
-    first, second = [*([mine] if mine else []), *(name for name in shown if name != mine), "", ""][:2]
+    others = [name for name in [*shown, *names] if name != mine] if mine else list(shown)
+    first, second = [*([mine] if mine else []), *others, "", ""][:2]
     of_rows = measured[0].section.about.view if measured else View.DATA
     view = View.SEE if is_laboratory else of_rows
     return {"codecs": list(names), "a": first, "b": second, "view": view}
