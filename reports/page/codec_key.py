@@ -14,7 +14,7 @@ class CodecKey(NamedTuple):
     rounding: str
 
     @classmethod
-    def of(cls, row: dict[str, Any]) -> CodecKey:
+    def of(cls, row: Mapping[str, Any]) -> CodecKey:
         """The codec of a row, which rounds to the nearest unless the row says otherwise."""
         return cls(str(row.get("encoding")), str(row.get("storage")), str(row.get("rounding") or "nearest"))
 
@@ -22,8 +22,7 @@ class CodecKey(NamedTuple):
     def said_by(cls, row: Mapping[str, Any]) -> CodecKey | None:
         """The codec of a row of any table, which rounds to the nearest unless the row says otherwise; None where the
         row does not say how it is stored."""
-        encoding, storage, rounding = (row.get(name) for name in cls._fields)
-        return cls(str(encoding), str(storage), str(rounding or "nearest")) if encoding and storage else None
+        return cls.of(row) if row.get("encoding") and row.get("storage") else None
 
     @property
     def label(self) -> str:

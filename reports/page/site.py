@@ -109,24 +109,33 @@ def words_table(title: str, rows: Sequence[Mapping[str, str | None]]) -> Table:
 
 
 @dataclass(frozen=True)
-class Index:
-    """A list that is searched.
+class Headed:
+    """A page that answers a question.
 
     Attributes:
         path: of the page, from the site's folder.
         title: what the page is of.
         description: what a search shows of it.
         question: its heading.
-        said: what all rows together show, in sentences.
-        label: of the field to search by.
-        searched: its tables.
-        measures: whether it says how a reader's device is measured and added.
     """
 
     path: str
     title: str
     description: str
     question: str
+
+
+@dataclass(frozen=True)
+class Index(Headed):
+    """A list that is searched.
+
+    Attributes:
+        said: what all rows together show, in sentences.
+        label: of the field to search by.
+        searched: its tables.
+        measures: whether it says how a reader's device is measured and added.
+    """
+
     said: Sequence[str]
     label: str
     searched: Sequence[Searched]
@@ -134,23 +143,15 @@ class Index:
 
 
 @dataclass(frozen=True)
-class ViewPage:
+class ViewPage(Headed):
     """What a view of the run's page says, without scripts.
 
     Attributes:
-        path: of the page, from the site's folder.
-        title: what the page is of.
-        description: what a search shows of it.
-        question: its heading.
         said: the answer in a sentence; empty for none.
         view: the path of the view in the run's page, and what a reader does there.
         parts: its sections.
     """
 
-    path: str
-    title: str
-    description: str
-    question: str
     said: str
     view: tuple[str, str]
     parts: Sequence[Part]

@@ -248,4 +248,4 @@ class Choose {
 }
 
 const chooseRoot = document.querySelector("[data-choose]");
-if (chooseRoot) unpacked("#data-choices").then((text) => new Choose(chooseRoot, JSON.parse(text)));
+if (chooseRoot) dataOf("choices").then((made) => new Choose(chooseRoot, made));
