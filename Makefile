@@ -4,7 +4,7 @@
 # make slow    the other tests: whole runs and what seldom breaks; .ci/nightly has those that take longest
 # make site    make a website in site of the newest run; of another with RUN=FOLDER
 # make setup   virtual environment in .venv, packages, GL driver, shader compilers
-# make lint    ruff and the type checker
+# make lint    ruff and the type checker, which checks for Linux, Windows and macOS
 
 PYTHON ?= python3
 BIN = .venv/bin
@@ -34,7 +34,7 @@ setup: .venv/ready
 lint: .venv/ready
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/basedpyright
+	for system in Linux Windows Darwin; do $(BIN)/basedpyright --pythonplatform $$system || exit 1; done
 
 # The stamp is younger than what it was made from, so that a second call installs nothing.
 .venv/ready: pyproject.toml .ci/constraints.txt

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ...encodings.codecs.files import file_bytes
-from ..ground.machine.posix.locks import lock
+from ..ground.machine.systems.locks import lock, put_in_place
 from ..ground.output.errors import UsageError
 from ..ground.output.writing import clear_away, partial_of
 
@@ -68,15 +68,14 @@ class Journal:
             while data:
                 data = data[file.write(data) :]
             os.fsync(file.fileno())
-            partial.replace(self.path)
+            self._file = put_in_place(self.path, self._file, partial, file)
         except OSError as error:
             if file:
                 file.close()
             raise UsageError(f"cannot write {self.path}: {error.strerror or error}") from error
         finally:
             partial.unlink(missing_ok=True)
-        self._file.close()
-        self._file, self.lines = file, list(lines)
+        self.lines = list(lines)
 
     def close(self) -> None:
         """Close the file, so that others may write it."""

@@ -11,8 +11,8 @@ import jax
 from ...encodings.storages.storage import STORAGES
 from ...gbuffer.codecs.loops import MANY, loop_limit
 from ...gbuffer.gl.device import NoDeviceError, device
-from ..ground.machine.posix.system_files import processor_lines
 from ..ground.machine.settings import settings
+from ..ground.machine.systems.system_files import processor_lines
 from ..ground.options.gpu_families import ANV, HASVK, MOBILE, NVRTC, R600, RADV
 from ..ground.output.errors import MissingError
 from ..shaders.isa import isa, spirv

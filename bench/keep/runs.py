@@ -227,7 +227,7 @@ def _step_of(part: Row) -> str:
 
 def _write_facts(folder: Path, facts: Row) -> None:
     with whole_file(folder / RUN) as partial:
-        partial.write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")
+        partial.write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8", newline="\n")
 
 
 class Amended:

@@ -19,7 +19,7 @@ def write_tables(folder: Path, done: Done, names: Iterable[str]) -> None:
 def _write_table(path: Path, rows: list[Row]) -> None:
     for suffix, written in ((".json", tables.to_json), (".csv", tables.to_csv)):
         with whole_file(path.with_suffix(suffix)) as partial:
-            partial.write_text(written(rows), encoding="utf-8")
+            partial.write_text(written(rows), encoding="utf-8", newline="\n")
     if tables.has_parquet():
         with whole_file(path.with_suffix(".parquet")) as partial:
             tables.write_parquet(rows, partial)

@@ -26,7 +26,7 @@ from typing import IO, Any
 
 from ..ground.machine.children import environment, python, text_of
 from ..ground.machine.memory import look_for_garbage_seldom
-from ..ground.machine.posix.processes import OWN_GROUP, end_group
+from ..ground.machine.systems.processes import end_group, end_this_group, started
 from ..ground.output.errors import MissingError, UsageError
 
 # How long a process may take to end by itself, in seconds.
@@ -51,13 +51,12 @@ class Piped:
         self.ended = Event()
         self._folder = tempfile.mkdtemp(prefix="normalbench-")
         self._errors = tempfile.TemporaryFile()  # noqa: SIM115 # as long as the process
-        self._process = subprocess.Popen(
+        self._process = started(
             python(__name__),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self._errors,
             env=environment() | {TEMPORARY: self._folder},
-            **OWN_GROUP,
         )
         self.call(first)
         self._reader = Thread(target=self._read, args=(take,), daemon=True)
@@ -96,7 +95,7 @@ class Piped:
         self.end()
         with suppress(subprocess.TimeoutExpired):
             self._process.wait(END_S)
-        end_group(self._process.pid)
+        end_group(self._process)
         self._process.wait()
         self._reader.join()
         shutil.rmtree(self._folder, ignore_errors=True)
@@ -107,7 +106,7 @@ class Piped:
 def _end_now(*_: int | FrameType | None) -> None:
     """End this process at once, whatever it computes, with all that it started and its folder."""
     shutil.rmtree(os.environ[TEMPORARY], ignore_errors=True)
-    end_group(0)
+    end_this_group()
 
 
 def _own_ends() -> tuple[IO[bytes], IO[bytes]]:

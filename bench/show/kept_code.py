@@ -85,7 +85,7 @@ def write_code(folder: Path, languages: Mapping[str, str], codecs: Mapping[str, 
     }
     with whole_file(folder / FILE) as partial:
         kept = {"languages": dict(languages), "pieces": shared.pieces, "codecs": made}
-        partial.write_text(json.dumps(kept, separators=(",", ":")), encoding="utf-8")
+        partial.write_text(json.dumps(kept, separators=(",", ":")), encoding="utf-8", newline="\n")
 
 
 def read_code(folder: Path) -> dict[str, Any]:

@@ -86,7 +86,7 @@ def _report_several(
     check_writable(target)
     made = several.html(names, list(side_by_side.sheets(runs)), list(side_by_side.figures(runs)))
     with whole_file(target) as partial:
-        partial.write_text(made, encoding="utf-8")
+        partial.write_text(made, encoding="utf-8", newline="\n")
     say(f"{target}\n")
 
 
@@ -126,7 +126,7 @@ def write_report(
     _write_beside(target.parent / pictures, gallery.files)
     with whole_file(target) as partial:
         files = {path.name for path in folder.iterdir()} if target.parent.resolve() == folder.resolve() else set()
-        partial.write_text(page.html(run, gallery, specs, library_of(specs), files), encoding="utf-8")
+        partial.write_text(page.html(run, gallery, specs, library_of(specs), files), encoding="utf-8", newline="\n")
     return target
 
 
@@ -167,7 +167,7 @@ def _write_beside(folder: Path, files: Mapping[str, str]) -> None:
             path.unlink()
     for name, text in files.items():
         with whole_file(folder / name) as partial:
-            partial.write_text(text, encoding="utf-8")
+            partial.write_text(text, encoding="utf-8", newline="\n")
 
 
 def draw_ahead(folder: Path) -> dict[str, str]:

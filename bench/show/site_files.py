@@ -82,7 +82,7 @@ def _partial_folder(folder: Path) -> Iterator[Path]:
 def _write(folder: Path, made: Mapping[str, str], listed: list[str]) -> None:
     for path, text in {**made, MARKER: _marker_text(listed)}.items():
         (folder / path).parent.mkdir(exist_ok=True)
-        (folder / path).write_text(text, encoding="utf-8")
+        (folder / path).write_text(text, encoding="utf-8", newline="\n")
 
 
 def _marker_text(files: list[str]) -> str:
@@ -105,4 +105,4 @@ def _clear(folder: Path, stale: set[str], made: Mapping[str, str]) -> None:
         (folder / path).unlink(missing_ok=True)
     if stale:
         with whole_file(folder / MARKER) as partial:
-            partial.write_text(_marker_text(sorted(made)), encoding="utf-8")
+            partial.write_text(_marker_text(sorted(made)), encoding="utf-8", newline="\n")

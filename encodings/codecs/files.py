@@ -60,7 +60,7 @@ def file_bytes(path: Path, most: int) -> bytes:
 
 def _bytes(path: Path, most: int) -> bytes:
     # Without O_NONBLOCK, opening a pipe waits for whoever writes to it.
-    with os.fdopen(os.open(path, os.O_RDONLY | os.O_NONBLOCK), "rb") as file:
+    with os.fdopen(os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0)), "rb") as file:
         found = os.fstat(file.fileno())
         if not stat.S_ISREG(found.st_mode):
             raise OSError(errno.EINVAL, NOT_PLAIN)

@@ -75,7 +75,7 @@ def turns_made(device: Device, encoding: Encoding, n: np.ndarray, view: np.ndarr
     given[:, 3] = np.tile(np.arange(loops), len(n))
     with TemporaryDirectory() as folder:
         path = Path(folder, _COUNTER)
-        path.write_text(text, encoding="utf-8")
+        path.write_text(text, encoding="utf-8", newline="\n")
         views = np.repeat(view, loops, axis=0)
         turns, _ = exact(device, str(path), {}, {}, [given, views], 2, encoding.tables) if loops else (given, None)
     encoded, decoded = turns[:, 0], turns[:, 1]

@@ -36,7 +36,12 @@ OVER = (moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA)
 BY_ALPHA = (0x8003, 0x8004)
 # What is drawn of vertices that are no triangles' corners.
 POINTS = moderngl.POINTS
-INSTALL = "install a GL driver (Debian: apt-get install libegl1 libgl1 libgl1-mesa-dri)"
+# What to do about it, by system.
+INSTALL = {
+    "linux": "install a GL driver (Debian: apt-get install libegl1 libgl1 libgl1-mesa-dri)",
+    "win32": "install the driver of the GPU's vendor",
+    "darwin": "Apple's OpenGL ends at 4.1",
+}
 
 
 class _Releasable(Protocol):
@@ -57,12 +62,12 @@ def _release_all(made: Sequence[_Releasable]) -> None:
 
 def _create_context() -> moderngl.Context:
     # EGL needs no display; only Linux has it. A missing library is reported as a plain Exception by glcontext.
-    options: dict[str, Any] = {"backend": "egl"} if sys.platform.startswith("linux") else {}
+    options: dict[str, Any] = {"backend": "egl"} if sys.platform == "linux" else {}
     try:
         return moderngl.create_context(standalone=True, require=430, **options)
     except Exception as error:
         reason = str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
-        raise NoDeviceError(f"no GL 4.3 device: {reason}; {INSTALL}") from error
+        raise NoDeviceError(f"no GL 4.3 device: {reason}; {INSTALL.get(sys.platform, INSTALL['linux'])}") from error
 
 
 class FormatError(Exception):

@@ -42,17 +42,27 @@ _SIGNATURES = {
 _TYPES = {"i": ctypes.c_int, "u": ctypes.c_uint, "f": ctypes.c_float, "b": ctypes.c_ubyte, "p": ctypes.c_void_p}
 
 
+# GL's libraries, and what finds its functions in them.
+FINDERS = {
+    "libEGL.so.1": "eglGetProcAddress",
+    "libGL.so.1": "glXGetProcAddress",
+    "opengl32.dll": "wglGetProcAddress",
+}
+
+
 @cache
 def _lookup() -> Callable[[bytes], int | None]:
     """The function that finds GL's functions for the current context."""
-    for library, name in (("libEGL.so.1", "eglGetProcAddress"), ("libGL.so.1", "glXGetProcAddress")):
+    for name, function in FINDERS.items():
         try:
-            find = getattr(ctypes.CDLL(library), name)
+            library = ctypes.CDLL(name)
+            find = getattr(library, function)
         except (OSError, AttributeError):
             continue
         find.restype, find.argtypes = ctypes.c_void_p, [ctypes.c_char_p]
-        return find
-    raise OSError("neither libEGL.so.1 nor libGL.so.1 can be loaded")
+        # Windows finds those of GL 1.1 in the library alone.
+        return lambda wanted: find(wanted) or ctypes.cast(getattr(library, wanted.decode()), ctypes.c_void_p).value
+    raise OSError(f"none of {', '.join(FINDERS)} can be loaded")
 
 
 @cache

@@ -1,26 +1,91 @@
-"""A Python that lacks what Windows lacks, as far as another system can show it."""
+"""What Windows and macOS lack of Linux's Python, by the type checker's own list, and a Python that lacks it."""
 
+import ast
+import importlib.util
+import json
+import os
 import subprocess
 import sys
+from functools import cache
+from pathlib import Path
 
-# Modules and names that CPython has on POSIX systems alone.
-WITHOUT = """
-import os, signal, sys
-class Missing:
-    def find_spec(self, name, path=None, target=None):
-        if name in ("fcntl", "resource", "pwd", "grp", "termios"):
-            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
-sys.meta_path.insert(0, Missing())
-for name in ("fcntl", "resource", "pwd", "grp", "termios"):
-    sys.modules.pop(name, None)
-for name in ("SIGALRM", "SIGKILL", "SIGHUP", "SIGCHLD", "SIGQUIT", "setitimer", "alarm", "pthread_kill"):
-    delattr(signal, name)
-for name in ("fork", "killpg", "setsid", "geteuid", "getuid", "setpgid"):
-    delattr(os, name)
-sys.platform = "win32"
-"""
+SYSTEMS = ("win32", "darwin")
+START = "from normalbench.bench.door.cli.start import program; program()"
 
 
-def on_windows(code: str) -> subprocess.CompletedProcess[str]:
-    """What a program does there."""
-    return subprocess.run([sys.executable, "-c", WITHOUT + code], capture_output=True, text=True)
+@cache
+def _stubs():
+    """typeshed's folder of the standard library, as the type checker carries it."""
+    return Path(importlib.util.find_spec("basedpyright").origin).parent / "dist" / "typeshed-fallback" / "stdlib"
+
+
+def lacking(module, system):
+    """The names of a module of the standard library that Linux has and another system lacks."""
+    body = _body(module)
+    return set(_names(body, "linux")) - set(_names(body, system))
+
+
+def is_gone(module, system):
+    """Whether a system lacks all that a module defines."""
+    body = _body(module)
+    own = [{*_names(body, one)} - {*_names(body, one, ast.Import, ast.ImportFrom)} for one in ("linux", system)]
+    return bool(own[0]) and not own[1]
+
+
+@cache
+def _body(module):
+    path = _stubs() / f"{module.replace('.', '/')}.pyi"
+    path = path if path.exists() else path.with_suffix("") / "__init__.pyi"
+    return ast.parse(path.read_text(encoding="utf-8")).body if path.exists() else []
+
+
+def _names(body, system, *kinds):
+    """What statements define where `sys.platform` is a system; those of some kinds alone, where kinds are given."""
+    for node in body:
+        match node:
+            case ast.If(test=test):
+                yield from _names(node.body if _holds(test, system) else node.orelse, system, *kinds)
+            case _ if kinds and not isinstance(node, kinds):
+                continue
+            case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
+                yield name
+            case ast.AnnAssign(target=ast.Name(id=name)):
+                yield name
+            case ast.Assign(targets=targets):
+                yield from (target.id for target in targets if isinstance(target, ast.Name))
+            case ast.ImportFrom(names=names) | ast.Import(names=names):
+                yield from (alias.asname or alias.name for alias in names)
+
+
+def _holds(test, system):
+    """Whether a condition on `sys.platform` and `sys.version_info` holds; any other one does."""
+    if isinstance(test, ast.BoolOp):
+        return (all if isinstance(test.op, ast.And) else any)(_holds(value, system) for value in test.values)
+    text = ast.unparse(test)
+    if not text.startswith(("sys.platform", "sys.version_info")):
+        return True
+    return eval(text, {"sys": type("sys", (), {"platform": system, "version_info": sys.version_info})})
+
+
+def on(system, folder, words, **variables):
+    """What the command line, and every process that it starts, does on a system that lacks what another one lacks.
+
+    Args:
+        folder: an empty one, for what Python loads at its start.
+    """
+    names = [name for name in sys.stdlib_module_names if not name.startswith("_")]
+    gone = [name for name in names if is_gone(name, system)]
+    hidden = {name: sorted(found) for name in names if name not in gone and (found := lacking(name, system))}
+    told = {"system": system, "gone": gone, "lacking": hidden}
+    folder.mkdir(exist_ok=True)
+    (folder / "lacking.json").write_text(json.dumps(told))
+    (folder / "sitecustomize.py").write_text(Path(__file__).with_name("hiding.py").read_text())
+    ours = {"PYTHONPATH": str(folder), "PYTHONWARNDEFAULTENCODING": "1", "PYTHONIOENCODING": "cp1252:strict"}
+    return subprocess.run(
+        [sys.executable, "-c", START, *words],
+        capture_output=True,
+        encoding="cp1252",
+        env=os.environ | ours | variables,
+        cwd=folder,
+        timeout=300,
+    )

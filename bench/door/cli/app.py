@@ -23,7 +23,7 @@ from typer.exceptions import Abort, TyperException
 
 from ....encodings.codecs.files import CatalogueError
 from ....reports.charts.plots import PlotError
-from ...ground.machine.posix import alarm
+from ...ground.machine.systems import alarm
 from ...ground.options.code import CodeOptions
 from ...ground.options.option import Sources
 from ...ground.output.errors import MissingError, UsageError, tell, told

@@ -12,7 +12,9 @@ def program() -> NoReturn:
     """The command line as a process of its own."""
     # Python's way is an exception, which in the midst of an import is a traceback, or the end of a library in C++.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    _prepare()
+    from ...ground.machine.system import prepare
+
+    prepare()
     # OpenBLAS waits for work in a loop that takes a whole core. What is multiplied here is small: 3 x 3 by many.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     # Mesa says on standard error that it cannot make its folder, in GL and in Vulkan; it does without one anyway.
@@ -25,17 +27,6 @@ def program() -> NoReturn:
     from .app import program as run
 
     run()
-
-
-def _prepare() -> None:
-    from ...ground.machine.system import prepare
-    from ...ground.output.errors import MissingError, tell
-
-    try:
-        prepare()
-    except MissingError as error:
-        tell(str(error))
-        raise SystemExit(error.exit_code) from None
 
 
 def _takes_files(folder: Path) -> bool:

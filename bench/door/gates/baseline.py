@@ -78,7 +78,7 @@ def write_baseline(path: Path, dumped: Sequence[str]) -> None:
     entries = (read_baseline(path) if path.exists() else {}) | kept.recorded
     with whole_file(path) as partial:
         lines = (json.dumps(entries[text]) for text in sorted(entries))
-        partial.write_text("[\n" + ",\n".join(lines) + "\n]\n", encoding="utf-8")
+        partial.write_text("[\n" + ",\n".join(lines) + "\n]\n", encoding="utf-8", newline="\n")
 
 
 class NoRowError(AssertionError):

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from ...ground.options.option import Field
-from ...ground.output.errors import MissingError, UsageError
+from ...ground.output.errors import UsageError
 from .own_options import BASELINE, REQUIRE_GL, SESSION, WRITE_BASELINE, baseline_path, destination, flag, mirrored
 
 if TYPE_CHECKING:
@@ -86,13 +86,10 @@ def pytest_runtest_call(item: pytest.Item) -> None:
 
 
 def _measuring(config: pytest.Config, folder: Path) -> Normalbench:
-    """What measures for the tests of a folder; where the program does not run they fail, and other tests do not."""
+    """What measures for the tests of a folder."""
     from ...ground.machine.system import prepare
 
-    try:
-        prepare()
-    except MissingError as error:
-        pytest.fail(str(error), pytrace=False)
+    prepare()
     from .session import Normalbench, session_of
 
     return Normalbench(session_of(config), folder)

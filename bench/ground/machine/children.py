@@ -11,9 +11,9 @@ import sys
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
-from .posix.processes import OWN_GROUP, end_group, limit, signal_name
+from .systems.processes import end_group, limit, signal_name, started
 
 # Of a process that runs users' code: bytes of memory, seconds of processor time, bytes of a file.
 MEMORY, SECONDS, FILE = 1536 << 20, 10, 16 << 20
@@ -37,8 +37,18 @@ def limit_this_process() -> None:
     limit(SECONDS, FILE, MEMORY)
 
 
-def finished(command: Sequence[str], seconds: float) -> subprocess.CompletedProcess[str]:
-    """A command's status and what it printed. It and what it started are ended after some seconds.
+# What other threads wait for.
+_under_way: set[subprocess.Popen[Any]] = set()
+
+
+def stop() -> None:
+    """End what is under way: whoever waits for it has it as killed."""
+    for process in [*_under_way]:
+        end_group(process)
+
+
+def finished(command: Sequence[str], seconds: float, folder: Path | None = None) -> subprocess.CompletedProcess[str]:
+    """A command's status and what it printed, in a folder. It and what it started are ended after some seconds.
 
     What it prints goes to files, whose size it limits itself.
 
@@ -46,17 +56,18 @@ def finished(command: Sequence[str], seconds: float) -> subprocess.CompletedProc
         TimeoutExpired: it took longer; it has what was printed until then.
     """
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
-        process = subprocess.Popen(
-            command, stdin=subprocess.DEVNULL, stdout=out, stderr=err, env=environment(), **OWN_GROUP
-        )
+        files = {"stdin": subprocess.DEVNULL, "stdout": out, "stderr": err}
+        process = started(command, **files, env=environment(), cwd=folder)
+        _under_way.add(process)
         try:
             status = process.wait(seconds)
         except subprocess.TimeoutExpired:
             status = None
         finally:
             # Those of its group as well that are left.
-            end_group(process.pid)
+            end_group(process)
             process.wait()
+            _under_way.discard(process)
         said = [text_of(file) for file in (out, err)]
     if status is None:
         raise subprocess.TimeoutExpired(command, seconds, *said)

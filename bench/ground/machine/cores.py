@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from typing import TypeVar
+
+from .systems.processes import on_fork, usable_cores
 
 T = TypeVar("T")
 Item = TypeVar("Item")
@@ -14,13 +15,13 @@ Item = TypeVar("Item")
 
 def cores() -> int:
     """The cores this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return usable_cores()
 
 
 # Threads that wait for the next call, by how many there are: to start and end them takes as long as a chunk of normals.
 _waiting: dict[int, list[ThreadPoolExecutor]] = {}
 # A forked process has none of them.
-os.register_at_fork(after_in_child=_waiting.clear)
+on_fork(_waiting.clear)
 
 
 def on_all_cores(

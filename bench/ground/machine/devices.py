@@ -14,7 +14,7 @@ from ....gbuffer.gl.device import Device, NoDeviceError, device
 from ..output import cache
 from ..output.errors import MissingError
 from ..output.kept_arrays import kept_arrays
-from .posix.system_files import processor_lines
+from .systems.system_files import processor_lines
 
 
 def require_jax() -> None:

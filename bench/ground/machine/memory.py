@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import atexit
-import ctypes
 import gc
 import sys
+
+from .systems.files import c_function
 
 # mallopt's names in glibc's malloc.h; by itself glibc has up to eight heaps for each core, each with its own holes.
 M_ARENA_MAX, ARENAS = -8, 2
@@ -27,13 +28,13 @@ def keep_what_is_freed() -> None:
 
 
 def _mallopt(name: int, value: int) -> None:
-    if mallopt := getattr(ctypes.CDLL(None), "mallopt", None):
+    if mallopt := c_function("mallopt"):
         mallopt(name, value)
 
 
 def give_back_what_is_freed() -> None:
     """What is freed within the heaps is the system's again: tens of megabytes after a frame, in a few milliseconds."""
-    if trim := getattr(ctypes.CDLL(None), "malloc_trim", None):
+    if trim := c_function("malloc_trim"):
         trim(0)
 
 

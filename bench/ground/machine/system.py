@@ -1,30 +1,15 @@
-"""Which systems the program runs on, and what it needs of a user there. Imports nothing that one of them lacks."""
+"""What the program needs of a user before anything else is used. Imports nothing heavy."""
 
 from __future__ import annotations
 
 import os
 import stat
-import sys
 import tempfile
 from pathlib import Path
 
-from ..output.errors import MissingError
-
-WINDOWS = (
-    "Windows is not supported yet; install normalbench in WSL2 (`wsl --install` sets that up). "
-    "The laboratory of a report.html runs in any browser on any system"
-)
-UNSUPPORTED = {"win32": WINDOWS, "cygwin": WINDOWS}
-
 
 def prepare() -> None:
-    """Before anything else is used.
-
-    Raises:
-        MissingError: a system that the program does not run on yet.
-    """
-    if sys.platform in UNSUPPORTED:
-        raise MissingError(UNSUPPORTED[sys.platform])
+    """Before anything else is used: a home, where the system knows none."""
     try:
         Path.home()
     except RuntimeError:
@@ -34,10 +19,10 @@ def prepare() -> None:
 
 def _home_for_the_unknown() -> Path:
     """A folder that this user alone can have written into; another one for each process where there is none."""
-    from ..output.cache import PRIVATE, is_closed
-    from .posix.processes import owner
+    from ..output.cache import PRIVATE
+    from .systems.files import is_closed, user
 
-    home = Path(tempfile.gettempdir()) / f"normalbench-home-{owner()}"
+    home = Path(tempfile.gettempdir()) / f"normalbench-home-{user()}"
     try:
         home.mkdir(PRIVATE, exist_ok=True)
         found = home.lstat()

@@ -112,7 +112,7 @@ def _made(text: str, functions: tuple[str, ...]) -> ctypes.CDLL | str:
 def _compiled(text: str, folder: Path) -> Path:
     """The library, followed by the digest of its bytes: linkers pass over what follows."""
     written, path = folder / "library.c", folder / "library.so"
-    written.write_text(text, encoding="utf-8")
+    written.write_text(text, encoding="utf-8", newline="\n")
     _said(*FLAGS, str(written), "-o", str(path), "-lm")
     data = path.read_bytes()
     path.write_bytes(data + hashlib.sha256(data).digest())

@@ -20,7 +20,7 @@ from errno import EACCES
 from pathlib import Path
 from typing import Any
 
-from ..machine.posix.processes import owner
+from ..machine.systems.files import cache_home, forbids_execution, is_closed, is_own
 from .errors import MissingError
 
 # The cache is for its user alone.
@@ -40,10 +40,10 @@ def is_off() -> bool:
 
 
 def folder() -> Path:
-    """Where the cache lies: under XDG_CACHE_HOME, or ~/.cache."""
+    """Where the cache lies: under XDG_CACHE_HOME, or where this system has caches."""
     home = os.environ.get("XDG_CACHE_HOME", "")
     # The XDG specification has relative paths ignored.
-    return (Path(home) if Path(home).is_absolute() else Path("~/.cache").expanduser()) / "normalbench"
+    return (Path(home) if Path(home).is_absolute() else cache_home()) / "normalbench"
 
 
 def make_folder(path: Path) -> None:
@@ -64,11 +64,11 @@ def make_folder(path: Path) -> None:
 
 def _close(path: Path) -> None:
     """Raises PermissionError where the folder is another user's: not even root uses what others own."""
-    if not _is_own(path.stat()):
+    if not is_own(path.stat()):
         raise PermissionError(EACCES, "another user's folder", str(path))
     path.chmod(PRIVATE)
     for one in path.iterdir():
-        if not _is_own(one.lstat()):
+        if not is_own(one.lstat()):
             shutil.rmtree(one) if one.is_dir() and not one.is_symlink() else one.unlink()
 
 
@@ -102,15 +102,6 @@ def is_private(path: Path) -> bool:
         return False
 
 
-def is_closed(found: os.stat_result) -> bool:
-    """Whether a file or folder is this user's, and nobody else may write it."""
-    return _is_own(found) and not found.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
-
-
-def _is_own(found: os.stat_result) -> bool:
-    return found.st_uid == owner()
-
-
 @functools.cache
 def folder_of_this_process() -> Path:
     """For what the cache cannot take; it goes with the process."""
@@ -126,7 +117,7 @@ def folder_to_execute_from() -> Path:
         OSError: the cache cannot be made, or it is another user's.
     """
     make_folder(folder())
-    return folder_of_this_process() if os.statvfs(folder()).f_flag & os.ST_NOEXEC else folder()
+    return folder_of_this_process() if forbids_execution(folder()) else folder()
 
 
 def key_of(*parts: str | bytes) -> str:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import ctypes
 import os
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
+
+from ..machine.systems.files import c_function
 
 
 @contextmanager
@@ -20,8 +21,8 @@ def without_their_output() -> Iterator[None]:
             os.dup2(nowhere.fileno(), 1)
             yield
             # C keeps lines until later where standard output is a file.
-            with suppress(OSError, AttributeError, TypeError):
-                ctypes.CDLL(None).fflush(None)
+            if flush := c_function("fflush"):
+                flush(None)
     finally:
         os.dup2(kept, 1)
         os.close(kept)

@@ -14,6 +14,7 @@ from typing import Any
 
 from ....reports import tables
 from ....reports.charts import plots
+from ..machine.systems.processes import is_running
 from .errors import UsageError
 
 # Of a run's rows, facts and tables.
@@ -89,18 +90,8 @@ def clear_away(path: Path) -> None:
     """Take away what processes that were killed have left of a file or folder. Raises OSError."""
     for partial in path.parent.glob(f".{glob.escape(path.name)}.*.partial"):
         number = partial.name.split(".")[-2]
-        if number.isdecimal() and not _is_running(int(number)):
+        if number.isdecimal() and not is_running(int(number)):
             shutil.rmtree(partial) if partial.is_dir() else partial.unlink(missing_ok=True)
-
-
-def _is_running(process: int) -> bool:
-    try:
-        os.kill(process, 0)
-    except ProcessLookupError:
-        return False
-    except OSError:
-        return True
-    return True
 
 
 @contextmanager
@@ -179,7 +170,7 @@ def write_text(make: Callable[[], str], output: Path | None) -> None:
         say(text)
         return
     with whole_file(output) as partial:
-        partial.write_text(text, encoding="utf-8")
+        partial.write_text(text, encoding="utf-8", newline="\n")
 
 
 def write(
@@ -205,7 +196,9 @@ def write(
         if format == "parquet":
             tables.write_parquet(rows, partial)
         else:
-            partial.write_text(tables.written(rows, format, by=by, lead=lead, total=total), encoding="utf-8")
+            partial.write_text(
+                tables.written(rows, format, by=by, lead=lead, total=total), encoding="utf-8", newline="\n"
+            )
 
 
 def files_of(folder: Path) -> dict[str, Path]:

@@ -101,7 +101,7 @@ def write_live(codecs: Iterable[Codec], folder: Path) -> None:
         except NotLiveError as error:
             made = {"encoding": codec.encoding.name, "storage": codec.storage.name, "left_out": str(error)}
         with whole_file(folder / file_name(codec)) as partial:
-            partial.write_text(json.dumps(made), encoding="utf-8")
+            partial.write_text(json.dumps(made), encoding="utf-8", newline="\n")
 
 
 def _checks_or_none(codec: Codec) -> Record | None:

@@ -11,7 +11,7 @@ from types import MappingProxyType
 from typing import Any
 
 from ...ground.machine.devices import found_device
-from ...ground.machine.posix.system_files import boot
+from ...ground.machine.systems.system_files import boot
 from ...ground.machine.vulkan import adapters
 from ...ground.native import library
 from ...ground.output.sources import sources

@@ -31,7 +31,7 @@ def by_wgsl(codec: Codec) -> Iterator[Trip]:
     code = _wgsl_code(codec)
     with folder() as place:
         path = place / code.name
-        path.write_text(code.body, encoding="utf-8")
+        path.write_text(code.body, encoding="utf-8", newline="\n")
         with wgsl.prepared(path, code.interface) as run:
 
             def trip(n: np.ndarray, view: np.ndarray) -> Ran:

@@ -13,7 +13,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from ...ground.machine.posix import system_files
+from ...ground.machine.systems import system_files
 
 EXTENSION = "VK_KHR_pipeline_executable_properties"
 # Mesa's drivers, and what disassembles for RADV; the Vulkan loader is libvulkan.so.

@@ -11,7 +11,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from ...ground.machine.posix.preload import preloaded
+from ...ground.machine.systems.preload import preloaded
 from ...ground.output import cache as kept
 
 SOURCE = Path(__file__).with_name("null_i915.c")
@@ -82,7 +82,7 @@ def _built_library(folder: Path, stem: str, source: Path) -> Path:
 def _compile(path: Path, source: Path) -> None:
     command = [COMPILER, "-O1", "-shared", "-fPIC", "-o", str(path), str(source)]
     try:
-        done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=SECONDS)
+        done = subprocess.run(command, capture_output=True, encoding="utf-8", errors="replace", timeout=SECONDS)
     except subprocess.TimeoutExpired as error:
         raise NullDeviceError(f"{COMPILER} took longer than {SECONDS:g} s for {source.name}") from error
     if done.returncode or not path.exists():

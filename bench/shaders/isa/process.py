@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from ...ground.machine.children import python
-from ...ground.machine.posix.processes import signal_name
+from ...ground.machine.systems.processes import signal_name
 from .driver_files import environment, is_gl
 
 CHILD: Sequence[str] = python("normalbench.bench.shaders.isa.child")
@@ -57,7 +57,8 @@ def child(
             stdin=work,
             stdout=subprocess.PIPE,
             stderr=errors,
-            text=True,
+            encoding="utf-8",
+            errors="replace",
             env=environment(driver.path, variables),
         ) as process:
             lines: queue.Queue[str | None] = queue.Queue()

@@ -6,7 +6,6 @@ import base64
 import shutil
 import struct
 import subprocess
-import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
@@ -14,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from ....gbuffer.gl.shader import ShaderError, Source
-from ...ground.machine.posix.processes import name_of
+from ...ground.machine.systems.processes import file_of_child
 from ...ground.output import cache as kept
 from ...ground.output.errors import MissingError
 
@@ -44,7 +43,9 @@ def version(tool: str) -> str | None:
     if not shutil.which(tool):
         return None
     try:
-        done = subprocess.run([tool, "--version"], capture_output=True, text=True, timeout=SECONDS)
+        done = subprocess.run(
+            [tool, "--version"], capture_output=True, encoding="utf-8", errors="replace", timeout=SECONDS
+        )
     except (OSError, subprocess.TimeoutExpired):
         return None
     return f"{done.stdout}{done.stderr}".strip() or "of no version"
@@ -116,12 +117,10 @@ def _is_spirv(binary: bytes) -> bool:
 
 
 def _glslang_binary(source: Source, stage: str) -> bytes:
-    # A file without a name: nothing is left of it, however this process ends.
-    with tempfile.TemporaryFile() as out:
-        options = ["--stdin", "-S", stage, "-V", "--auto-map-bindings", "-o", name_of(out)]
-        done = _run([COMPILER, *options], source.text.encode(), out.fileno())
-        out.seek(0)
-        binary = out.read()
+    with file_of_child() as out:
+        options = ["--stdin", "-S", stage, "-V", "--auto-map-bindings", "-o", out.path]
+        done = _run([COMPILER, *options], source.text.encode(), *out.descriptors)
+        binary = out.content()
     if done.returncode == 0 and _is_spirv(binary):
         return binary
     said = done.stdout.decode(errors="replace").splitlines()

@@ -26,7 +26,7 @@ def shader(source: Source, function: Function, folder: Path) -> str:
         ToolError: a tool crashes or does not end.
         MissingError: a tool is not there.
     """
-    (folder / GIVEN).write_text(program(source, function), encoding="utf-8")
+    (folder / GIVEN).write_text(program(source, function), encoding="utf-8", newline="\n")
     # Without names (-g0) no identifier of the user's can be one of GLSL's or of this program's. Not optimised (-Od), a
     # function with an early return stays one, and does not become a loop of one turn.
     options = ["-D", "-e", ENTRY, "-S", "frag", "-V", "--target-env", "vulkan1.1", "-g0", "-Od", "-o", MADE]

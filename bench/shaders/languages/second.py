@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import shutil
 import subprocess
-import tempfile
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -16,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from ...ground.machine import children
-from ...ground.machine.posix.processes import DIVIDED_BY_ZERO, OWN_GROUP, signal_name
+from ...ground.machine.systems.processes import DIVIDED_BY_ZERO, signal_name
 from ...ground.output.errors import MissingError
 from . import slang, tools
 from .language import GLSL_NAME, name_of
@@ -105,7 +104,9 @@ def _cpp_runner(source: Source, encoder: Translated, folder: Path) -> Callable[[
     compiler = shutil.which("c++") or shutil.which("clang++")
     if not compiler:
         raise NoSecondWayError("no compiler of C++ is on the path (Debian: apt-get install g++)")
-    (folder / slang.GIVEN).write_text(encoder.text + _program_text("second.hlsl", encoder), encoding="utf-8")
+    (folder / slang.GIVEN).write_text(
+        encoder.text + _program_text("second.hlsl", encoder), encoding="utf-8", newline="\n"
+    )
     of_language = list(slang.GLSL) if name_of(source.word) == GLSL_NAME else []
     used = macros(source.with_text(encoder.text), slang.TYPES)
     defined = [*of_language, *(word for macro in used for word in ("-D", macro))]
@@ -117,7 +118,7 @@ def _cpp_runner(source: Source, encoder: Translated, folder: Path) -> Callable[[
         raise NoSecondWayError(str(error)) from error
     if status:
         raise NoSecondWayError(_refusal_text(source, err), is_of_the_file=True)
-    (folder / "made.cpp").write_text(out + MAIN.read_text(encoding="utf-8"), encoding="utf-8")
+    (folder / "made.cpp").write_text(out + MAIN.read_text(encoding="utf-8"), encoding="utf-8", newline="\n")
     _run([compiler, "-std=c++17", "-O0", "-w", "-ffp-contract=off", "made.cpp", "-o", PROGRAM], folder)
     return lambda count: _run([str(folder / PROGRAM), str(count)], folder)
 
@@ -132,27 +133,25 @@ def _refusal_text(source: Source, said: str) -> str:
 
 def _naga_runner(_: Source, encoder: Translated, folder: Path) -> Callable[[int], None]:
     """The text itself on a Vulkan device, in a process that naga may end."""
-    (folder / "given.wgsl").write_text(encoder.text + _program_text("second.wgsl", encoder), encoding="utf-8")
+    (folder / "given.wgsl").write_text(
+        encoder.text + _program_text("second.wgsl", encoder), encoding="utf-8", newline="\n"
+    )
     words = children.python("normalbench.bench.shaders.languages.by_naga", str(folder))
     return lambda _: _run(words, folder, is_of_the_file=True)
 
 
 def _run(command: list[str], folder: Path, is_of_the_file: bool = False) -> None:
     """A command that ends well. Raises NoSecondWayError, UndefinedError."""
-    with tempfile.TemporaryFile() as said:
-        try:
-            files = {"stdin": subprocess.DEVNULL, "stdout": said, "stderr": said}
-            done = subprocess.run(
-                command, **files, cwd=folder, timeout=SECONDS, env=children.environment(), **OWN_GROUP
-            )
-        except subprocess.TimeoutExpired as error:
-            raise NoSecondWayError(f"{Path(command[0]).name} did not end within {SECONDS:g} s") from error
-        except OSError as error:
-            raise NoSecondWayError(f"{Path(command[0]).name} cannot be run: {error.strerror}") from error
-        if done.returncode == DIVIDED_BY_ZERO:
-            raise UndefinedError("it divides a whole number by 0, of some normal")
-        if done.returncode:
-            lines = [line.strip() for line in children.text_of(said).splitlines() if line.strip()]
-            ended = signal_name(done.returncode) or f"status {done.returncode}"
-            why = lines[-1][:200] if lines else f"it ended with {ended}"
-            raise NoSecondWayError(why, is_of_the_file and MISSING not in why)
+    try:
+        done = children.finished(command, SECONDS, folder)
+    except subprocess.TimeoutExpired as error:
+        raise NoSecondWayError(f"{Path(command[0]).name} did not end within {SECONDS:g} s") from error
+    except OSError as error:
+        raise NoSecondWayError(f"{Path(command[0]).name} cannot be run: {error.strerror}") from error
+    if done.returncode == DIVIDED_BY_ZERO:
+        raise UndefinedError("it divides a whole number by 0, of some normal")
+    if done.returncode:
+        lines = [line.strip() for line in (done.stdout + done.stderr).splitlines() if line.strip()]
+        ended = signal_name(done.returncode) or f"status {done.returncode}"
+        why = lines[-1][:200] if lines else f"it ended with {ended}"
+        raise NoSecondWayError(why, is_of_the_file and MISSING not in why)

@@ -198,7 +198,7 @@ def shader_of_glsl(source: Source, function: Function, folder: Path) -> str:
 
 def _compiled(source: Source, text: str, options: tuple[str, ...], folder: Path) -> Compiled:
     given = folder / GIVEN
-    given.write_text(text, encoding="utf-8")
+    given.write_text(text, encoding="utf-8", newline="\n")
     defined = [word for macro in macros(source, TYPES) for word in ("-D", macro)]
     # A text without an entry point is checked, and nothing is written of it.
     target = () if "-target" in options else ("-target", "glsl")

@@ -13,7 +13,7 @@ from types import MappingProxyType
 from typing import Any
 
 from ...ground.machine.children import text_of
-from ...ground.machine.posix.processes import signal_name
+from ...ground.machine.systems.processes import signal_name
 from ...ground.output.errors import MissingError
 from . import slang_library
 
@@ -66,7 +66,9 @@ def version(tool: str) -> str:
     """A tool's own word for its version, or what to install."""
     try:
         path = path_of(tool)
-        done = subprocess.run([path, _ASKED[tool]], capture_output=True, text=True, timeout=SECONDS)
+        done = subprocess.run(
+            [path, _ASKED[tool]], capture_output=True, encoding="utf-8", errors="replace", timeout=SECONDS
+        )
     except MissingError as error:
         return str(error)
     except (OSError, subprocess.TimeoutExpired):

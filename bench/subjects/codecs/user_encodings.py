@@ -23,7 +23,7 @@ from ....gbuffer.gl.shader import ShaderError, read_shader
 from ...ground.choose import choose
 from ...ground.machine import children
 from ...ground.machine.cores import on_all_cores
-from ...ground.machine.posix import forks
+from ...ground.machine.systems import forks
 from ...ground.options.words import given_in
 from ...ground.output.errors import NO_TWIN, MissingError, UsageError, leave_out, tell
 from ...ground.spelling import spelled

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 import OpenImageIO as oiio  # noqa: N813 # as its own documentation has it
 
-from ...ground.machine.posix.processes import limit_addresses
+from ...ground.machine.systems.processes import limit_addresses
 
 MAX_MEMORY = 2**33
 DAMAGED = 1
@@ -105,7 +105,7 @@ def answer(mode: str, kind: str, path: str, out: Path, names: list[str]) -> None
     if mode == "header":
         parts = parts_of(opened(kind, path))
         found = [part | {"names": full} for part, full in zip(parts, full_names(parts), strict=True)]
-        out.write_text(json.dumps(found), encoding="utf-8")
+        out.write_text(json.dumps(found), encoding="utf-8", newline="\n")
     else:
         with out.open("wb") as file:
             np.save(file, read_pixels(kind, path, names))

@@ -300,7 +300,7 @@ def write_listings(folder: Path, listed: Iterable[tuple[Row, str]]) -> None:
     """Each row's disassembly as a file, what it costs at its head, in a folder for each family."""
     for path, text in (measure.listing(row, text) for row, text in listed if text):
         with whole_file(folder / path) as partial:
-            partial.write_text(text, encoding="utf-8")
+            partial.write_text(text, encoding="utf-8", newline="\n")
 
 
 def write_sources(folder: Path, encodings: Iterable[Encoding]) -> None:
@@ -308,7 +308,7 @@ def write_sources(folder: Path, encodings: Iterable[Encoding]) -> None:
     for encoding in encodings:
         if encoding.glsl.is_file():
             with whole_file(folder / f"{file_name(encoding.name)}.glsl") as partial:
-                partial.write_text(encoding.glsl.read_text(encoding="utf-8"), encoding="utf-8")
+                partial.write_text(encoding.glsl.read_text(encoding="utf-8"), encoding="utf-8", newline="\n")
 
 
 NEEDS = {"isa": frozenset({COMPILERS}), "time": frozenset({GL})}

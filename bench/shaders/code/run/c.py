@@ -37,7 +37,7 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
 def built(path: Path, interface: Interface, tool: str, options: Sequence[str]) -> Iterator[Run]:
     """The file as a program of a compiler and its options. Raises ShaderError."""
     with folder() as place:
-        (place / "code.h").write_text(read_shader(path), encoding="utf-8")
+        (place / "code.h").write_text(read_shader(path), encoding="utf-8", newline="\n")
         # POSIX's calls for the program around the file; the file itself is C99.
         includes = ("-std=c99", "-D_GNU_SOURCE", "-iquote", str(place), "-iquote", str(path.parent))
         command = [tool, *includes, *options, *_macros(interface), str(WRAPPER), str(MAIN), "-lm"]

@@ -28,7 +28,7 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
     """The file, which every call compiles anew in a process of its own. Raises MissingError, ShaderError."""
     source = EmittedSource(WRAPPER, path, interface)
     with folder() as place:
-        (place / "code.comp").write_text(source.text, encoding="utf-8")
+        (place / "code.comp").write_text(source.text, encoding="utf-8", newline="\n")
         for name, table in interface.tables.items():
             np.save(place / f"{name}.table.npy", _rgba_table(table))
 

@@ -30,7 +30,7 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
     source = EmittedSource(WRAPPER, path, interface, MADE)
     with folder() as place:
         given = place / "code.hlsl"
-        given.write_text(source.text, encoding="utf-8")
+        given.write_text(source.text, encoding="utf-8", newline="\n")
         compile_with([_glslang_path(), "-D", *OPTIONS, "-o", str(place / "code.spv"), str(given)], source, given)
         text = glsl_of(place / "code.spv")
     with opengl.prepared(opengl.compiled(text, str), interface) as run:

@@ -39,8 +39,8 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
     if metal := shutil.which(METAL):
         compile_with([metal, "-x", "metal", "-fsyntax-only", str(path)])
     with folder() as place:
-        (place / "code.metal").write_text(text, encoding="utf-8")
-        (place / "metal_stdlib").write_text(f'#include "{LIBRARY}"\n', encoding="utf-8")
+        (place / "code.metal").write_text(text, encoding="utf-8", newline="\n")
+        (place / "metal_stdlib").write_text(f'#include "{LIBRARY}"\n', encoding="utf-8", newline="\n")
         defines = macros(interface.defines_with(", ".join, "{}{{{}}}") | _table_macros(text, interface))
         defines += macros({**LIMITS, "RUN_TABLE_COUNT": len(interface.tables), "_GNU_SOURCE": 1})
         command = [clang, *OPTIONS, "-I", str(place), *defines, str(WRAPPER), str(MAIN)]

@@ -24,7 +24,7 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
     source = EmittedSource(WRAPPER, path, interface, MADE)
     with folder() as place:
         given, glsl, binary = (place / f"code.{ending}" for ending in ("slang", "comp", "spv"))
-        given.write_text(source.text, encoding="utf-8")
+        given.write_text(source.text, encoding="utf-8", newline="\n")
         options = ("-target", "glsl", "-stage", "compute", "-entry", "main")
         compile_with([_compiler(), str(given), *options, "-o", str(glsl)], source, given)
         spirv.compiler()

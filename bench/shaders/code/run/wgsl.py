@@ -14,8 +14,8 @@ import numpy as np
 from .....encodings.codecs.files import file_text
 from .....gbuffer.gl.shader import ShaderError
 from ....ground.machine import children
-from ....ground.machine.posix import forks
-from ....ground.machine.posix.processes import signal_name
+from ....ground.machine.systems import forks
+from ....ground.machine.systems.processes import signal_name
 from ....ground.machine.vulkan import NO_DRIVER, adapters
 from ....ground.output.errors import MissingError
 from .interface import GIVEN, MADE, Interface, Ran, Run, Runner, ran_of, rows_of
@@ -112,7 +112,7 @@ def _program(gpu: Any, path: Path, interface: Interface, tables: Any) -> Any:
 def _try_apart(path: Path, text: str) -> None:
     """Compile somebody's text in a process of its own: naga ends the process at some. Raises ShaderError."""
     with folder() as place:
-        (place / "code.wgsl").write_text(text, encoding="utf-8")
+        (place / "code.wgsl").write_text(text, encoding="utf-8", newline="\n")
         try:
             done = forks.finished(f"{__package__}.naga", [str(place / "code.wgsl")], SECONDS)
         except subprocess.TimeoutExpired as error:

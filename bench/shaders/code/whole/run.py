@@ -109,7 +109,7 @@ def _hlsl(code: GBufferCode, rows: np.ndarray) -> np.ndarray:
     spirv.compiler()
     with folder() as place:
         given = place / "code.hlsl"
-        given.write_text(_wrapped("run_hlsl.j2", code), encoding="utf-8")
+        given.write_text(_wrapped("run_hlsl.j2", code), encoding="utf-8", newline="\n")
         compile_with([spirv.COMPILER, "-D", *hlsl.OPTIONS, "-o", str(place / "code.spv"), str(given)])
         return _run_text(hlsl.glsl_of(place / "code.spv"), code, rows)
 
@@ -148,7 +148,7 @@ def _wgsl(code: GBufferCode, rows: np.ndarray) -> np.ndarray:
 def _c(code: GBufferCode, rows: np.ndarray) -> np.ndarray:
     with folder() as place:
         _write_files(code, place, "code.h")
-        (place / "rows.c").write_text(_wrapped("run_c.j2", code), encoding="utf-8")
+        (place / "rows.c").write_text(_wrapped("run_c.j2", code), encoding="utf-8", newline="\n")
         np.ascontiguousarray(rows).tofile(place / "given.bin")
         sizes = {"RUN_GIVEN": rows.shape[1], "RUN_MADE": _made(code)}
         options = ("-std=c99", "-D_GNU_SOURCE", "-iquote", str(place), *c.EXACT, *c.macros(c.LIMITS | sizes))
@@ -174,7 +174,7 @@ def _write_files(code: GBufferCode, place: Path, name: str) -> None:
     """The file under a name, and its tables."""
     for own, data in code.files([]).items():
         (place / own).write_bytes(data)
-    (place / name).write_text(code.body, encoding="utf-8")
+    (place / name).write_text(code.body, encoding="utf-8", newline="\n")
 
 
 def _kinds(named: Any) -> str:

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
-from ....ground.machine.posix.preload import preloaded
+from ....ground.machine.systems.preload import preloaded
 from ....ground.output import cache as kept
 from .. import null_device
 
@@ -29,7 +29,7 @@ def folder() -> Path | None:
 def record(where: Path) -> None:
     """Remembers a build for later commands."""
     kept.make_folder(kept.folder())
-    (kept.folder() / RECORD).write_text(f"{where.resolve()}\n", encoding="utf-8")
+    (kept.folder() / RECORD).write_text(f"{where.resolve()}\n", encoding="utf-8", newline="\n")
 
 
 def _recorded_text() -> str:

@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from ....ground.machine.posix.processes import limit_memory
+from ....ground.machine.systems.processes import limit_memory
 from ..child import own_output
 from ..compiler import DriverError, MissingDriverError
 from . import sass, tools

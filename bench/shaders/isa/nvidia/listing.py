@@ -25,7 +25,7 @@ def listings(codes: Sequence[bytes], architecture: str, program: Path) -> list[s
         # Machine code alone: of a whole file it also analyses what it lists, for twice the time.
         command = [program, "-hex", "-b", architecture.upper().replace("_", ""), file.name]
         try:
-            done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=SECONDS)
+            done = subprocess.run(command, capture_output=True, encoding="utf-8", errors="replace", timeout=SECONDS)
         except (OSError, subprocess.TimeoutExpired) as error:
             raise DriverError(f"nvdisasm: {error}") from error
     if done.returncode:

@@ -93,7 +93,9 @@ def _package_version(path: Path) -> str:
 @cache
 def _version(lister: Path) -> str:
     try:
-        done = subprocess.run([lister, "--version"], capture_output=True, text=True, timeout=SECONDS)
+        done = subprocess.run(
+            [lister, "--version"], capture_output=True, encoding="utf-8", errors="replace", timeout=SECONDS
+        )
     except (OSError, subprocess.TimeoutExpired):
         return "of no version"
     match = re.search(r"\bV(\d+(?:\.\d+)+)", done.stdout)

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
-from ....ground.machine.posix.preload import preloaded
+from ....ground.machine.systems.preload import preloaded
 from .. import null_device
 
 SOURCE = Path(__file__).with_name("null_radeon.c")

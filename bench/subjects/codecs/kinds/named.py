@@ -17,7 +17,7 @@ from .....encodings.storages.storage import LIGHT_STORAGES
 from ....ground.choose import choose
 from ....ground.machine import children
 from ....ground.machine.cores import on_all_cores
-from ....ground.machine.posix import forks
+from ....ground.machine.systems import forks
 from ....ground.options.light_names import light_buffers_named
 from ....ground.options.words import given_in
 from ....ground.output.errors import MissingError, UsageError, leave_out, tell

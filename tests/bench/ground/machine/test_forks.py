@@ -9,7 +9,7 @@ import time
 import pytest
 
 from normalbench.bench.ground.machine.cores import on_all_cores
-from normalbench.bench.ground.machine.posix import forks
+from normalbench.bench.ground.machine.systems import forks, linux_forks
 
 MODULE = """
 import os, signal, subprocess, sys, time
@@ -29,7 +29,7 @@ def ended(monkeypatch, tmp_path):
     (tmp_path / "tried.py").write_text(MODULE)
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, (str(tmp_path), os.environ.get("PYTHONPATH")))))
     yield lambda line, seconds=30.0: forks.finished("tried", [line], seconds)
-    forks._forking.end()
+    linux_forks._forking.end()
 
 
 def is_there(process: int) -> bool:
@@ -99,7 +99,7 @@ def test_who_waits_in_another_thread_can_be_told_to_stop(ended):
 def test_it_ends_where_whoever_asked_is_killed(tmp_path):
     """Nobody is left to end it after its time."""
     line = f"open({str(tmp_path / 'number')!r}, 'w').write(str(os.getpid())); time.sleep(60)"
-    asking = f"from normalbench.bench.ground.machine.posix import forks; forks.finished('tried', [{line!r}], 60)"
+    asking = f"from normalbench.bench.ground.machine.systems import forks; forks.finished('tried', [{line!r}], 60)"
     asks = subprocess.Popen([sys.executable, "-c", asking])
     until = time.monotonic() + 30
     while not (tmp_path / "number").is_file() or not (tmp_path / "number").read_text():
@@ -123,7 +123,7 @@ def test_other_variables_of_jax_are_read_anew(ended, monkeypatch):
 
 def test_one_that_does_not_stay_is_done_without(monkeypatch):
     """Each process then imports for itself."""
-    forks._forking.end()
-    monkeypatch.setattr(forks, "_command", lambda _: ["false"])
+    linux_forks._forking.end()
+    monkeypatch.setattr(linux_forks, "_command", lambda _: ["false"])
     done = forks.finished("normalbench.bench.subjects.codecs.first_look", ["gone.glsl"], 60.0)
     assert "there is no such file" in done.stdout

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from normalbench.bench.ground.directions import directions
-from normalbench.bench.ground.machine.posix import forks
+from normalbench.bench.ground.machine.systems import linux_forks
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.subjects.codecs import user_encodings
 from normalbench.bench.subjects.codecs.first_look import first_look
@@ -200,7 +200,7 @@ def test_a_shader_that_does_not_end_or_kills_the_process_is_named(run, tmp_path,
     killer.write_text("#!/bin/sh\nkill -SEGV $$\n")
     killer.chmod(0o755)
     # What was started before is another Python.
-    forks._forking.end()
+    linux_forks._forking.end()
     monkeypatch.setattr(user_encodings.sys, "executable", str(killer))
     status, _, err = run("quality", "--encoding", path, *QUICK)
     assert status == 2 and "killed the process (SIGSEGV)" in err

@@ -1,9 +1,9 @@
 """Processes for code that may do anything, forked from one that has imported what they need. Imports nothing heavy.
 
 To import JAX takes longer than most of what is done in such a process. So one process imports once, runs nothing, and
-forks for each request. Linux only, where forking is safe; elsewhere each process imports for itself.
+forks for each request.
 
-    python -m normalbench.bench.ground.machine.posix.forks DESCRIPTOR
+    python -m normalbench.bench.ground.machine.systems.linux_forks DESCRIPTOR
 
 is that process: requests come through a socket.
 """
@@ -32,10 +32,12 @@ from .. import children
 from . import processes
 from .preload import LOADERS_VARIABLES
 
+assert sys.platform == "linux"
+
 # A process that nobody has asked for this long ends; the next request starts another one.
 IDLE_S, START_S = 60.0, 60.0
 LONGEST = 1 << 20
-KILLED = processes.KILLED.to_bytes(4, "little", signed=True)
+KILLED = (-signal.SIGKILL).to_bytes(4, "little", signed=True)
 # What Python, JAX and the loader read once, when they start or are imported; other variables go with each request.
 READ_AT_THE_START = ("PYTHON", "JAX_", "XLA_", LOADERS_VARIABLES, "OMP_", "OPENBLAS_")
 
@@ -48,8 +50,6 @@ def finished(module: str, words: list[str], seconds: float) -> subprocess.Comple
         TimeoutExpired: it took longer; it has what was printed until then.
     """
     command = children.python(module, *words)
-    if sys.platform != "linux":
-        return children.finished(command, seconds)
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         try:
             status = _ended(module, words, (out, err), seconds)
@@ -76,7 +76,7 @@ def _ended(module: str, words: list[str], files: tuple[IO[bytes], IO[bytes]], se
         finally:
             _under_way.discard(answer)
             # What it started as well, which may outlive it.
-            processes.end_group(process)
+            processes.end_group_of(process)
 
 
 # What other threads wait for.
@@ -91,7 +91,7 @@ def stop() -> None:
 
 
 def _command(descriptor: int) -> list[str]:
-    return children.python("normalbench.bench.ground.machine.posix.forks", str(descriptor))
+    return children.python("normalbench.bench.ground.machine.systems.linux_forks", str(descriptor))
 
 
 @dataclass
@@ -107,14 +107,13 @@ class _Forking:
         self.end()
         self.link, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         with theirs:
-            self.process = subprocess.Popen(
+            self.process = processes.started(
                 _command(theirs.fileno()),
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL,
                 env=children.environment(),
                 pass_fds=[theirs.fileno()],
-                **processes.OWN_GROUP,
             )
         self.started_with = _read_at_the_start()
         return self.link

@@ -1,0 +1,45 @@
+"""A call that is made in the main thread, some seconds later."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from collections.abc import Callable
+from types import FrameType
+
+Call = Callable[[FrameType | None], None]
+
+if sys.platform == "win32":
+    import _thread
+    from threading import Timer
+
+    # Windows has no signal of a timer. Python runs the handler of a signal in the main thread, whoever asks for it.
+    _SIGNAL = signal.SIGBREAK
+    _waiting: list[Timer] = []
+
+    def call_later(seconds: float, call: Call) -> None:
+        """Have a function called once, with the frame that is interrupted; it takes the place of one that waits."""
+        call_none()
+        signal.signal(_SIGNAL, lambda _, frame: call(frame))
+        timer = Timer(seconds, _thread.interrupt_main, [_SIGNAL])
+        timer.daemon = True
+        _waiting.append(timer)
+        timer.start()
+
+    def call_none() -> None:
+        """Whatever waits to be called is not."""
+        while _waiting:
+            _waiting.pop().cancel()
+        signal.signal(_SIGNAL, signal.SIG_IGN)
+
+else:
+
+    def call_later(seconds: float, call: Call) -> None:
+        """Have a function called once, with the frame that is interrupted; it takes the place of one that waits."""
+        signal.signal(signal.SIGALRM, lambda _, frame: call(frame))
+        signal.setitimer(signal.ITIMER_REAL, seconds)
+
+    def call_none() -> None:
+        """Whatever waits to be called is not."""
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, signal.SIG_IGN)

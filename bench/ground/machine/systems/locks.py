@@ -1,0 +1,63 @@
+"""Files that one process at a time may write."""
+
+from __future__ import annotations
+
+import sys
+from io import FileIO
+from pathlib import Path
+
+if sys.platform == "win32":
+    import msvcrt
+    import os
+
+    # Windows keeps others from reading what is locked as well: one byte that no file reaches.
+    _FAR = 0x7FFF_0000
+
+    def lock(file: FileIO) -> None:
+        """Keep others from locking a file, until it is closed or this process ends.
+
+        Raises:
+            OSError: another process has locked it, or the file system has no locks.
+        """
+        place = file.tell()
+        file.seek(_FAR)
+        try:
+            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+        finally:
+            file.seek(place, os.SEEK_SET)
+
+    def put_in_place(path: Path, old: FileIO, partial: Path, new: FileIO) -> FileIO:
+        """Have a locked file take the place of another one; gives the file that is open and locked then.
+
+        No file is replaced while it is open, nor while it is locked: for a moment another process may lock it.
+
+        Raises:
+            OSError: it cannot be replaced, or another process was faster. Both files are closed.
+        """
+        new.close()
+        old.close()
+        partial.replace(path)
+        new = path.open("r+b", buffering=0)
+        lock(new)
+        return new
+
+else:
+    import fcntl
+
+    def lock(file: FileIO) -> None:
+        """Keep others from locking a file, until it is closed or this process ends.
+
+        Raises:
+            OSError: another process has locked it, or the file system has no locks.
+        """
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+    def put_in_place(path: Path, old: FileIO, partial: Path, new: FileIO) -> FileIO:
+        """Have a locked file take the place of another one; gives the file that is open and locked then.
+
+        Raises:
+            OSError: it cannot be replaced.
+        """
+        partial.replace(path)
+        old.close()
+        return new

@@ -1,0 +1,176 @@
+"""Processes with a group of their own, how one ended, what it may use, and the cores that there are."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory, TemporaryFile
+from typing import Any, NoReturn
+
+
+@dataclass(frozen=True)
+class FileOfChild:
+    """A file that another process writes.
+
+    Attributes:
+        path: the name that it is told.
+        descriptors: what it must be given, as `pass_fds` of `subprocess`.
+        content: reads what it wrote.
+    """
+
+    path: str
+    descriptors: Sequence[int]
+    content: Callable[[], bytes]
+
+
+if sys.platform == "win32":
+    from . import windows
+
+    # The status of a process that divided a whole number by 0.
+    DIVIDED_BY_ZERO = 0xC0000094
+    # Of what Windows ends a process with, in words. Other statuses from 0xC0000000 on are said as they are.
+    _ENDINGS = {
+        0xC0000005: "an access violation",
+        0xC0000017: "a lack of memory",
+        0xC000001D: "an illegal instruction",
+        DIVIDED_BY_ZERO: "a division of a whole number by 0",
+        0xC00000FD: "a stack overflow",
+        0xC000013A: "an interruption",
+        0xC0000374: "a corrupted heap",
+        0xC0000409: "a check of its own",
+    }
+
+    def started(command: Sequence[str], **how: Any) -> subprocess.Popen[Any]:
+        """A process in a job of its own: an interruption of this process does not reach it, and `end_group` ends it
+        with all that it started. It ends with this process."""
+        process = subprocess.Popen(command, creationflags=subprocess.CREATE_NEW_PROCESS_GROUP, **how)
+        windows.hold(process.pid)
+        return process
+
+    def end_group(process: subprocess.Popen[Any]) -> None:
+        """End a process that `started` gave, and what is left of those that it started."""
+        windows.end(process.pid)
+
+    def end_this_group() -> NoReturn:
+        """End this process; its job, which whoever started it holds, ends the others."""
+        os._exit(1)
+
+    def signal_name(status: int) -> str:
+        """What the system ended a process by; empty where it ended by itself."""
+        status &= 0xFFFFFFFF
+        return _ENDINGS.get(status, f"0x{status:08X}") if status >= 0xC0000000 else ""
+
+    def limit(seconds: int, _: int, memory: int) -> None:
+        """Limit this process to seconds of processor time and bytes of memory; Windows limits no files."""
+        windows.limit_this_process(memory, seconds)
+
+    def limit_memory(most: int) -> None:
+        """Limit this process's memory, in bytes."""
+        windows.limit_this_process(most)
+
+    limit_addresses = limit_memory
+
+    @contextmanager
+    def file_of_child() -> Iterator[FileOfChild]:
+        """A file for another process to write, which is gone afterwards."""
+        with TemporaryDirectory(prefix="normalbench-") as folder:
+            path = Path(folder, "written")
+            yield FileOfChild(str(path), (), lambda: path.read_bytes() if path.exists() else b"")
+
+    def is_running(process: int) -> bool:
+        """Whether there is a process of a number."""
+        return windows.is_running(process)
+
+    def on_fork(call: Callable[[], None]) -> None:
+        """Have a function called in processes that are forked from this one: none is."""
+
+else:
+    import resource
+    import signal
+
+    # The status of a process that divided a whole number by 0.
+    DIVIDED_BY_ZERO = -signal.SIGFPE
+
+    def started(command: Sequence[str], **how: Any) -> subprocess.Popen[Any]:
+        """A process with a group of its own: an interruption of this process does not reach it, and `end_group` ends
+        it with all that it started."""
+        return subprocess.Popen(command, start_new_session=True, **how)
+
+    def end_group(process: subprocess.Popen[Any]) -> None:
+        """End a process that `started` gave, and what is left of those that it started."""
+        end_group_of(process.pid)
+
+    def end_this_group() -> NoReturn:
+        """End this process and its group."""
+        end_group_of(0)
+        raise AssertionError("it has ended")
+
+    def end_group_of(number: int) -> None:
+        """End a group of processes by its number; 0 is this process's own."""
+        try:
+            os.killpg(number, signal.SIGKILL)
+        except ProcessLookupError:
+            return
+
+    def signal_name(status: int) -> str:
+        """The name of the signal that ended a process, such as SIGSEGV; empty where none did."""
+        return signal.Signals(-status).name if status < 0 else ""
+
+    def limit(seconds: int, file: int, memory: int) -> None:
+        """Limit this process to seconds of processor time, and to bytes of a file and of data.
+
+        What goes beyond ends it, and no other; it leaves no image of its memory.
+        """
+        _limit({resource.RLIMIT_CPU: seconds, resource.RLIMIT_FSIZE: file, resource.RLIMIT_CORE: 0})
+        limit_memory(memory)
+
+    def limit_memory(most: int) -> None:
+        """Limit this process's data, in bytes."""
+        _limit({resource.RLIMIT_DATA: most})
+
+    def limit_addresses(most: int) -> None:
+        """Limit all memory that this process has addresses for, in bytes."""
+        _limit({resource.RLIMIT_AS: most})
+
+    def _limit(limits: Mapping[int, int]) -> None:
+        """Set limits by their numbers; none becomes higher than it was."""
+        for number, most in limits.items():
+            hard = resource.getrlimit(number)[1]
+            resource.setrlimit(number, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))
+
+    @contextmanager
+    def file_of_child() -> Iterator[FileOfChild]:
+        """A file for another process to write. It has no name: nothing is left of it, however this process ends."""
+        with TemporaryFile() as file:
+
+            def content() -> bytes:
+                file.seek(0)
+                return file.read()
+
+            yield FileOfChild(f"/dev/fd/{file.fileno()}", (file.fileno(),), content)
+
+    def is_running(process: int) -> bool:
+        """Whether there is a process of a number."""
+        try:
+            os.kill(process, 0)
+        except ProcessLookupError:
+            return False
+        except OSError:
+            return True
+        return True
+
+    def on_fork(call: Callable[[], None]) -> None:
+        """Have a function called in each process that is forked from this one."""
+        os.register_at_fork(after_in_child=call)
+
+
+def usable_cores() -> int:
+    """The cores this process may use."""
+    if sys.platform == "linux":
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

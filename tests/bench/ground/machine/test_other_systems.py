@@ -1,0 +1,69 @@
+"""What the command line does where Python lacks what it lacks on Windows and on macOS."""
+
+import json
+
+import pytest
+from other_systems import SYSTEMS, is_gone, lacking, on
+
+ENCODER = """vec2 mine_encode(vec3 n, vec3 view) { return n.xy / (abs(n.x) + abs(n.y) + abs(n.z)); }
+vec3 mine_decode(vec2 e, vec3 view) { return normalize(vec3(e, 1.0 - abs(e.x) - abs(e.y))); }
+"""
+TWIN = """from normalbench.encodings.vec import Vec2, Vec3, normalize
+def encode(n, view):
+    s = abs(n.x) + abs(n.y) + abs(n.z)
+    return Vec2(n.x / s, n.y / s)
+def decode(e, view):
+    return normalize(Vec3(e.x, e.y, 1.0 - abs(e.x) - abs(e.y)))
+"""
+GATE = '[[gate]]\ntable = "quality"\nencoding = "octahedral"\nstorage = "rg8"\nangle_max_deg = "at most 1"\n'
+
+
+@pytest.mark.parametrize("system", SYSTEMS)
+def test_the_list_of_what_a_system_lacks_is_the_type_checkers(system):
+    assert "pidfd_open" in lacking("os", system) and "sched_getaffinity" in lacking("os", system)
+    assert is_gone("fcntl", system) == ("flock" in lacking("fcntl", system)) == (system == "win32")
+    assert ("SIGALRM" in lacking("signal", system)) == (system == "win32")
+    assert not lacking("os", system) & {"getpid", "replace", "environ"}
+
+
+@pytest.fixture(params=SYSTEMS)
+def there(request, tmp_path):
+    """What a command does on a system, in a folder with an encoder and a gate."""
+    (tmp_path / "mine.glsl").write_text(ENCODER)
+    (tmp_path / "mine.py").write_text(TWIN)
+    (tmp_path / "gates.toml").write_text(GATE)
+    return lambda *words: on(request.param, tmp_path, words)
+
+
+def test_a_users_encoder_is_measured(there):
+    """It runs in a process of its own, which limits itself and has a group or a job."""
+    done = there("quality", "--encoding", "mine.glsl", "--storage", "rg8", "--backend", "jax", "--format", "json")
+    assert done.returncode == 0 and "Traceback" not in done.stderr, done.stderr
+    assert [row["bits"] for row in json.loads(done.stdout)] == [16]
+
+
+@pytest.mark.slow
+def test_a_users_encoder_that_does_not_end_is_ended(there, tmp_path):
+    (tmp_path / "mine.py").write_text("while True:\n    pass\n")
+    done = there("quality", "--encoding", "mine.glsl", "--storage", "rg8", "--backend", "jax")
+    assert done.returncode == 2 and "Traceback" not in done.stderr and "Python twin" in done.stderr, done.stderr
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("--version",),
+        ("list",),
+        ("doctor",),
+        ("pick", "--bytes", "2", "--normals", "axes"),
+        ("check", "gates.toml"),
+        ("code", "octahedral", "--storage", "rg8", "--to", "hlsl", "-o", "code"),
+        ("quality", "--encoding", "xy", "--storage", "rg8", "--report", "page.html"),
+        ("run", "--encoding", "xy", "--storage", "rg8", "--tables", "quality,depth", "-o", "kept"),
+    ],
+    ids=lambda words: words[0].strip("-"),
+)
+def test_a_command_ends_well(there, words):
+    done = there(*words)
+    assert done.returncode == 0 and "Traceback" not in done.stderr, done.stderr
