@@ -25,7 +25,7 @@ from written import as_document, packed, planes_of, png_bytes, some_normals, wri
 
 from normalbench.bench.door import code_command, examine, gbuffer_command, run, table_command
 from normalbench.bench.door.cli import app as cli
-from normalbench.bench.keep import machine
+from normalbench.bench.keep import history_command, machine
 from normalbench.bench.run import measuring
 from normalbench.bench.show import report, site_command
 from normalbench.bench.tables.registry import TABLES
@@ -121,6 +121,7 @@ BEGINNINGS = (
     (code_command, "agreement"),
     (gbuffer_command, "agreement"),
     (report, "read_to_show"),
+    (history_command, "past_runs"),
     (site_command, "_is_run"),
     (examine, "examined"),
     (machine, "examine"),

@@ -18,6 +18,7 @@ from ..ground.options.option import fields_of
 from ..ground.output.errors import MissingError, UsageError, leave_out, noting_what_is_left_out, tell, told
 from ..ground.output.progress import progress_of_all
 from ..ground.output.writing import say
+from ..keep.commit import commit_of
 from ..keep.runs import Row, Run, facts_of, opened, read_run, unfinished
 from ..keep.table_files import write_tables
 from ..run.measuring import Asked, Place, asked_together, measured, with_parts
@@ -114,11 +115,12 @@ def _asked(table: Table, said: Mapping[str, Any], folder: Path) -> Asked:
     return asked_together(table, options_of(table, said), in_folder(table, table.outputs(), folder))
 
 
-def run_command(request: Any, output: Path | None, on: str | None = None) -> int:
+def run_command(request: Any, output: Path | None, on: str | None = None, commit: str | None = None) -> int:
     """Measure tables into a results folder, their summaries to standard output. What was stopped goes on.
 
     Args:
         on: where they are measured; None for this process.
+        commit: what the change is called that is measured; None for the working folder's commit.
 
     Returns:
         the exit status: 1 where a row fails.
@@ -131,6 +133,7 @@ def run_command(request: Any, output: Path | None, on: str | None = None) -> int
         require_jax()
         facts: Row = {"request": {"tables": request.tables, **given(request)}, **facts_of(sys.argv[1:])}
         facts |= {"time": time.strftime("%Y-%m-%dT%H:%M:%S%z"), "finished": False}
+        facts |= {"commit": commit_of(commit, Path.cwd())}
         folder = output or unfinished(RESULTS, facts) or _new_folder()
         with noting_what_is_left_out() as left_out:
             asks = asked_of(request, folder)

@@ -38,9 +38,14 @@ UNITS = ("degrees", "dB")
 def what_matters(before: Done, after: Done, changes: Sequence[Row]) -> list[str]:
     """Which encodings changed, each a sentence, the worst first: in how many of their rows, and the figures that people
     know of the row that changed most."""
-    counts = _rows_of_each(before, after)
     if changes and not _share_a_row(before, after):
         return ["the runs share no row"]
+    return sentences(before, after, changes)
+
+
+def sentences(before: Done, after: Done, changes: Sequence[Row]) -> list[str]:
+    """As `what_matters`, of changes of which either run may lack a row."""
+    counts = _rows_of_each(before, after)
     groups: dict[str, list[Row]] = {}
     for change in changes:
         groups.setdefault(_subject(change["table"], change["keys"]), []).append(change)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from typing import Any, TypeVar
 
 from ..tables.registry import TABLES
 from ..tables.table import Column, Role, Row, Table
 from .runs import Done
 
+T = TypeVar("T", bound=Hashable)
 # Two medians closer than this share of each other are the same to anyone who waits for a frame.
 LEAST_EFFECT = 0.05
 # How probable a difference may be by chance alone, of either sign, and still count.
@@ -29,7 +30,8 @@ SMALL, SMALL_OTHER = 0.1, 0.2
 # As people read it.
 LITTLE = f"{SMALL:g} dB, about {10 ** (SMALL / 20) - 1:.0%}".replace("%", " %")
 # What decides a figure beside the code that is measured: where two rows differ in one of them, so may their figures.
-CONDITIONS = ("count", "seed", "size", "samples", "lights", "device", "rounded_by", "compiled_by")
+ASKED = ("count", "seed", "size", "samples", "lights")
+CONDITIONS = (*ASKED, "device", "rounded_by", "compiled_by")
 # What is said of a row that the later run does not have.
 GONE = "gone"
 ONLY = {True: "only before", False: "only after"}
@@ -40,7 +42,7 @@ NOT_MEASURED, NEW = "not measured", "new"
 def compared(before: Done, after: Done) -> list[Row]:
     """A row for each figure that differs, and for each row that only one of the runs has; the worst first."""
     same_machine = before.facts.get("machine") == after.facts.get("machine")
-    return in_order([row for tables in _tables_and_rows(before, after) for row in _row_changes(*tables, same_machine)])
+    return in_order([row for tables in _tables_and_rows(before, after) for row in row_changes(*tables, same_machine)])
 
 
 def _tables_and_rows(before: Done, after: Done) -> Iterator[tuple[Table, Mapping[Any, Row], Mapping[Any, Row]]]:
@@ -70,8 +72,8 @@ def in_order(changes: Sequence[Row]) -> list[Row]:
     A row that lost a figure comes first, then grown errors, the largest first, other figures that are worse, rows that
     are gone, what is better, what is new, and last what changed by little.
     """
-    ranked = sorted(rows_of(changes), key=lambda row: _rank_key(headline(row)))
-    return [change for row in ranked for change in sorted(row, key=_rank_key)]
+    ranked = sorted(rows_of(changes), key=lambda row: rank_key(headline(row)))
+    return [change for row in ranked for change in sorted(row, key=rank_key)]
 
 
 def rows_of(changes: Sequence[Row]) -> list[list[Row]]:
@@ -95,7 +97,7 @@ def presence(change: Row) -> str:
 def headline(row: Sequence[Row]) -> Row:
     """Of the changes of one row the first in decibels, else in degrees, that says what the worst says; else the
     worst."""
-    worst = min(row, key=_rank_key)
+    worst = min(row, key=rank_key)
     return next(known_figures(row, ERRORS), worst)
 
 
@@ -113,7 +115,7 @@ def _by_column(row: Sequence[Row]) -> list[Row]:
     return sorted(row, key=lambda change: names.index(change["column"]) if change["column"] in names else len(names))
 
 
-def _rank_key(change: Row) -> tuple[int, float]:
+def rank_key(change: Row) -> tuple[int, float]:
     """The key that sorts changes: their group, then the largest first."""
     return _group_index(change), -abs(change["severity"])
 
@@ -137,16 +139,21 @@ def is_small(change: Row) -> bool:
 
 def named_rows(table: Table, rows: Sequence[Row]) -> dict[tuple[str, int], Row]:
     """Rows by what they are called, and those that are called alike by their order."""
-    found: dict[tuple[str, int], Row] = {}
-    counts: dict[str, int] = {}
+    return in_turn(rows, table.name_of)
+
+
+def in_turn(rows: Sequence[Row], name_of: Callable[[Row], T]) -> dict[tuple[T, int], Row]:
+    """Rows by their names, and those of one name by their order."""
+    found: dict[tuple[T, int], Row] = {}
+    counts: dict[T, int] = {}
     for row in rows:
-        name = table.name_of(row)
+        name = name_of(row)
         found[name, counts.setdefault(name, 0)] = row
         counts[name] += 1
     return found
 
 
-def _row_changes(table: Table, ours: Mapping[Any, Row], theirs: Mapping[Any, Row], same_machine: bool) -> Iterator[Row]:
+def row_changes(table: Table, ours: Mapping[Any, Row], theirs: Mapping[Any, Row], same_machine: bool) -> Iterator[Row]:
     """What differs between the rows of one table."""
     for key in dict.fromkeys([*ours, *theirs]):
         if key in ours and key in theirs:
@@ -170,20 +177,32 @@ def _change_row(
 
 
 def _column_changes(table: Table, called: str, one: Row, other: Row, same_machine: bool) -> Iterator[Row]:
-    has_reason = gives_reason(table, one) or gives_reason(table, other)
-    for column in dict.fromkeys([*one, *other]):
+    differing = [name for name in dict.fromkeys([*one, *other]) if not same(one.get(name), other.get(name))]
+    has_reason = bool(differing) and (gives_reason(table, one) or gives_reason(table, other))
+    for column in differing:
         known = table.column(column)
-        before, after = one.get(column), other.get(column)
-        if known and known.role in (Role.FIGURE, Role.REASON) and not same(before, after):
+        if known and known.role in (Role.FIGURE, Role.REASON):
+            before, after = one.get(column), other.get(column)
             severity = severity_of(known, before, after, has_reason)
             yield _change_row(table, one, called, column, before, after, severity)
     if same_machine and one.get(EACH) and other.get(EACH):
         times = [[float(word) for word in row[EACH].split()] for row in (one, other)]
-        effect = one[FRAME] and other[FRAME] / one[FRAME] - 1
-        if abs(effect) >= LEAST_EFFECT and mann_whitney(*times) <= CHANCE:
-            severity = 20 * math.log10(1 + effect)
-            change = _change_row(table, one, called, FRAME, one[FRAME], other[FRAME], severity)
-            yield change | {"change": f"{100 * effect:+.1f} %"}
+        if is_slower_or_faster(one[FRAME], other[FRAME]) and mann_whitney(*times) <= CHANCE:
+            yield time_change(table, one, called, FRAME, one[FRAME], other[FRAME])
+
+
+def is_slower_or_faster(before: float, after: float) -> bool:
+    """Whether two medians differ by more than anyone cares for."""
+    return bool(before) and abs(after / before - 1) >= LEAST_EFFECT
+
+
+def time_change(table: Table, row: Row, called: str, column: str, before: float, after: float) -> Row:
+    """A line of a time that changed."""
+    known = table.column(column)
+    grows = 20 * math.log10(after / before)
+    severity = -grows if known and known.better == "more" else grows
+    change = f"{100 * (after / before - 1):+.1f} %"
+    return _change_row(table, row, called, column, before, after, severity) | {"change": change}
 
 
 def gives_reason(table: Table, row: Row) -> bool:

@@ -111,20 +111,27 @@ def journal(path: Path) -> Iterator[Journal]:
             kept.close()
 
 
-def read_lines(path: Path) -> list[Line]:
-    """The whole lines of a journal; nothing is written, and a missing file has none. Raises UsageError."""
+def read_lines(path: Path, known: dict[bytes, Line] | None = None) -> list[Line]:
+    """The whole lines of a journal; nothing is written, and a missing file has none. Raises UsageError.
+
+    Args:
+        known: lines that were parsed before, which are the same objects; what this journal has is added.
+    """
     try:
         content = file_bytes(path, MOST) if path.exists() else b""
     except OSError as error:
         raise UsageError(f"{path} cannot be read: {error}") from error
-    return _whole_lines(path, content)
+    return _whole_lines(path, content, known)
 
 
-def _whole_lines(path: Path, content: bytes) -> list[Line]:
+def _whole_lines(path: Path, content: bytes, known: dict[bytes, Line] | None = None) -> list[Line]:
     """The lines that have their end: what was being written when the process was killed has none."""
     whole = content[: content.rfind(b"\n") + 1].split(b"\n")[:-1]
     # An editor may leave an empty line.
-    return [_parsed_line(f"{path}, line {at}", line) for at, line in enumerate(whole, 1) if line.strip()]
+    numbered = [(f"{path}, line {at}", line) for at, line in enumerate(whole, 1) if line.strip()]
+    if known is None:
+        return [_parsed_line(place, line) for place, line in numbered]
+    return [known.get(line) or known.setdefault(line, _parsed_line(place, line)) for place, line in numbered]
 
 
 def _parsed_line(place: str, line: bytes) -> Line:

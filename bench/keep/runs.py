@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -20,13 +20,21 @@ from ..ground.output.errors import UsageError, tell
 from ..ground.output.sources import sources
 from ..ground.output.writing import check_folder, whole_file
 from ..tables.registry import TABLES
-from ..tables.table import PART, Role, Row, Step, Table
+from ..tables.table import PART, Role, Row, Step
 from .journal import Journal, data_of, journal, read_lines
 from .plain import key_text, plain
 
 RUN, ROWS = "run.json", "rows.jsonl"
 # How many facts that differ a message names, and how many letters of each value it shows.
 MOST_FACTS, SHORT = 3, 40
+
+
+def _identified(step: Row) -> list[tuple[str, Row]]:
+    """The rows of a step, each by what it is of and under what conditions."""
+    table = TABLES[step["table"]]
+    names = [c.name for c in table.of_role(Role.KEY, Role.HOW)]
+    rows = map(table.as_now, step["rows"])
+    return [(json.dumps([row.get(name) for name in names], sort_keys=True), row) for row in rows]
 
 
 @dataclass(frozen=True)
@@ -39,6 +47,7 @@ class Done:
         damage: what happened to the rows since the run finished; empty where nothing did.
         parts: the finished parts of steps that are not finished, in the same form.
         whole: by table its finished rows, where they are known; `finished_rows` adds to them.
+        identified: a step's rows, each by what it is of and under what conditions.
     """
 
     facts: Row
@@ -46,6 +55,7 @@ class Done:
     damage: str = ""
     parts: Sequence[Row] = ()
     whole: dict[str, list[Row]] = field(default_factory=dict)
+    identified: Callable[[Row], list[tuple[str, Row]]] = _identified
 
     @cached_property
     def tables(self) -> dict[str, list[Row]]:
@@ -55,14 +65,12 @@ class Done:
         last: dict[tuple[str, str], int] = {}
         made: list[tuple[int, str, str, Row]] = []
         for at, step in enumerate(self.steps):
-            table = TABLES.get(step["table"])
-            if not table:
+            if (name := step["table"]) not in TABLES:
                 continue
-            found.setdefault(table.name, [])
-            for row in map(table.as_now, step["rows"]):
-                identity = _identity(table, row)
-                last[table.name, identity] = at
-                made.append((at, table.name, identity, row))
+            found.setdefault(name, [])
+            for identity, row in self.identified(step):
+                last[name, identity] = at
+                made.append((at, name, identity, row))
         for at, name, identity, row in made:
             if last[name, identity] == at:
                 found[name].append(row)
@@ -95,12 +103,6 @@ class Done:
         return all(one.get("finished") for one in last.values())
 
 
-def _identity(table: Table, row: Row) -> str:
-    """What a row is of, and under what conditions."""
-    names = [c.name for c in table.of_role(Role.KEY, Role.HOW)]
-    return json.dumps([row.get(name) for name in names], sort_keys=True)
-
-
 def facts_of(command: Sequence[str]) -> Row:
     """What a run records of itself before anything is measured: the command, the sources and the machine."""
     from .machine import machine
@@ -108,35 +110,59 @@ def facts_of(command: Sequence[str]) -> Row:
     return {"command": list(command), "sources": sources(), "machine": machine()}
 
 
-def read_run(folder: Path) -> Done:
+class Shared:
+    """What several runs have in common: a line that many of them have is parsed, checked and named once."""
+
+    def __init__(self):
+        self.lines: dict[bytes, Row] = {}
+        self.checked: set[int] = set()
+        self._identified: dict[int, list[tuple[str, Row]]] = {}
+
+    def identified(self, step: Row) -> list[tuple[str, Row]]:
+        """As `Done.identified`, of a step that is among `lines`; the same rows each time."""
+        if id(step) not in self._identified:
+            self._identified[id(step)] = _identified(step)
+        return self._identified[id(step)]
+
+
+def read_run(folder: Path, shared: Shared | None = None) -> Done:
     """A results folder; nothing is written.
+
+    Args:
+        shared: where many runs are read, what they share.
 
     Raises:
         UsageError: it is none, or cannot be read.
     """
-    facts, lines = _facts(folder), read_lines(folder / ROWS)
-    _check_steps(folder, lines)
+    facts, lines = _facts(folder), read_lines(folder / ROWS, shared and shared.lines)
+    _check_steps(folder, lines, shared.checked if shared else set())
     whole = [line for line in lines if PART not in line["key"]]
-    return Done(facts, whole, _damage_text(folder, facts), [line for line in lines if PART in line["key"]])
+    parts = [line for line in lines if PART in line["key"]]
+    identified = shared.identified if shared else _identified
+    return Done(facts, whole, _damage_text(folder, facts), parts, identified=identified)
 
 
-def read_to_show(folder: Path) -> Done:
+def read_to_show(folder: Path, shared: Shared | None = None) -> Done:
     """A results folder that people look at: what is amiss with its rows is said on standard error.
 
     Raises:
         UsageError: as `read_run`.
     """
-    done = read_run(folder)
+    done = read_run(folder, shared)
     for line in filter(None, (done.damage, done.left_out and f"{folder}: {done.left_out}")):
         tell(line)
     return done
 
 
-def _check_steps(folder: Path, lines: Sequence[Row]) -> None:
+def _check_steps(folder: Path, lines: Sequence[Row], checked: set[int]) -> None:
+    """Raises UsageError. Lines whose ids are in `checked` were looked at before; the others are added."""
     from .schema import Keys, check_step
 
     keys: Keys = {}
     for at, line in enumerate(lines, 1):
+        if id(line) in checked:
+            continue
+        checked.add(id(line))
         try:
             check_step(line, f"{folder / ROWS}, line {at}", keys)
         except UsageError as error:
@@ -177,7 +203,7 @@ class Run:
 
     def __init__(self, folder: Path, facts: Row, kept: Journal):
         self.folder, self.facts, self._journal, self._lock = folder, facts, kept, Lock()
-        _check_steps(folder, kept.lines)
+        _check_steps(folder, kept.lines, set())
         self._kept = {key_text(step["table"], step["key"]): step["rows"] for step in kept.lines}
 
     @property
@@ -241,7 +267,7 @@ class Amended:
     def __init__(self, folder: Path, facts: Row, kept: Journal):
         self._folder, self._facts, self._journal = folder, facts, kept
         self.sources = str(facts.get("sources") or "")
-        _check_steps(folder, kept.lines)
+        _check_steps(folder, kept.lines, set())
         self.lines: Sequence[Row] = kept.lines
 
     def replace(self, lines: Sequence[Row]) -> None:
@@ -373,7 +399,9 @@ def _begun_facts(folder: Path, facts: Row) -> Row:
         raise UsageError(f"{folder} holds a run {apart}; name another folder")
     if damage := _damage_text(folder, kept):
         raise UsageError(f"{damage}; name another folder")
-    return kept if same_work(kept, facts) else _extended_facts(folder, kept, facts)
+    # Rows that are there are those of the files as they are now, whatever commit they were measured at.
+    commit = {name: facts[name] for name in ("commit",) if name in facts}
+    return kept | commit if same_work(kept, facts) else _extended_facts(folder, kept, facts)
 
 
 def _extended_facts(folder: Path, kept: Row, facts: Row) -> Row:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cache
 from typing import Annotated, Any, NotRequired
 
 from pydantic import AfterValidator, ConfigDict, JsonValue, TypeAdapter, ValidationError, with_config
@@ -11,7 +10,7 @@ from typing_extensions import TypedDict
 
 from ..ground.output.errors import UsageError
 from ..tables.registry import TABLES
-from ..tables.table import Role, Row, Table
+from ..tables.table import Role, Row
 
 # A float holds whole numbers below this: storages of 64 bits have more codes than fit a whole number of NumPy's.
 LARGEST = 2**1000
@@ -59,6 +58,7 @@ class RunFacts(TypedDict, total=False):
     digest: str
     next: dict[str, Scalar]
     before: list[dict[str, JsonValue]]
+    commit: dict[str, Scalar]
 
 
 @with_config(STRICT)
@@ -138,16 +138,10 @@ def check_entry(entry: Any, place: str) -> None:
 def _check_row(name: str, row: Row, place: Sequence[str]) -> None:
     """Raises UsageError where a column holds what it cannot. Columns that the table does not have may hold anything."""
     table = TABLES.get(name)
-    roles = {column: role for column in row if (role := _role(table, column))} if table else {}
+    known = {name: column for name in row if (column := table.column(name))} if table else {}
+    roles = {name: column.role for name, column in known.items()}
     _check(SCALARS, {name: row[name] for name in roles}, place)
     _check(NUMBERS, {name: row[name] for name, role in roles.items() if role in (Role.FIGURE, Role.TIME)}, place)
-
-
-@cache
-def _role(table: Table, name: str) -> Role | None:
-    """What a row's column is for. Kept, because rows are many and patterns of names take long."""
-    column = table.column(name)
-    return column.role if column else None
 
 
 def _check(adapter: TypeAdapter[Any], value: Any, place: Sequence[str]) -> None:

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 from types import MappingProxyType
@@ -247,7 +248,7 @@ class Table:
 
     def column(self, name: str) -> Column | None:
         """The column that a row or a summary calls so; None where there is none."""
-        return column_called(name, (*self.columns, *self.also))
+        return _column_of(self, name)
 
     def of_role(self, *roles: Role) -> list[Column]:
         """The columns of some roles."""
@@ -274,6 +275,12 @@ class Table:
         """Rows less the columns that are not for people."""
         hidden = {column.name for column in self.columns if not column.shown}
         return [{name: value for name, value in row.items() if name not in hidden} for row in rows]
+
+
+@cache
+def _column_of(table: Table, name: str) -> Column | None:
+    """Kept, because rows are many and patterns of names take long."""
+    return column_called(name, (*table.columns, *table.also))
 
 
 def each(one: Callable[[Any], Sequence[Row]]) -> Callable[[Sequence[Step], Tick], Iterator[list[Row]]]:

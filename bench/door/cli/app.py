@@ -36,6 +36,7 @@ from ..run_options import RunOptions
 from .commands import OnOption, add_tables, command_with, with_options
 from .device_commands import add_devices
 from .formats import Format, FormatOption, format_of
+from .history_commands import add_history
 from .typed import added_up, check_begins_with_command
 
 
@@ -159,24 +160,32 @@ app.command(rich_help_panel=Group.OWN)(with_options(Sources, doctor))
 add_tables(app, TABLES.values())
 
 
-def _run(options: Any, output: Path | None, on: str | None) -> int:
+def _run(options: Any, output: Path | None, on: str | None, commit: str | None) -> int:
     from ..run import run_command
 
     check_is_folder(output, "run writes into")
     check_place(on)
-    return run_command(options, output, on)
+    return run_command(options, output, on, commit)
 
 
 RunOutput = Annotated[
     Path | None,
     typer.Option("-o", "--output", help="Results folder: new, or of a run to go on with. Default: results/<time>."),
 ]
+CommitOption = Annotated[
+    str | None,
+    typer.Option(
+        "--commit",
+        help="What history calls the change that is measured. Default: the commit of this folder's Git repository.",
+        metavar="NAME",
+    ),
+]
 app.command(
     "run",
     rich_help_panel=Group.ANSWER,
     help="Many tables into a results folder with its page: by default what people ship, in every table.\n\n"
     "A run that was stopped goes on when the same command is run again. With -o a finished run is extended.",
-)(command_with(RunOptions, _run, output=RunOutput, on=OnOption))
+)(command_with(RunOptions, _run, output=RunOutput, on=OnOption, commit=CommitOption))
 
 
 @app.command(rich_help_panel=Group.MACHINE)
@@ -293,6 +302,7 @@ def report(
     report_command(runs, markdown, pictures is PicturePlace.beside, output)
 
 
+add_history(app)
 add_devices(app)
 
 

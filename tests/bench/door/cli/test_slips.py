@@ -324,7 +324,7 @@ def test_version_and_short_help(run):
 
 
 @pytest.mark.parametrize(
-    "name", [*TABLES, "run", "check", "compare", "report", "list", "doctor", "columns", "import", "site"]
+    "name", [*TABLES, "run", "check", "compare", "report", "list", "doctor", "columns", "import", "site", "history"]
 )
 def test_help_fits_80_columns_and_groups_its_options(run, monkeypatch, name):
     monkeypatch.setenv("COLUMNS", "80")

@@ -1,0 +1,68 @@
+"""The command of the history."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ...tables.table import Group
+from .formats import WRITTEN, FormatOption, format_of
+
+Runs = Annotated[
+    list[Path], typer.Argument(help="Results folders, or folders that hold some.", metavar="RUN...", show_default=False)
+]
+PlainOutput = Annotated[Path | None, typer.Option("-o", "--output", help="Write the rows to this file.")]
+SHOWN = "What is shown"
+
+
+class By(StrEnum):
+    change = "change"
+    commit = "commit"
+
+
+ByOption = Annotated[
+    By,
+    typer.Option(
+        "--by",
+        help="change: where figures got worse, or better than ever; commit: the figures themselves.",
+        rich_help_panel=SHOWN,
+    ),
+]
+Tables = Annotated[str | None, typer.Option("--tables", help="Tables, comma-separated.", rich_help_panel=SHOWN)]
+Encoding = Annotated[str | None, typer.Option("--encoding", help="Encodings.", rich_help_panel=SHOWN)]
+Storage = Annotated[str | None, typer.Option("--storage", help="Storages.", rich_help_panel=SHOWN)]
+Column = Annotated[str | None, typer.Option("--column", help="Figures, by their columns.", rich_help_panel=SHOWN)]
+Plot = Annotated[
+    Path | None,
+    typer.Option("--plot", help="Draw the figures over the commits: PNG, SVG or PDF.", rich_help_panel=WRITTEN),
+]
+
+
+def add_history(app: typer.Typer) -> None:
+    """The command."""
+    app.command("history", rich_help_panel=Group.KEEP)(history)
+
+
+def history(
+    runs: Runs,
+    by: ByOption = By.change,
+    tables: Tables = None,
+    encoding: Encoding = None,
+    storage: Storage = None,
+    column: Column = None,
+    plot: Plot = None,
+    format: FormatOption = None,
+    output: PlainOutput = None,
+) -> int:
+    """At which commit a figure got worse, over runs of many commits, and at which it was mended.
+
+    Figures are judged as compare does. A time counts where many runs of one machine before and behind a commit agree.
+    A run knows the commit of the folder that it was started in; see run --commit.
+    """
+    from ...keep.history_command import Wanted, history_command
+
+    wanted = Wanted(tables, encoding, storage, column)
+    return history_command(runs, wanted, by, format_of(format, output), output, plot)

@@ -1,0 +1,45 @@
+"""The commit that a run is of: the working folder's, or what the user calls the change."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+from ..tables.table import Row
+
+SECONDS = 20
+# How many letters of a commit's name people read, and what they are followed by where files were changed since.
+SHORT, CHANGED = 8, "+"
+
+
+def commit_of(named: str | None, folder: Path) -> Row:
+    """What a run records of its commit; empty where a folder is in no repository and the change has no name.
+
+    `name`, `time` in seconds, `subject`, whether files of the repository were `changed` since, and `rank`, which orders
+    commits of one second, as a rebase makes them.
+    """
+    if named:
+        return {"name": named}
+    if not (said := _git(folder, "log", "-1", "--format=%H%n%ct%n%s")):
+        return {}
+    name, time, subject = said.split("\n", 2)
+    # Of a clone that is not deep, the rank is the same for all.
+    rank = _git(folder, "rev-list", "--count", f"--max-age={time}", "HEAD") or "0"
+    changed = bool(_git(folder, "status", "--porcelain", "--untracked-files=no"))
+    return {"name": name, "time": int(time), "rank": int(rank), "subject": subject.strip(), "changed": changed}
+
+
+def _git(folder: Path, *words: str) -> str:
+    """What git says of a repository; empty where there is no git, no repository or no commit."""
+    try:
+        done = subprocess.run(["git", *words], cwd=folder, capture_output=True, timeout=SECONDS)
+    except (OSError, subprocess.TimeoutExpired):
+        return ""
+    return done.stdout.decode(errors="replace").strip() if done.returncode == 0 else ""
+
+
+def short_name(commit: Row) -> str:
+    """A commit as people read it."""
+    name = str(commit["name"])
+    is_hash = "time" in commit
+    return (name[:SHORT] if is_hash else name) + CHANGED * bool(commit.get("changed"))

@@ -1,0 +1,228 @@
+"""Figures over runs of many commits: at which commit one got worse, and whether it was mended since.
+
+Two runs are judged as `compare` does. A time is judged by all runs of one machine before and behind a step.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import pairwise
+from statistics import median
+from typing import Any
+
+from ...reports.page.verdict import is_number
+from ..tables.registry import TABLES
+from ..tables.table import Column, Role, Row, Table
+from .comparison import ASKED, in_turn, is_slower_or_faster, is_small, row_changes, severity_of, time_change
+from .past_runs import Past
+from .time_steps import time_steps
+
+# What a row is called, and what it was asked for: rows of other numbers of normals are not set next to each other.
+Called = tuple[str, tuple[Any, ...]]
+
+
+@dataclass
+class Series:
+    """What the runs have of one row.
+
+    Attributes:
+        table: whose row it is.
+        called: the row's name.
+        rows: the row, and the first run that has it so.
+        runs: the runs that have the row.
+        gaps: a run that lacks it although it was asked for the same, and the one that has it again; None for none.
+        times: by machine and column, the runs and what the clock said.
+    """
+
+    table: Table
+    called: str
+    rows: list[tuple[int, Row]] = field(default_factory=list)
+    runs: list[int] = field(default_factory=list)
+    gaps: list[tuple[int, int | None]] = field(default_factory=list)
+    times: dict[tuple[str, str], list[tuple[int, float]]] = field(default_factory=dict)
+
+    @cached_property
+    def is_timed(self) -> bool:
+        """Whether the table has times."""
+        return bool(self.table.of_role(Role.TIME))
+
+    @cached_property
+    def reasons(self) -> set[str]:
+        """The columns that say why figures are missing."""
+        return {column.name for column in self.table.of_role(Role.REASON)}
+
+    @property
+    def judged(self) -> list[str]:
+        """The columns of figures, times and speeds of which one way is better."""
+        names = dict.fromkeys(name for _, row in self.rows for name in row)
+        columns = ((name, self.table.column(name)) for name in names)
+        return [name for name, one in columns if one and one.better and one.role in (Role.FIGURE, Role.TIME)]
+
+    def values(self, column: str) -> list[tuple[int, Any]]:
+        """A column's value, and the first run that has it so."""
+        return [(at, row.get(column)) for at, row in self.rows]
+
+    def over_all(self, column: str) -> list[tuple[int, Any]]:
+        """A column's value in every run that has the row."""
+        found, rest = [], list(self.rows)
+        for run in self.runs:
+            while len(rest) > 1 and rest[1][0] <= run:
+                rest.pop(0)
+            found.append((run, rest[0][1].get(column)))
+        return found
+
+
+@dataclass(frozen=True)
+class Change:
+    """A figure that changed from one run to the next.
+
+    Attributes:
+        line: as `compare` has it.
+        at: the first run that has it so.
+        mended: the run since which it is no longer worse; None where it still is.
+        series: the row that it is of.
+    """
+
+    line: Row
+    at: int
+    mended: int | None
+    series: Series
+
+
+def series_of(runs: Sequence[Past]) -> list[Series]:
+    """Each row over some runs in their order."""
+    asked = [_asked_text(past) for past in runs]
+    found: dict[tuple[str, tuple[Called, int]], Series] = {}
+    names: dict[int, Called] = {}
+    for at, past in enumerate(runs):
+        machine = json.dumps(past.done.facts.get("machine"), sort_keys=True)
+        for table, key, row in _rows(past, names):
+            series = found.setdefault((table.name, key), Series(table, key[0][0]))
+            _close_gap(series, at, asked, at)
+            _add(series, at, row, machine)
+    for series in found.values():
+        _close_gap(series, len(runs), asked, None)
+    return list(found.values())
+
+
+def _asked_text(past: Past) -> str:
+    """What a run was asked for; empty where it may lack rows."""
+    return json.dumps(past.done.facts.get("request"), sort_keys=True) if past.done.finished else ""
+
+
+def _rows(past: Past, names: dict[int, Called]) -> Iterator[tuple[Table, tuple[Called, int], Row]]:
+    """Each row of a run, its table and its key. `names` has those of rows that were met before."""
+    for name, rows in past.done.tables.items():
+        table = TABLES[name]
+
+        def called(row: Row, table: Table = table) -> Called:
+            if id(row) not in names:
+                names[id(row)] = table.name_of(row), tuple(row.get(column) for column in ASKED)
+            return names[id(row)]
+
+        for key, row in in_turn(rows, called).items():
+            yield table, key, row
+
+
+def _close_gap(series: Series, at: int, asked: Sequence[str], found: int | None) -> None:
+    """Note which run first lacked a row, of those before `at` that were asked for the same as the last that has it."""
+    last = series.runs[-1] if series.runs else at
+    lacking = (run for run in range(last + 1, at) if asked[run] and asked[run] == asked[last])
+    if (lost := next(lacking, None)) is not None:
+        series.gaps.append((lost, found))
+
+
+def _add(series: Series, at: int, row: Row, machine: str) -> None:
+    """The row of one run more."""
+    series.runs.append(at)
+    if not series.rows or series.rows[-1][1] is not row:
+        series.rows.append((at, row))
+    if series.is_timed:
+        for name in _clocks(series.table, row):
+            series.times.setdefault((machine, name), []).append((at, row[name]))
+
+
+def _clocks(table: Table, row: Row) -> Iterator[str]:
+    """The columns of a row that have a time or a speed."""
+    for name, value in row.items():
+        column = table.column(name) if isinstance(value, float) and math.isfinite(value) and value > 0 else None
+        if column and column.role is Role.TIME and column.better:
+            yield name
+
+
+def changes_of(series: Sequence[Series]) -> list[Change]:
+    """What got worse, or better than it ever was, in any of some rows."""
+    tests = sum(len(times) - 1 for one in series for times in one.times.values())
+    return [change for one in series for change in (*_figures(one), *_gone(one), *_times(one, tests))]
+
+
+def _figures(series: Series) -> Iterator[Change]:
+    known: Row = {}
+    for (_, one), (at, other) in pairwise(series.rows):
+        # A figure that a run did not look for is that of the last run that did.
+        known |= {name: value for name, value in one.items() if value is not None or name in series.reasons}
+        for line in row_changes(series.table, {(series.called, 0): known}, {(series.called, 0): other}, False):
+            name = line["column"]
+            column = series.table.column(name) if one.get(name) is not None or other.get(name) is not None else None
+            if line["verdict"] and column and _is_told(series, line, at, column):
+                yield Change(line, at, _mended_at(series, line, at, column), series)
+
+
+def _is_told(series: Series, line: Row, at: int, column: Column) -> bool:
+    """Whether a figure is worse, or better than it ever was; what is as good again was mended."""
+    if line["verdict"] == "worse":
+        return True
+    earlier = [value for run, value in series.values(line["column"]) if run < at]
+    return all(severity_of(column, value, line["after"], has_reason=True) < 0 for value in earlier)
+
+
+def _mended_at(series: Series, line: Row, at: int, column: Column) -> int | None:
+    """The first run behind `at` in which a figure is not worse than before, or by little where it was by much."""
+    for run, value in series.values(line["column"]):
+        severity = severity_of(column, line["before"], value, has_reason=True)
+        is_as_good = severity <= 0 or (not is_small(line) and is_small(line | {"severity": severity}))
+        if run > at and line["verdict"] == "worse" and is_as_good:
+            return run
+    return None
+
+
+def _gone(series: Series) -> Iterator[Change]:
+    for lost, found in series.gaps:
+        row = [row for at, row in series.rows if at < lost][-1]
+        for line in row_changes(series.table, {(series.called, 0): row}, {}, same_machine=False):
+            yield Change(line, lost, found, series)
+
+
+def _times(series: Series, tests: int) -> Iterator[Change]:
+    for (_, column), times in series.times.items():
+        begins = time_steps([value for _, value in times], tests)
+        ends = [0, *begins, len(times)]
+        middles = [median(value for _, value in times[begin:end]) for begin, end in pairwise(ends)]
+        for number, begin in enumerate(begins, 1):
+            before, after = middles[number - 1 : number + 1]
+            line = time_change(series.table, series.rows[0][1], series.called, column, before, after)
+            later = (ends[at] for at in range(number + 1, len(middles)) if not _is_worse(line, middles[at]))
+            mended = next(later, None) if line["verdict"] == "worse" else None
+            if line["verdict"] == "worse" or all(_is_better(line, middle) for middle in middles[:number]):
+                yield Change(line, times[begin][0], None if mended is None else times[mended][0], series)
+
+
+def _is_worse(line: Row, later: float) -> bool:
+    """Whether a later time is still worse than before a step."""
+    before = line["before"]
+    return is_slower_or_faster(before, later) and (later > before) == (line["after"] > before)
+
+
+def _is_better(line: Row, earlier: float) -> bool:
+    """Whether a time after a step is better than an earlier one."""
+    after = line["after"]
+    return is_slower_or_faster(earlier, after) and (after > earlier) == (after > line["before"])
+
+
+def is_value(value: Any) -> bool:
+    """Whether a chart has a place for it."""
+    return is_number(value) and math.isfinite(value)

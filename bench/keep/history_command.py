@@ -1,0 +1,241 @@
+"""What `history` does."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from ..ground.choose import choose
+from ..ground.output.errors import UsageError, tell
+from ..ground.output.writing import check_plot, check_writable, whole_file, write
+from ..tables.table import Row
+from .change_lines import LINES, SENTENCES, in_short, sentences
+from .comparison import GONE, headline, in_order, rank_key
+from .history import Change, Series, changes_of, series_of
+from .history_chart import MOST, chart
+from .past_runs import Past, named_apart, past_runs
+
+# What --by may be besides "change".
+COMMIT = "commit"
+# What a group of changes is, in the order in which groups are shown.
+WORSE, MENDED, BETTER = "worse", "mended", "better"
+# What a narrow terminal leaves out, the first first.
+SPARED = ("figures", "rows", "date", "change")
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What of the runs is looked at: comma-separated names, or None for all."""
+
+    tables: str | None = None
+    encoding: str | None = None
+    storage: str | None = None
+    column: str | None = None
+
+
+@dataclass(frozen=True)
+class Group:
+    """What changed at one commit, and was mended at one, or still is so."""
+
+    kind: str
+    at: int
+    mended: int | None
+    changes: Sequence[Change]
+
+    @property
+    def lines(self) -> list[Row]:
+        """The changes as `compare` has them, the worst first."""
+        return in_order([change.line for change in self.changes])
+
+
+def history_command(
+    folders: Sequence[Path], wanted: Wanted, by: str, format: str, output: Path | None, plot: Path | None
+) -> int:
+    """Write at which commits figures changed, or the figures by commit, and draw them; the exit status is 0."""
+    check_plot(plot)
+    if output:
+        check_writable(output)
+    runs = past_runs(folders)
+    # All rows are judged, whichever are shown: how large a time's step must be depends on how many there are.
+    everything = series_of(runs)
+    series = _chosen(everything, wanted)
+    columns, shown = _columns(series, wanted), set(map(id, series))
+    found = [change for change in changes_of(everything) if id(change.series) in shown]
+    changes = [change for change in found if not columns or change.line["column"] in columns]
+    groups = _groups(changes)
+    figures = _figures(groups, series, columns)
+    _tell_what_else(runs, groups)
+    is_for_people = format in ("table", "markdown")
+    if by == COMMIT and not figures:
+        tell("no figure changed; name one by --column")
+    if by == COMMIT:
+        write((_across if is_for_people else _long)(runs, figures), format, output, total=_left_out(figures))
+    elif is_for_people:
+        write(
+            _lines(runs, groups), format, output, SPARED, lead=_lead(runs, groups), total=_total(runs, series, groups)
+        )
+    else:
+        write([_line(runs, change) for group in groups for change in group.changes], format, output)
+    if plot:
+        _draw(plot, runs, figures[:MOST], changes)
+    return 0
+
+
+def _chosen(series: Sequence[Series], wanted: Wanted) -> list[Series]:
+    """The wanted rows. Raises UsageError for a name that no row has."""
+    found = list(series)
+    for what in ("tables", "encoding", "storage"):
+        names: str | None = getattr(wanted, what)
+        if names:
+            known = dict.fromkeys(name for one in series if (name := _name(one, what)))
+            chosen = choose(what.removesuffix("s"), names, {str(name): name for name in known})
+            found = [one for one in found if _name(one, what) in chosen]
+    if not found:
+        raise UsageError("the runs have no row of these names together")
+    return found
+
+
+def _name(series: Series, what: str) -> Any:
+    return series.table.name if what == "tables" else series.rows[0][1].get(what)
+
+
+def _columns(series: Sequence[Series], wanted: Wanted) -> set[str]:
+    """The names of the wanted columns; none for all. Raises UsageError for a name that no row has."""
+    known = dict.fromkeys(name for one in series for name in one.judged)
+    return set(choose("column", wanted.column, {name: name for name in known})) if wanted.column else set()
+
+
+def _groups(changes: Sequence[Change]) -> list[Group]:
+    """Changes that were made at one commit and mended at one: what is worse first, then what was mended, the worst of
+    each first."""
+    found: dict[tuple[str, int, int | None], list[Change]] = {}
+    for change in changes:
+        is_worse = change.line["verdict"] in ("worse", GONE)
+        kind = BETTER if not is_worse else WORSE if change.mended is None else MENDED
+        found.setdefault((kind, change.at, change.mended), []).append(change)
+    groups = [Group(*key, _ranked(several)) for key, several in found.items()]
+    kinds = (WORSE, MENDED, BETTER)
+    return sorted(groups, key=lambda group: (kinds.index(group.kind), rank_key(headline(group.lines)), group.at))
+
+
+def _ranked(changes: Sequence[Change]) -> list[Change]:
+    places = {id(line): place for place, line in enumerate(in_order([change.line for change in changes]))}
+    return sorted(changes, key=lambda change: places[id(change.line)])
+
+
+def _figures(groups: Sequence[Group], series: Sequence[Series], columns: set[str]) -> list[tuple[Series, str]]:
+    """The figures that are shown over the runs: of each row that changed the one that says most, or those named."""
+    if columns:
+        return [(one, name) for one in series for name in one.judged if name in columns]
+    found: dict[tuple[Any, ...], tuple[Series, str]] = {}
+    for group in groups:
+        for row in _by_series(group.changes):
+            line, one = headline([change.line for change in row]), row[0].series
+            # Of rows that changed from the same to the same, the first.
+            alike = (one.table.name, group.at, group.mended, line["column"], line["before"], line["after"])
+            if line["column"] and (one, line["column"]) not in found.values():
+                found.setdefault(alike, (one, line["column"]))
+    return list(found.values())
+
+
+def _by_series(changes: Sequence[Change]) -> list[list[Change]]:
+    found: dict[int, list[Change]] = {}
+    for change in changes:
+        found.setdefault(id(change.series), []).append(change)
+    return list(found.values())
+
+
+def _tell_what_else(runs: Sequence[Past], groups: Sequence[Group]) -> None:
+    """On standard error, what else changed at the commits that are named."""
+    apart = list(named_apart(runs))
+    for at in dict.fromkeys(group.at for group in groups):
+        if apart[at]:
+            tell(f"at {runs[at].name} something else changed too: {apart[at]}")
+
+
+def _lead(runs: Sequence[Past], groups: Sequence[Group]) -> str:
+    """The runs, and a sentence for each commit that made something worse."""
+    first, last = runs[0], runs[-1]
+    said = [f"{len(runs)} run{'s' * (len(runs) > 1)}, from {_called(first)} to {_called(last)}"]
+    worse = [group for group in groups if group.kind != BETTER]
+    said += [_sentence(runs, group) for group in worse[:SENTENCES]]
+    more = len(worse) - SENTENCES
+    said += [f"and {more} more"] if more > 0 else []
+    return "\n".join(said if worse else [*said, "no figure got worse"])
+
+
+def _called(past: Past) -> str:
+    return ", ".join([past.name, past.day]) + (f" ({past.subject})" if past.subject else "")
+
+
+def _sentence(runs: Sequence[Past], group: Group) -> str:
+    before = max(run for run in group.changes[0].series.runs if run < group.at)
+    found = sentences(runs[before].done, runs[group.at].done, group.lines)
+    more = f"; and {len(found) - 1} more" if len(found) > 1 else ""
+    mended = f"; mended at {_called(runs[group.mended])}" if group.mended is not None else ""
+    return f"since {_called(runs[group.at])}: {found[0]}{more}{mended}"
+
+
+def _lines(runs: Sequence[Past], groups: Sequence[Group]) -> list[Row]:
+    """Lines for people."""
+    most = max(1, LINES // max(1, len(groups)))
+    return [
+        {"commit": runs[group.at].name, "date": runs[group.at].day}
+        | line
+        | {"mended": runs[group.mended].name if group.mended is not None else None}
+        for group in groups[:LINES]
+        for line in in_short(group.lines, most)
+    ]
+
+
+def _total(runs: Sequence[Past], series: Sequence[Series], groups: Sequence[Group]) -> str:
+    more = f"; {len(groups) - LINES} more changes are in --format json" if len(groups) > LINES else ""
+    return f"{len(series)} rows over {len(runs)} runs{more}"
+
+
+def _line(runs: Sequence[Past], change: Change) -> Row:
+    """A line for programs."""
+    about = _about(runs[change.at])
+    kept = {name: change.line[name] for name in ("table", "row", "column", "before", "after", "change", "verdict")}
+    return about | kept | {"mended": runs[change.mended].full_name if change.mended is not None else None}
+
+
+def _about(past: Past) -> Row:
+    made = datetime.fromtimestamp(past.seconds, UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+    return {"commit": past.full_name, "time": made, "subject": past.subject}
+
+
+def _across(runs: Sequence[Past], figures: Sequence[tuple[Series, str]]) -> list[Row]:
+    """A line for each run, and a column for each figure; lines that say what the one above says are left out."""
+    values = {f"{name} {one.called}": dict(one.over_all(name)) for one, name in figures[:MOST]}
+    made = [{called: found.get(at) for called, found in values.items()} for at in range(len(runs))]
+    kept = [at for at, row in enumerate(made) if at in (0, len(runs) - 1) or row != made[at - 1]]
+    return [{"commit": runs[at].name, "date": runs[at].day} | made[at] for at in kept] if figures else []
+
+
+def _long(runs: Sequence[Past], figures: Sequence[tuple[Series, str]]) -> list[Row]:
+    """A line for each figure in each run."""
+    return [
+        _about(runs[at]) | {"table": one.table.name, "row": one.called, "column": name, "value": value}
+        for one, name in figures
+        for at, value in one.over_all(name)
+    ]
+
+
+def _left_out(figures: Sequence[tuple[Series, str]]) -> str:
+    if not figures:
+        return ""
+    more = f"; {len(figures) - MOST} more figures are left out: name some by --encoding and --column"
+    return f"runs whose figures are those of the line above are left out{more * (len(figures) > MOST)}"
+
+
+def _draw(path: Path, runs: Sequence[Past], figures: Sequence[tuple[Series, str]], changes: Sequence[Change]) -> None:
+    if not figures:
+        raise UsageError("--plot: no figure changed; name one by --column")
+    from ...reports.charts import draw
+
+    with whole_file(path) as partial:
+        draw.write([chart(runs, figures, changes)], (partial, path.suffix[1:].lower()))

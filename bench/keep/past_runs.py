@@ -1,0 +1,100 @@
+"""Runs in the order of the commits that they are of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from itertools import pairwise
+from pathlib import Path
+
+from ..ground.output.errors import UsageError
+from ..tables.table import Row
+from .commit import short_name
+from .runs import RUN, Done, Shared, read_to_show
+
+
+@dataclass(frozen=True)
+class Past:
+    """A run of the history.
+
+    Attributes:
+        name: its commit's; of a run without one, its folder's.
+        commit: what it records of its commit; empty where it has none.
+        seconds: when the commit was made; without one, when the run was.
+        ran: when the run was.
+        done: its rows.
+    """
+
+    name: str
+    commit: Row
+    seconds: float
+    ran: float
+    done: Done
+
+    @property
+    def day(self) -> str:
+        """The day of it."""
+        return datetime.fromtimestamp(self.seconds, UTC).strftime("%Y-%m-%d")
+
+    @property
+    def full_name(self) -> str:
+        """What a program knows the commit by."""
+        return str(self.commit.get("name", self.name))
+
+    @property
+    def subject(self) -> str:
+        """The first line of its commit's message."""
+        return str(self.commit.get("subject", ""))
+
+    @property
+    def order(self) -> tuple[float, int, float]:
+        """What puts it before and behind others."""
+        return self.seconds, int(self.commit.get("rank", 0)), self.ran
+
+
+def past_runs(folders: Sequence[Path]) -> list[Past]:
+    """The runs in some folders, by their commits, and those of one commit by their own dates.
+
+    Raises:
+        UsageError: a folder has no run, or a run cannot be read.
+    """
+    shared = Shared()
+    found = dict.fromkeys(run for folder in folders for run in _run_folders(folder))
+    return sorted((_past(run, read_to_show(run, shared)) for run in found), key=lambda past: past.order)
+
+
+def _run_folders(folder: Path) -> list[Path]:
+    """A run's folder; or the runs in a folder, and in the folders of it."""
+    if (folder / RUN).exists():
+        return [folder]
+    runs = sorted(path.parent for pattern in ("*", "*/*") for path in folder.glob(f"{pattern}/{RUN}"))
+    if not runs:
+        raise UsageError(f"{folder} holds no run: neither it nor a folder in it has {RUN}")
+    return runs
+
+
+def _past(folder: Path, done: Done) -> Past:
+    commit: Mapping[str, object] = done.facts.get("commit") or {}
+    ran = _seconds(str(done.facts.get("time", "")))
+    made = commit.get("time", ran)
+    name = short_name(dict(commit)) if commit.get("name") else folder.name
+    return Past(name, dict(commit), float(made) if isinstance(made, int | float) else ran, ran, done)
+
+
+def _seconds(text: str) -> float:
+    """A date as `run` writes it, in seconds; 0 where there is none."""
+    try:
+        return datetime.strptime(text, "%Y-%m-%dT%H:%M:%S%z").timestamp()
+    except ValueError:
+        return 0.0
+
+
+def named_apart(runs: Sequence[Past]) -> Iterator[str]:
+    """What sets the run before each apart from it, besides the commit: facts of the machine, and this program."""
+    yield ""
+    for one, other in pairwise(runs):
+        there, here = (past.done.facts.get("machine") or {} for past in (one, other))
+        names = [name for name in dict.fromkeys([*there, *here]) if there.get(name) != here.get(name)]
+        is_another = one.done.facts.get("sources") != other.done.facts.get("sources")
+        yield ", ".join([*["normalbench"] * is_another, *(name for name in names if name != "normalbench")])

@@ -1,0 +1,246 @@
+"""`normalbench history`: the commit, the row and the figure of each step, and no noise of times."""
+
+import json
+import re
+import subprocess
+from pathlib import Path
+
+import histories
+import numpy as np
+import pytest
+from histories import DAY, FIRST, FOLD, LONGER, NOISE, SHORTER, name_of
+from manual import PAGES, ROOT
+
+from normalbench.bench.keep.commit import commit_of
+from normalbench.bench.keep.runs import _begun_facts
+from normalbench.bench.keep.time_steps import time_steps
+
+
+@pytest.fixture
+def thirty(tmp_path):
+    return histories.write_history(tmp_path / "history")
+
+
+def rows_of(run, *words):
+    status, out, err = run("history", *map(str, words), "--format", "json")
+    assert status == 0, err
+    return json.loads(out)
+
+
+def test_thirty_commits_have_two_regressions_one_of_them_mended(run, thirty):
+    """In two tables; the times of four pipelines, which are noise, are not named."""
+    rows = rows_of(run, thirty)
+    found = {(row["commit"], row["table"], row["row"], row["column"], row["verdict"], row["mended"]) for row in rows}
+    mine, longer = (name_of(FOLD), "quality", "mine.glsl rg8 sphere jax"), (name_of(LONGER), "cost")
+    assert found == {
+        (*mine, "psnr_db", "worse", None),
+        (*mine, "angle_mean_deg", "worse", None),
+        (*longer, "mine.glsl decode fragment navi21", "instructions", "worse", name_of(SHORTER)),
+        (*longer, "mine.glsl decode fragment navi31", "instructions", "worse", name_of(SHORTER)),
+    }
+    assert rows[0]["column"] == "psnr_db"
+
+
+def test_people_read_a_sentence_and_a_line_for_each(run, thirty):
+    """What still is worse comes first."""
+    status, out, err = run("history", str(thirty), "--format", "markdown")
+    assert (status, err) == (0, "")
+    lead, *said = (line for line in out.splitlines() if line and not line.startswith("|"))
+    assert lead.startswith(f"30 runs, from {name_of(0)[:8]}, 2026-01-01 (Change 0) to ")
+    assert "(Shorten the fold)" in said[0] and "psnr_db from 48.25 to 45.12 dB" in said[0]
+    assert (
+        "(Guard the decoder" in said[1] and f"mended at {name_of(SHORTER)[:8]}, 2026-01-22 (Drop the guard)" in said[1]
+    )
+    head, _, first, second = (line for line in out.splitlines() if line.startswith("|"))
+    assert all(column in head for column in ("commit", "table", "row", "column", "before", "after", "mended"))
+    assert all(word in first for word in (name_of(FOLD)[:8], "quality", "mine.glsl rg8", "psnr_db", "45.12"))
+    assert all(word in second for word in (name_of(LONGER)[:8], "cost", "instructions", name_of(SHORTER)[:8]))
+
+
+def test_the_manual_shows_what_is_printed(run, thirty, monkeypatch):
+    """docs/runs-and-reports.md, at 120 columns."""
+    monkeypatch.setenv("COLUMNS", "120")
+    shown = re.search(r"<!-- history -->\n```text\n(.*?)```", PAGES[ROOT / "docs/runs-and-reports.md"], re.S)
+    assert shown and shown[1] == run("history", str(thirty))[1]
+
+
+def test_figures_by_commit_are_a_line_where_one_changes(run, thirty):
+    """For programs, each figure in each run."""
+    words = ("--by", "commit", "--encoding", "mine.glsl", "--storage", "rg8", "--column", "psnr-db")
+    status, out, _ = run("history", str(thirty), *words, "--format", "markdown")
+    lines = [line for line in out.splitlines() if line.startswith("|")][2:]
+    assert status == 0 and [line.split("|")[1].strip() for line in lines] == [name_of(at)[:8] for at in (0, FOLD, 29)]
+    rows = rows_of(run, thirty, *words)
+    assert [row["value"] for row in rows] == [48.25] * FOLD + [45.125] * (30 - FOLD)
+
+
+def test_a_name_that_no_row_has_is_answered_with_those_there_are(run, thirty, tmp_path):
+    status, _, err = run("history", str(thirty), "--encoding", "octahedrul")
+    assert status == 2 and "did you mean octahedral?" in err and "mine.glsl" in err
+    status, _, err = run("history", str(tmp_path / "nothing"))
+    assert status == 2 and "holds no run" in err and err.count("\n") == 1
+
+
+def test_the_chart_has_a_panel_for_each_figure_and_names_commits(run, thirty, tmp_path):
+    path = tmp_path / "history.svg"
+    assert run("history", str(thirty), "--plot", str(path))[0] == 0
+    said = path.read_text()
+    assert all(name_of(at)[:8] in said for at in (FOLD, LONGER, SHORTER))
+    assert "psnr_db, dB" in said and said.count("instructions") == 1
+
+
+def test_only_a_step_of_times_is_named(run, tmp_path):
+    """A fifth more milliseconds from a commit on, in the noise of the others."""
+    noise = np.random.default_rng(1)
+    for at in range(30):
+        steps = histories.steps(at, noise)
+        slow = next(step["rows"][0] for step in steps if step["key"].get("pipeline") == "hybrid")
+        slow["ms_frame"] *= 1.3 if at >= 16 else 1
+        histories.write_run(tmp_path / str(at), at, steps)
+    (row,) = rows_of(run, tmp_path, "--tables", "sweep")
+    assert (row["row"], row["column"], row["verdict"], row["commit"]) == ("hybrid", "ms_frame", "worse", name_of(16))
+    assert 25 < float(row["change"].removesuffix(" %")) < 35
+
+
+def test_times_of_two_machines_are_not_one_series(run, tmp_path):
+    noise = np.random.default_rng(1)
+    for at in range(30):
+        steps = histories.steps(0, noise)
+        for step in steps[-4:]:
+            step["rows"][0]["ms_frame"] *= 2 if at >= 16 else 1
+        histories.write_run(tmp_path / str(at), at, steps, machine={"GL": "new" if at >= 16 else "old"})
+    assert rows_of(run, tmp_path) == []
+    assert run("history", str(tmp_path))[1].splitlines()[1] == "no figure got worse"
+
+
+@pytest.mark.parametrize("count", [30, 300])
+def test_times_that_waver_have_no_step(count):
+    """Also where they waver for days, as those of machines that others use do."""
+    rng, found = np.random.default_rng(2), 0
+    for _ in range(40):
+        off = rng.normal(0, 1, count)
+        for at in range(1, count):
+            off[at] = 0.5 * off[at - 1] + np.sqrt(0.75) * off[at]
+        found += bool(time_steps(list(10 * np.exp(NOISE * off)), 10 * count))
+    assert found == 0
+
+
+@pytest.mark.parametrize(("count", "begin", "end"), [(30, 15, 30), (40, 14, 28), (100, 92, 100), (300, 100, 120)])
+def test_a_step_of_times_is_found_where_it_is(count, begin, end):
+    rng = np.random.default_rng(3)
+    times = 10 * np.exp(0.01 * rng.normal(0, 1, count))
+    times[begin:end] *= 1.1
+    assert time_steps(list(times), count - 1) == [at for at in (begin, end) if at < count]
+
+
+def test_three_runs_behind_a_step_are_too_few():
+    assert time_steps([10 + 0.001 * at for at in range(27)] + [20, 20.1, 20.2], 29) == []
+
+
+def quality(psnr, **more):
+    row = {"encoding": "mine", "storage": "rg8", "psnr_db": psnr, "angle_max_deg": None, "skipped": None} | more
+    return [{"table": "quality", "key": {}, "rows": [row]}]
+
+
+def history_of(run, folder, *several, **facts):
+    for at, steps in enumerate(several):
+        histories.write_run(folder / str(at), at, steps, **facts)
+    names = {name_of(at): at for at in range(len(several))} | {None: None}
+    return [(names[row["commit"]], row["column"], row["verdict"], names[row["mended"]]) for row in rows_of(run, folder)]
+
+
+def test_what_is_as_good_again_is_mended_and_not_better(run, tmp_path):
+    """And what is nearly so, where much was lost; better is only what never was as good."""
+    several = [quality(psnr) for psnr in (50.0, 45.0, 47.0, 49.95, 51.0)]
+    assert history_of(run, tmp_path, *several) == [(1, "psnr_db", "worse", 3), (4, "psnr_db", "better", None)]
+
+
+def test_a_figure_that_only_some_runs_look_for_is_compared_with_the_last_that_did(run, tmp_path):
+    several = [quality(50.0, angle_max_deg=worst) for worst in (0.5, None, 0.6, None, 0.6)]
+    assert history_of(run, tmp_path, *several) == [(2, "angle_max_deg", "worse", None)]
+
+
+def test_a_row_that_cannot_be_measured_any_more_is_worse_until_it_can(run, tmp_path):
+    lost = quality(None, skipped="it does not compile")
+    assert history_of(run, tmp_path, quality(50.0), lost, lost, quality(50.0)) == [(1, "psnr_db", "worse", 3)]
+
+
+def test_a_row_is_gone_where_the_same_request_no_longer_gives_it(run, tmp_path):
+    """Not in a run that was asked for less, or that was stopped."""
+    both, other = quality(50.0) + quality(40.0, encoding="xy"), quality(40.0, encoding="xy")
+    assert history_of(run, tmp_path / "same", both, other, other, both) == [(1, "", "gone", 3)]
+    assert history_of(run, tmp_path / "stopped", both, other, finished=False) == []
+    folder = tmp_path / "less"
+    for at, steps in enumerate((both, other, both, other)):
+        histories.write_run(folder / str(at), at, steps, request={"tables": "all" if len(steps) > 1 else "quality"})
+    assert rows_of(run, folder) == []
+
+
+def test_rows_of_other_numbers_of_normals_are_not_set_next_to_each_other(run, tmp_path):
+    """A nightly run of more normals between those of each commit."""
+    for at, (psnr, count) in enumerate(((50.0, 4096), (49.9, 2**20)) * 3):
+        histories.write_run(tmp_path / str(at), at, quality(psnr, count=count), request={"count": count})
+    assert rows_of(run, tmp_path) == []
+
+
+def test_what_else_changed_at_a_commit_is_said(run, tmp_path):
+    histories.write_run(tmp_path / "one", 0, quality(50.0))
+    histories.write_run(tmp_path / "two", 1, quality(45.0), machine={"GL": "two"}, sources="t")
+    status, _, err = run("history", str(tmp_path / "two"), str(tmp_path / "one"))
+    assert status == 0
+    assert err == f"normalbench: at {name_of(1)[:8]} something else changed too: normalbench, GL\n"
+
+
+def git(folder: Path, *words: str, at: int = FIRST) -> None:
+    date = {"GIT_COMMITTER_DATE": f"{at} +0000", "GIT_AUTHOR_DATE": f"{at} +0000", "HOME": str(folder)}
+    who = ["-c", "user.name=a", "-c", "user.email=a@b", "-c", "commit.gpgsign=false"]
+    subprocess.run(
+        ["git", *who, *words], cwd=folder, check=True, capture_output=True, env={"PATH": "/usr/bin:/bin"} | date
+    )
+
+
+@pytest.fixture
+def repository(tmp_path):
+    git(tmp_path, "init", "-q")
+    (tmp_path / "mine.glsl").write_text("// one\n")
+    git(tmp_path, "add", ".")
+    git(tmp_path, "commit", "-q", "-m", "Begin\n\nMore of it.")
+    return tmp_path
+
+
+def test_a_run_knows_its_commit(repository):
+    one = commit_of(None, repository)
+    assert len(one["name"]) == 40 and (one["time"], one["subject"], one["changed"]) == (FIRST, "Begin", False)
+    (repository / "mine.glsl").write_text("// two\n")
+    assert commit_of(None, repository) == one | {"changed": True}
+    assert commit_of("4711", repository) == {"name": "4711"}
+
+
+def test_commits_of_one_second_are_in_their_order(repository):
+    """As a rebase makes them."""
+    ranks = []
+    for number in range(3):
+        git(repository, "commit", "-q", "--allow-empty", "-m", str(number), at=FIRST + DAY)
+        ranks.append(commit_of(None, repository)["rank"])
+    assert ranks == [1, 2, 3]
+
+
+def test_there_is_no_commit_without_a_repository(tmp_path, monkeypatch):
+    monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(tmp_path.parent))
+    assert commit_of(None, tmp_path) == {}
+    monkeypatch.setenv("PATH", "")
+    assert commit_of(None, tmp_path) == {}
+
+
+def test_changes_without_git_are_in_the_order_of_their_runs_and_called_as_said(run, tmp_path):
+    for name, day, psnr in (("b", 3, 45.0), ("a", 1, 50.0), ("c", 2, 50.0)):
+        when = f"2026-01-0{day}T00:00:00+0000"
+        histories.write_run(tmp_path / name, 0, quality(psnr), time=when, commit={"name": f"change {name}"})
+    (row,) = rows_of(run, tmp_path)
+    assert (row["commit"], row["time"]) == ("change b", "2026-01-03T00:00:00Z")
+
+
+def test_a_run_that_goes_on_is_of_the_commit_that_it_goes_on_at(tmp_path):
+    histories.write_run(tmp_path / "run", 0, quality(50.0), finished=False)
+    facts = json.loads((tmp_path / "run/run.json").read_text())
+    assert _begun_facts(tmp_path / "run", facts | {"commit": {"name": "next"}})["commit"] == {"name": "next"}
