@@ -149,7 +149,7 @@ def _add(series: Series, at: int, row: Row, machine: str) -> None:
 def _clocks(table: Table, row: Row) -> Iterator[str]:
     """The columns of a row that have a time or a speed."""
     for name, value in row.items():
-        column = table.column(name) if isinstance(value, float) and math.isfinite(value) and value > 0 else None
+        column = table.column(name) if is_value(value) and value > 0 else None
         if column and column.role is Role.TIME and column.better:
             yield name
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from itertools import pairwise
@@ -12,6 +12,9 @@ from ..ground.output.errors import UsageError
 from ..tables.table import Row
 from .commit import short_name
 from .runs import RUN, Done, Shared, read_to_show
+
+# The year 3000, in seconds.
+LATEST = 32503680000
 
 
 @dataclass(frozen=True)
@@ -50,7 +53,7 @@ class Past:
     @property
     def order(self) -> tuple[float, int, float]:
         """What puts it before and behind others."""
-        return self.seconds, int(self.commit.get("rank", 0)), self.ran
+        return self.seconds, int(_number(self.commit.get("rank"), 0)), self.ran
 
 
 def past_runs(folders: Sequence[Path]) -> list[Past]:
@@ -75,17 +78,21 @@ def _run_folders(folder: Path) -> list[Path]:
 
 
 def _past(folder: Path, done: Done) -> Past:
-    commit: Mapping[str, object] = done.facts.get("commit") or {}
+    commit: Row = done.facts.get("commit") or {}
     ran = _seconds(str(done.facts.get("time", "")))
-    made = commit.get("time", ran)
-    name = short_name(dict(commit)) if commit.get("name") else folder.name
-    return Past(name, dict(commit), float(made) if isinstance(made, int | float) else ran, ran, done)
+    name = short_name(commit) if commit.get("name") else folder.name
+    return Past(name, commit, _number(commit.get("time"), ran), ran, done)
+
+
+def _number(value: object, usual: float) -> float:
+    """A number of a file that people may have edited, within the years that dates have."""
+    return float(value) if isinstance(value, int | float) and 0 <= value < LATEST else usual
 
 
 def _seconds(text: str) -> float:
     """A date as `run` writes it, in seconds; 0 where there is none."""
     try:
-        return datetime.strptime(text, "%Y-%m-%dT%H:%M:%S%z").timestamp()
+        return max(0.0, datetime.strptime(text, "%Y-%m-%dT%H:%M:%S%z").timestamp())
     except ValueError:
         return 0.0
 

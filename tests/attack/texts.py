@@ -118,6 +118,7 @@ def runs(commands: str, folder: Path) -> Attack:
         "report": ("report", "run", "--markdown"),
         "compare": ("compare", "whole", "run", "--format", "json"),
         "compare back": ("compare", "run", "whole"),
+        "history": ("history", "whole", "run", "--format", "json"),
         "check": ("check", "gates.toml", "--run", "run"),
         "page": ("report", "run"),
         "go on": (*RUN, "-o", "run"),
@@ -143,6 +144,6 @@ def runs(commands: str, folder: Path) -> Attack:
 
 KINDS = (
     *(Kind(f"text: {kind}", partial(texts, kind), 3400, 100, reads_here_only=True) for kind in TEXTS),
-    Kind("run: read", partial(runs, "report,compare,compare back,check"), 3000, 40, chunk=1500),
+    Kind("run: read", partial(runs, "report,compare,compare back,check,history"), 3000, 40, chunk=1500),
     Kind("run: page and going on", partial(runs, "page,go on"), 60, 0, seconds=30.0, chunk=30),
 )

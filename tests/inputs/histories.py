@@ -12,7 +12,7 @@ import numpy as np
 COMMITS = 30
 # 2026-01-01, and a day.
 FIRST, DAY = 1767225600, 86400
-# The commit that makes the code of mine.glsl worse, the one that makes its decoder longer, and the one that mends that.
+# The commit that makes the code of `mine` worse, the one that makes its decoder longer, and the one that mends that.
 FOLD, LONGER, SHORTER = 9, 14, 21
 SUBJECTS = {FOLD: "Shorten the fold", LONGER: "Guard the decoder against zero", SHORTER: "Drop the guard"}
 NOISE = 0.04
@@ -51,14 +51,14 @@ def steps(at: int, noise: np.random.Generator, more: int = 0) -> list[dict[str, 
         more: further encodings, whose figures never change.
     """
     found = []
-    for encoding in ("mine.glsl", "octahedral", *(f"code{number}" for number in range(more))):
+    for encoding in ("mine", "octahedral", *(f"code{number}" for number in range(more))):
         found += [_quality(encoding, storage, at) for storage in ("rg8", "rgba8")]
         found += [_cost(encoding, at)]
     return found + [_times(pipeline, noise) for pipeline in PIPELINES]
 
 
 def _quality(encoding: str, storage: str, at: int) -> dict[str, Any]:
-    is_worse = encoding == "mine.glsl" and storage == "rg8" and at >= FOLD
+    is_worse = encoding == "mine" and storage == "rg8" and at >= FOLD
     row = {
         "encoding": encoding,
         "storage": storage,
@@ -72,7 +72,7 @@ def _quality(encoding: str, storage: str, at: int) -> dict[str, Any]:
 
 
 def _cost(encoding: str, at: int) -> dict[str, Any]:
-    is_longer = encoding == "mine.glsl" and LONGER <= at < SHORTER
+    is_longer = encoding == "mine" and LONGER <= at < SHORTER
     rows = [
         {"encoding": encoding, "operation": operation, "stage": "fragment", "family": family, "instructions": count}
         for operation, count in (("encode", 14), ("decode", 19 if is_longer else 16))

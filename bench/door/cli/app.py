@@ -232,6 +232,10 @@ def columns_command(
 @app.command(rich_help_panel=Group.KEEP)
 def check(
     gates: Annotated[Path, typer.Argument(help=r"A TOML file of \[\[gate]] tables.")],
+    files: Annotated[
+        list[Path] | None,
+        typer.Argument(help="Hold only gates that read one of these files, includes too.", metavar="FILE..."),
+    ] = None,
     run: Annotated[
         Path | None, typer.Option("--run", help="Take the figures from this results folder. Default: measure them.")
     ] = None,
@@ -245,7 +249,7 @@ def check(
     """Hold figures to a team's limits: pass or fail for each, exit status 1 where one fails."""
     from ..gates.check_command import check_command
 
-    return check_command(gates, run, write_baseline, format_of(format, output), output)
+    return check_command(gates, files or (), run, write_baseline, format_of(format, output), output)
 
 
 class FailOn(StrEnum):

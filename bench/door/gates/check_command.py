@@ -8,16 +8,23 @@ from pathlib import Path
 from ...ground.output.errors import UsageError, tell, tell_together
 from ...ground.output.progress import progress
 from ...ground.output.writing import check_writable, without, write
+from .changed import gates_that_read
 from .gates import BASELINE, WRITER, Baselines, Gate, checked, read_gates
 
 
-def check_command(gates: Path, run: Path | None, writes: bool, format: str, output: Path | None) -> int:
+def check_command(
+    gates: Path, files: Sequence[Path], run: Path | None, writes: bool, format: str, output: Path | None
+) -> int:
     """Measure what the gates ask for, or take it from a run, and write what holds. Exit status: 1 if a gate fails.
 
     Args:
+        files: only gates that read one of these are held; none for all.
         writes: whether rows are written into the gates' baselines instead of being compared with them.
     """
     found, baselines = read_gates(gates), Baselines(writes)
+    if files and not (found := gates_that_read(files, found, gates)):
+        tell(f"no gate of {gates} reads {', '.join(map(str, files))}")
+        return 0
     if writes:
         _check_baselines(gates, found, run)
     if output:

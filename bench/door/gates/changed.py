@@ -1,0 +1,45 @@
+"""Which gates read a file: a hook before a commit checks those alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
+from pathlib import Path
+
+from ...ground.output.errors import UsageError
+from ...shaders.languages.source import Source
+from ...shaders.languages.source_options import in_names
+from ...shaders.languages.words import ENDINGS, files_in, split_names
+from .gates import Gate
+
+
+def gates_that_read(files: Sequence[Path], gates: Iterable[Gate], path: Path) -> list[Gate]:
+    """The gates that read one of some files: the file that they stand in, their baseline, a file that an option names,
+    its twin, or what it includes.
+
+    Args:
+        path: the file of the gates.
+
+    Raises:
+        UsageError: a gate names a file that is not where it should be.
+    """
+    changed = {file.resolve() for file in files}
+    return [gate for gate in gates if changed & {file.resolve() for file in _read_by(gate, path)}]
+
+
+def _read_by(gate: Gate, path: Path) -> Iterator[Path]:
+    yield path
+    if gate.baseline:
+        yield gate.baseline
+    options = in_names(gate.located())
+    for word in (word for name in gate.files() for word in split_names(str(options[name]))):
+        yield from map(Path, files_in(word))
+        if any(Path(file).suffix.lower() in ENDINGS for file in files_in(word)):
+            yield from _with_includes(word)
+
+
+def _with_includes(word: str) -> Iterator[Path]:
+    """The files of a shader, and the Python next to it. What is wrong with one is said when it is measured."""
+    with suppress(UsageError):
+        for file in Source(word).files:
+            yield from (file, file.with_suffix(".py"))
