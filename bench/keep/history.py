@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from statistics import median
@@ -19,6 +19,7 @@ from ..tables.registry import TABLES
 from ..tables.table import Column, Role, Row, Table
 from .comparison import ASKED, in_turn, is_slower_or_faster, is_small, row_changes, severity_of, time_change
 from .past_runs import Past
+from .runs import Done
 from .time_steps import time_steps
 
 # What a row is called, and what it was asked for: rows of other numbers of normals are not set next to each other.
@@ -97,13 +98,16 @@ def series_of(runs: Sequence[Past]) -> list[Series]:
     """Each row over some runs in their order."""
     asked = [_asked_text(past) for past in runs]
     found: dict[tuple[str, tuple[Called, int]], Series] = {}
-    names: dict[int, Called] = {}
+    read = Rows()
     for at, past in enumerate(runs):
         machine = json.dumps(past.done.facts.get("machine"), sort_keys=True)
-        for table, key, row in _rows(past, names):
-            series = found.setdefault((table.name, key), Series(table, key[0][0]))
-            _close_gap(series, at, asked, at)
-            _add(series, at, row, machine)
+        for table, rows in read.of(past):
+            for key, row in rows.items():
+                if not (series := found.get((table.name, key))):
+                    series = found[table.name, key] = Series(table, key[0][0])
+                elif series.runs[-1] != at - 1:
+                    _close_gap(series, at, asked, at)
+                _add(series, at, row, machine)
     for series in found.values():
         _close_gap(series, len(runs), asked, None)
     return list(found.values())
@@ -114,23 +118,36 @@ def _asked_text(past: Past) -> str:
     return json.dumps(past.done.facts.get("request"), sort_keys=True) if past.done.finished else ""
 
 
-def _rows(past: Past, names: dict[int, Called]) -> Iterator[tuple[Table, tuple[Called, int], Row]]:
-    """Each row of a run, its table and its key. `names` has those of rows that were met before."""
-    for name, rows in past.done.tables.items():
-        table = TABLES[name]
+class Rows:
+    """The rows of runs by their tables and keys; a table that has the same lines as in the run before is read once."""
 
-        def called(row: Row, table: Table = table) -> Called:
-            if id(row) not in names:
-                names[id(row)] = table.name_of(row), tuple(row.get(column) for column in ASKED)
-            return names[id(row)]
+    def __init__(self):
+        self._names: dict[int, Called] = {}
+        self._last: dict[str, tuple[list[int], dict[tuple[Called, int], Row]]] = {}
 
-        for key, row in in_turn(rows, called).items():
-            yield table, key, row
+    def of(self, past: Past) -> Iterator[tuple[Table, dict[tuple[Called, int], Row]]]:
+        """Each table of a run with its rows."""
+        steps: dict[str, list[Row]] = {}
+        for step in past.done.steps:
+            steps.setdefault(step["table"], []).append(step)
+        for name in filter(TABLES.__contains__, steps):
+            lines = list(map(id, steps[name]))
+            if self._last.get(name, ([],))[0] != lines:
+                self._last[name] = lines, self._keyed(TABLES[name], replace(past.done, steps=steps[name]))
+            yield TABLES[name], self._last[name][1]
+
+    def _keyed(self, table: Table, done: Done) -> dict[tuple[Called, int], Row]:
+        return in_turn(done.tables[table.name], lambda row: self._called(table, row))
+
+    def _called(self, table: Table, row: Row) -> Called:
+        if id(row) not in self._names:
+            self._names[id(row)] = table.name_of(row), tuple(row.get(column) for column in ASKED)
+        return self._names[id(row)]
 
 
 def _close_gap(series: Series, at: int, asked: Sequence[str], found: int | None) -> None:
     """Note which run first lacked a row, of those before `at` that were asked for the same as the last that has it."""
-    last = series.runs[-1] if series.runs else at
+    last = series.runs[-1]
     lacking = (run for run in range(last + 1, at) if asked[run] and asked[run] == asked[last])
     if (lost := next(lacking, None)) is not None:
         series.gaps.append((lost, found))
