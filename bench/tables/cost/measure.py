@@ -24,6 +24,7 @@ from ...shaders.isa.nvidia.source import cuda_of
 from ...shaders.isa.terascale import disassembly as terascale_disassembly
 from ...subjects.codecs.half.kernels import half_operation
 from . import executed
+from .recorded import recorded
 from .table import TABLE
 
 Row = dict[str, Any]
@@ -332,13 +333,14 @@ def listings_of(family: str) -> Any:
 
 
 def counted(chosen: Sequence[Case], family: str, stage: str) -> dict[tuple[str, str], Row]:
-    """The rows of one family with instructions, by encoding, packing or layout, and operation; none where there are no
-    compilers."""
+    """The rows of one family with instructions, by encoding, packing or layout, and operation. Where there are no
+    compilers, those that another machine's counted, which have `recorded_by`."""
     try:
         found = isa_rows(chosen, [stage], [family], [], nobody)
         rows = [row for row, _ in found if row["family"] == family and row["instructions"] is not None]
     except MissingError:
         rows = []
+    rows = rows or [case.row("isa", family=family, stage=stage) | row for case, row in recorded(chosen, family, stage)]
     return {(row["encoding"] or row["storage"], row["operation"]): row for row in rows}
 
 

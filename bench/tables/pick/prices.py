@@ -13,7 +13,8 @@ from .table import READERS
 
 
 class Costs:
-    """Instructions and issue slots of codecs; unknown where this machine has no compilers.
+    """Instructions and issue slots of codecs. Where this machine has no compilers, those of the catalogue are recorded
+    ones, and others are unknown.
 
     A packing into channels counts; the conversion that a render target does by itself does not.
     """
@@ -50,6 +51,7 @@ class Costs:
         is_known = None not in slots
         return {
             "dearest_family": family,
+            "recorded_by": next((row.get("recorded_by") for part in parts for row in part if row), None),
             **dict(zip(("encode_instructions", "decode_instructions"), instructions, strict=True)),
             "instructions": _sum(instructions),
             **dict(zip(("encode_slots", "decode_slots"), slots, strict=True)),

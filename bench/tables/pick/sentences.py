@@ -215,7 +215,11 @@ def _price_sentence(row: Row) -> str:
     parts = f"{row['encode_slots']:g} issue slots to encode and {row['decode_slots']:g} to decode"
     parts += f" on {row['dearest_family']}"
     readers = f"{row['readers']} reader{'s' * (row['readers'] != 1)}"
-    return f"It takes {parts}, with {readers} {_of_hidden(row)}{_table_clause(row)}."
+    return f"It takes {parts}{_recorded_clause(row)}, with {readers} {_of_hidden(row)}{_table_clause(row)}."
+
+
+def _recorded_clause(row: Row) -> str:
+    return f" (recorded with {row['recorded_by']}: no compiler is here)" if row["recorded_by"] else ""
 
 
 def _of_hidden(row: Row) -> str:

@@ -210,6 +210,7 @@ COLUMNS = (
     Column("effects", "Effects in the image.", HOW),
     Column("family", "The GPU families that slots were counted for.", HOW),
     Column("dearest_family", "The one where the code is dearest, which the slots are of.", HOW),
+    Column("recorded_by", "What counted the slots on another machine, where this one has no compilers.", HOW),
     Column("aim", "What decides.", HOW),
     Column("readers", "The passes that decode.", HOW),
     Column("worth", "The decibels that a code must gain for twice the price.", HOW, "dB"),

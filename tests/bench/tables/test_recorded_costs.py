@@ -1,0 +1,52 @@
+"""What encodings cost where no compiler is: counts that were recorded elsewhere."""
+
+import os
+import random
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from other_systems import START
+
+from normalbench.bench.shaders.isa import isa, spirv
+from normalbench.bench.tables.cost import measure, recorded
+from normalbench.bench.tables.pick.measure import SURVEYED
+from tests.recorded_costs import cases
+
+STALE = "its GLSL is not what was counted; run python -m tests.recorded_costs"
+
+
+def test_every_operation_of_the_catalogue_is_recorded_as_it_is_now():
+    chosen = cases()
+    for family in SURVEYED:
+        found = {case.name for case, _ in recorded.recorded(chosen, family, "fragment")}
+        assert {case.name for case in chosen} == found, STALE
+
+
+@pytest.mark.parametrize("family", ["navi21", "tgl"])
+def test_twenty_of_them_are_what_compilers_make_of_them_here(family):
+    if spirv.version(spirv.COMPILER) is None or isa.missing():
+        pytest.skip("no compilers")
+    chosen = random.Random(52).sample(cases(), 20)
+    here = measure.counted(chosen, family, "fragment").values()
+    made = {(row["encoding"] or row["storage"], row["operation"]): row for row in here}
+    for case, row in recorded.recorded(chosen, family, "fragment"):
+        now = made[case.encoding.name if case.encoding else case.storage, case.operation]
+        if now["driver"] not in row["recorded_by"]:
+            pytest.skip(f"{now['driver']} is not the driver that counted them, {row['recorded_by']}")
+        counts = {column: row[column] for column in recorded.COLUMNS}
+        assert {column: now[column] for column in counts} == counts, case.name
+
+
+def test_an_answer_without_compilers_is_the_answer_with_them():
+    """It says who counted."""
+    words = ["pick", "--bytes", "2", "--scene", "studio"]
+    said = [pick(words, os.environ["PATH"]), pick(words, str(Path(sys.executable).parent))]
+    assert said[0].splitlines()[0] == said[1].splitlines()[0] == "2 bytes, on sphere: take octahedral in rg8."
+    assert "recorded with Mesa" in " ".join(said[1].split()) and "recorded with" not in said[0]
+
+
+def pick(words, path):
+    command = [sys.executable, "-c", START, *words]
+    return subprocess.run(command, capture_output=True, text=True, env=os.environ | {"PATH": path}, check=True).stdout
