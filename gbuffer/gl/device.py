@@ -40,7 +40,7 @@ POINTS = moderngl.POINTS
 INSTALL = {
     "linux": "install a GL driver (Debian: apt-get install libegl1 libgl1 libgl1-mesa-dri)",
     "win32": "install the driver of the GPU's vendor",
-    "darwin": "Apple's OpenGL ends at 4.1",
+    "darwin": "Apple's OpenGL ends at 4.1; quality --backend wgsl measures by Metal",
 }
 
 

@@ -16,6 +16,7 @@ import numpy as np
 
 from ..machine.children import finished
 from ..machine.devices import processor_kind
+from ..machine.systems.remedies import how_to_install
 from ..output import cache as kept
 
 # Sums keep their order, and NaN and -0 are what they are. Integers wrap around, as JAX's do.
@@ -34,7 +35,7 @@ COMPILING_S = 30
 # XLA, which shows in the printed digits of 32 of 430 codecs, so smaller sets, which take seconds by either, have one
 # arithmetic. What one compiler fills the other one reads more slowly, so both begin at the same size.
 LARGE = 2**26
-NONE = "no C compiler: install one that is called cc (Debian: gcc)"
+NONE = f"no C compiler: install one that is called cc ({how_to_install('gcc')})"
 DIGEST = hashlib.sha256().digest_size
 
 

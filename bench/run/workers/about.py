@@ -12,7 +12,7 @@ from typing import Any
 
 from ...ground.machine.devices import found_device
 from ...ground.machine.systems.system_files import boot
-from ...ground.machine.vulkan import adapters
+from ...ground.machine.webgpu import adapters
 from ...ground.native import library
 from ...ground.output.sources import sources
 from ...keep.machine import compilers, processor

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from ...ground.machine.systems import system_files
+from ...ground.machine.systems.remedies import how_to_install
 
 EXTENSION = "VK_KHR_pipeline_executable_properties"
 # Mesa's drivers, and what disassembles for RADV; the Vulkan loader is libvulkan.so.
@@ -42,7 +43,7 @@ def _vulkan_module() -> Any:
         raise MissingDriverError(f"no Vulkan bindings: {error}; install them (python -m pip install vulkan)") from error
     except OSError as error:
         raise MissingDriverError(
-            "no Vulkan loader: libvulkan.so.1 cannot be loaded; install it (Debian: apt-get install libvulkan1)"
+            f"no Vulkan loader: libvulkan.so.1 cannot be loaded; install it ({how_to_install('libvulkan1')})"
         ) from error
 
 

@@ -11,6 +11,7 @@ from functools import cache
 from pathlib import Path
 
 from ...ground.machine import children
+from ...ground.machine.systems.remedies import how_to_install
 from ...ground.options.gpu_families import MOBILE, R600, RADV, TITLES
 from .mobile import driver as mobile
 from .terascale import driver as terascale
@@ -32,7 +33,7 @@ def no_driver(library: str) -> str:
     if library in MOBILE:
         return f"no {TITLES[library]}: no Vulkan driver file names {library}; {mobile.INSTALL}"
     said = f"no {TITLES[library]}: no Vulkan driver file names {library}"
-    return f"{said}; install Mesa's (Debian: apt-get install mesa-vulkan-drivers)"
+    return f"{said}; install Mesa's ({how_to_install('mesa-vulkan-drivers')})"
 
 
 @cache

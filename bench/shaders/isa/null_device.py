@@ -12,12 +12,13 @@ import tempfile
 from pathlib import Path
 
 from ...ground.machine.systems.preload import preloaded
+from ...ground.machine.systems.remedies import how_to_install
 from ...ground.output import cache as kept
 
 SOURCE = Path(__file__).with_name("null_i915.c")
 SHARED = SOURCE.with_name("null_drm.h")
 COMPILER = "cc"
-NO_COMPILER = f"no C compiler: these counts need {COMPILER}; install it (Debian: apt-get install gcc libc6-dev)"
+NO_COMPILER = f"no C compiler: these counts need {COMPILER}; install it ({how_to_install('gcc libc6-dev')})"
 # A build takes a tenth of a second.
 SECONDS = 60.0
 SAID = "NORMALBENCH_NULL_I915"
@@ -88,4 +89,4 @@ def _compile(path: Path, source: Path) -> None:
     if done.returncode or not path.exists():
         last = [line.strip() for line in done.stderr.splitlines() if line.strip()][-1:]
         said = f"{COMPILER} does not compile {source.name}: {last[0][:200] if last else f'status {done.returncode}'}"
-        raise NullDeviceError(f"{said}; the headers of libc may be missing (Debian: apt-get install gcc libc6-dev)")
+        raise NullDeviceError(f"{said}; the headers of libc may be missing ({how_to_install('gcc libc6-dev')})")

@@ -14,12 +14,13 @@ from typing import Any
 
 from ....gbuffer.gl.shader import ShaderError, Source
 from ...ground.machine.systems.processes import file_of_child
+from ...ground.machine.systems.remedies import how_to_install
 from ...ground.output import cache as kept
 from ...ground.output.errors import MissingError
 
 COMPILER, OPTIMISER = "glslangValidator", "spirv-opt"
-NO_COMPILER = f"no GLSL compiler: {COMPILER} is not on the path; install it (Debian: apt-get install glslang-tools)"
-NO_OPTIMISER = f"no SPIR-V counts: {OPTIMISER} is not on the path; install it (Debian: apt-get install spirv-tools)"
+NO_COMPILER = f"no GLSL compiler: {COMPILER} is not on the path; install it ({how_to_install('glslang-tools')})"
+NO_OPTIMISER = f"no SPIR-V counts: {OPTIMISER} is not on the path; install it ({how_to_install('spirv-tools')})"
 SECONDS = 20
 MAGIC = struct.pack("<I", 0x07230203)
 HEADER, FUNCTION, FUNCTION_END, LOOP_MERGE = 5, 54, 56, 246

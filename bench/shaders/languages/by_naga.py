@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ...ground.machine.vulkan import NO_DRIVER, adapters
+from ...ground.machine.webgpu import NO_DRIVER, adapters
 from ...ground.output.errors import MissingError
 
 ENTRY, GROUP, ROW = "normalbench_second", 64, 16

@@ -16,6 +16,7 @@ import numpy as np
 
 from ...ground.machine import children
 from ...ground.machine.systems.processes import DIVIDED_BY_ZERO, signal_name
+from ...ground.machine.systems.remedies import how_to_install
 from ...ground.output.errors import MissingError
 from . import slang, tools
 from .language import GLSL_NAME, name_of
@@ -103,7 +104,7 @@ def _cpp_runner(source: Source, encoder: Translated, folder: Path) -> Callable[[
     """Slang's C++ as a program."""
     compiler = shutil.which("c++") or shutil.which("clang++")
     if not compiler:
-        raise NoSecondWayError("no compiler of C++ is on the path (Debian: apt-get install g++)")
+        raise NoSecondWayError(f"no compiler of C++ is on the path ({how_to_install('g++')})")
     (folder / slang.GIVEN).write_text(
         encoder.text + _program_text("second.hlsl", encoder), encoding="utf-8", newline="\n"
     )

@@ -14,6 +14,7 @@ from typing import Any
 
 from ...ground.machine.children import text_of
 from ...ground.machine.systems.processes import signal_name
+from ...ground.machine.systems.remedies import how_to_install
 from ...ground.output.errors import MissingError
 from . import slang_library
 
@@ -23,8 +24,8 @@ SLANG_LIBRARY = "slang-compiler"
 # What to install.
 MISSING: Mapping[str, str] = MappingProxyType(
     {
-        GLSLANG: f"no HLSL: {GLSLANG} is not on the path; install it (Debian: apt-get install glslang-tools)",
-        SPIRV_CROSS: f"no HLSL: {SPIRV_CROSS} is not on the path; install it (Debian: apt-get install spirv-cross)",
+        GLSLANG: f"no HLSL: {GLSLANG} is not on the path; install it ({how_to_install('glslang-tools')})",
+        SPIRV_CROSS: f"no HLSL: {SPIRV_CROSS} is not on the path; install it ({how_to_install('spirv-cross')})",
         SLANG: f"no Slang: {SLANG} is not there; install it (pip install --no-deps slangtorch)",
         SLANG_LIBRARY: slang_library.MISSING,
     }

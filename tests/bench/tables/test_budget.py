@@ -13,7 +13,7 @@ import pytest
 from fitting import fit
 from languages import require_runner
 
-from normalbench.bench.ground.machine.vulkan import adapters
+from normalbench.bench.ground.machine.webgpu import adapters
 from normalbench.bench.tables.budget import attributes as held
 from normalbench.bench.tables.budget import changes
 from normalbench.bench.tables.budget.bins import BINS, WEBGPU, WEBGPU_BYTES, webgpu_cost

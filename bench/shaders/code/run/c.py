@@ -11,6 +11,7 @@ import numpy as np
 
 from .....gbuffer.gl.shader import ShaderError, read_shader
 from ....ground.machine import children
+from ....ground.machine.systems.remedies import how_to_install
 from ....ground.output.errors import MissingError
 from .interface import MADE, Interface, Ran, Run, Runner, ran_of, rows_of
 from .sources import compile_with, first_line, folder, required, run_apart
@@ -18,7 +19,7 @@ from .sources import compile_with, first_line, folder, required, run_apart
 WRAPPER, MAIN = Path(__file__).with_suffix(".c"), Path(__file__).with_name("main.c")
 EXACT = ("-O2", "-ffp-contract=off")
 LIMITS = {"RUN_SECONDS": children.SECONDS, "RUN_MEMORY": f"{children.MEMORY}ull", "RUN_FILE": f"{children.FILE}ull"}
-INSTALL = "no C: cc is not on the path; install it (Debian: apt-get install gcc)"
+INSTALL = f"no C: cc is not on the path; install it ({how_to_install('gcc')})"
 
 
 def compiler() -> str:

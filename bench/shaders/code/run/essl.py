@@ -12,6 +12,7 @@ import numpy as np
 
 from .....gbuffer.gl.shader import ShaderError
 from ....ground.machine import children
+from ....ground.machine.systems.remedies import how_to_install
 from ....ground.output.errors import MissingError
 from .interface import Interface, Ran, Run, Runner, ran_of, rows_of
 from .sources import SECONDS, EmittedSource, folder
@@ -20,7 +21,7 @@ WRAPPER = Path(__file__).with_suffix(".comp")
 CHILD = "normalbench.bench.shaders.code.run.gles"
 # The statuses that the process ends with where there is no context, and where the shader does not compile.
 NO_CONTEXT, REFUSED = 3, 4
-INSTALL = "install a driver (Debian: apt-get install libegl1 libgles2 libgl1-mesa-dri)"
+INSTALL = f"install a driver ({how_to_install('libegl1 libgles2 libgl1-mesa-dri')})"
 
 
 @contextmanager

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from .....gbuffer.gl.shader import read_shader
+from ....ground.machine.systems.remedies import how_to_install
 from .c import EXACT, LIMITS, MAIN, called, compiled, macros
 from .interface import Interface, Run, Runner
 from .sources import compile_with, first_line, folder, required
@@ -21,7 +22,7 @@ from .sources import compile_with, first_line, folder, required
 WRAPPER, LIBRARY = Path(__file__).with_suffix(".cpp"), Path(__file__).with_name("metal_stdlib.h")
 # Metal has no double: a number without a letter is a float.
 OPTIONS = ("-std=c++17", *EXACT, "-w", "-Xclang", "-cl-single-precision-constant")
-INSTALL = "no clang: clang++ is not on the path; install it (Debian: apt-get install clang)"
+INSTALL = f"no clang: clang++ is not on the path; install it ({how_to_install('clang')})"
 METAL = "metal"
 # A texture's name where there is no table.
 NONE = "run_none"

@@ -13,7 +13,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from ....ground.machine import children
-from ....ground.machine.vulkan import adapters
+from ....ground.machine.webgpu import adapters
 
 
 def main(words: Sequence[str]) -> None:

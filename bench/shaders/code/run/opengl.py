@@ -67,9 +67,15 @@ def dispatched(gl: Device, compute: Any, given: np.ndarray) -> tuple[np.ndarray,
 
 
 def compiled(text: str, explain: Any) -> Any:
-    """A compute shader of GLSL. Raises ShaderError; `explain` turns the driver's message into the user's."""
+    """A compute shader of GLSL. `explain` turns the driver's message into the user's.
+
+    Raises:
+        ShaderError: it does not compile.
+        NoDeviceError: there is no GL device.
+    """
+    context = device().context
     try:
-        return device().context.compute_shader(text)
+        return context.compute_shader(text)
     except Exception as error:  # moderngl's own, which only gbuffer/gl imports
         raise ShaderError(first_complaint(explain(_without_head(str(error))))) from error
 

@@ -16,7 +16,7 @@ from .....gbuffer.gl.shader import ShaderError
 from ....ground.machine import children
 from ....ground.machine.systems import forks
 from ....ground.machine.systems.processes import signal_name
-from ....ground.machine.vulkan import NO_DRIVER, adapters
+from ....ground.machine.webgpu import API, NO_DRIVER, adapters
 from ....ground.output.errors import MissingError
 from .interface import GIVEN, MADE, Interface, Ran, Run, Runner, ran_of, rows_of
 from .sources import SECONDS, folder
@@ -29,7 +29,7 @@ ROW = 16  # bytes: four numbers
 
 @cache
 def device() -> Any:
-    """The first Vulkan device, by wgpu. Raises MissingError, which says what to install."""
+    """The first device, by wgpu. Raises MissingError, which says what to install."""
     try:
         found = adapters()
     except ImportError as error:
@@ -44,7 +44,7 @@ def device() -> Any:
 
 def device_name() -> str:
     """What a row calls the device. Raises MissingError."""
-    return f"{device().adapter.info['device']}, Vulkan"
+    return f"{device().adapter.info['device']}, {API}"
 
 
 @contextmanager

@@ -15,6 +15,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from ....ground.machine.systems.remedies import how_to_install
 from ..compiler import DriverError, MissingDriverError, fingerprint
 from . import disassembly
 
@@ -33,9 +34,7 @@ def loaded() -> dict[str, str]:
     try:
         ctypes.CDLL(EGL)
     except OSError as error:
-        raise MissingDriverError(
-            f"no EGL: {EGL} cannot be loaded; install it (Debian: apt-get install libegl1)"
-        ) from error
+        raise MissingDriverError(f"no EGL: {EGL} cannot be loaded; install it ({how_to_install('libegl1')})") from error
     path = Path(os.environ.get(FOLDER, "")) / DRIVER
     return {str(path): fingerprint(path)}
 

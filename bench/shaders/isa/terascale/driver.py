@@ -9,12 +9,13 @@ from functools import cache
 from pathlib import Path
 
 from ....ground.machine.systems.preload import preloaded
+from ....ground.machine.systems.remedies import how_to_install
 from .. import null_device
 
 SOURCE = Path(__file__).with_name("null_radeon.c")
 SAID = "NORMALBENCH_NULL_RADEON"
 DRIVER = "r600_dri.so"
-NO_DRIVER = f"no r600: {DRIVER} is not installed; install Mesa's (Debian: apt-get install libgl1-mesa-dri libegl1)"
+NO_DRIVER = f"no r600: {DRIVER} is not installed; install Mesa's ({how_to_install('libgl1-mesa-dri libegl1')})"
 # Where distributions put Mesa's GL drivers.
 FOLDERS = ("/usr/lib/{machine}-linux-gnu/dri", "/usr/lib64/dri", "/usr/lib/dri")
 

@@ -10,7 +10,8 @@ import numpy as np
 
 from .....gbuffer.gl.device import FormatError
 from .....gbuffer.gl.shader import Source
-from ....ground.machine.vulkan import adapters
+from ....ground.machine.systems.remedies import how_to_install
+from ....ground.machine.webgpu import API, adapters
 from ....ground.output.errors import MissingError
 from ....shaders.isa.spirv import compiled
 
@@ -33,8 +34,8 @@ def half_device() -> Any:
     except ImportError as error:
         raise MissingError(f"half arithmetic by glsl needs wgpu ({error}); pip install wgpu") from error
     if not found:
-        said = "install one (Debian: apt-get install mesa-vulkan-drivers)"
-        raise MissingError(f"half arithmetic by glsl needs a Vulkan driver with 16-bit floats; {said}")
+        said = f"install one ({how_to_install('mesa-vulkan-drivers')})"
+        raise MissingError(f"half arithmetic by glsl needs a {API} driver with 16-bit floats; {said}")
     device.preconfigure_default_device("normalbench", adapter=found[0], required_features={FEATURE})
     return device.get_default_device()
 
@@ -42,7 +43,7 @@ def half_device() -> Any:
 def name() -> str:
     """What a row calls the device, and whether it rounds every step. Raises MissingError as `half_device` does."""
     steps = "some steps keep more digits" if keeps_digits() else "every step rounded"
-    return f"{half_device().adapter.info['device']}, Vulkan, {steps}"
+    return f"{half_device().adapter.info['device']}, {API}, {steps}"
 
 
 @cache

@@ -1,4 +1,4 @@
-"""The Vulkan devices that wgpu finds. Imports wgpu only when it is asked."""
+"""The devices that wgpu finds by Vulkan, on macOS by Metal. Imports wgpu only when it is asked."""
 
 from __future__ import annotations
 
@@ -7,16 +7,19 @@ import tempfile
 from functools import cache
 from typing import Any
 
-NO_DRIVER = "WGSL needs a Vulkan driver; install one (Debian: apt-get install mesa-vulkan-drivers)"
+from .systems.remedies import how_to_install, webgpu_api
+
+API = webgpu_api()
+NO_DRIVER = f"WGSL needs a {API} driver; install one ({how_to_install('mesa-vulkan-drivers')})"
 
 
 @cache
 def adapters() -> tuple[Any, ...]:
-    """wgpu's adapters on Vulkan, in the driver's order. Raises ImportError where wgpu is not installed."""
+    """wgpu's adapters, in the driver's order. Raises ImportError where wgpu is not installed."""
     import wgpu
     from wgpu.backends.wgpu_native.extras import set_instance_extras
 
-    set_instance_extras(backends=["Vulkan"])
+    set_instance_extras(backends=[API])
     # The driver looks for a display there, and says on standard error that there is no such folder.
     os.environ.setdefault("XDG_RUNTIME_DIR", tempfile.gettempdir())
     return tuple(wgpu.gpu.enumerate_adapters_sync())

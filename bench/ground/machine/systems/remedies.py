@@ -1,0 +1,42 @@
+"""How people install what is missing, and what wgpu reaches a GPU by, on each system."""
+
+from __future__ import annotations
+
+import sys
+
+# By Debian's name of what is missing.
+if sys.platform == "win32":
+    SDK = "winget install KhronosGroup.VulkanSDK"
+    ELSEWHERE = "only Linux has it: WSL2 does"
+    _WAYS = {
+        "glslang-tools": SDK,
+        "spirv-tools": SDK,
+        "spirv-cross": SDK,
+        "mesa-vulkan-drivers": "the driver of the GPU's vendor",
+        "gcc": "MSYS2: pacman -S mingw-w64-ucrt-x86_64-gcc",
+        "g++": "MSYS2: pacman -S mingw-w64-ucrt-x86_64-gcc",
+        "clang": "winget install LLVM.LLVM",
+    }
+elif sys.platform == "darwin":
+    ELSEWHERE = "only Linux has it"
+    _WAYS = {
+        "glslang-tools": "brew install glslang",
+        "spirv-tools": "brew install spirv-tools",
+        "spirv-cross": "brew install spirv-cross",
+        "gcc": "xcode-select --install",
+        "g++": "xcode-select --install",
+        "clang": "xcode-select --install",
+    }
+else:
+    ELSEWHERE, _WAYS = "", {}
+
+
+def how_to_install(packages: str) -> str:
+    """What installs Debian's packages here; the first is what is missing, and others are what it needs."""
+    way = _WAYS.get(packages.split()[0], ELSEWHERE)
+    return way or f"Debian: apt-get install {packages}"
+
+
+def webgpu_api() -> str:
+    """The interface of GPUs that wgpu goes through."""
+    return "Metal" if sys.platform == "darwin" else "Vulkan"
