@@ -202,6 +202,7 @@ class Table:
         partial: whether a row that says why figures are missing may have others.
         in_all: whether `run` measures it without being asked to.
         asked_by: an option; where it is given, `run` measures the table without being asked to.
+        not_with: an option; where it is given, `run` measures the table only if it is named.
         is_measured_beside: whether `run` measures it in its second process: what takes longer in JAX or compilers than
             on the GL device.
         parity: figures by which a page of several runs compares GLSL with JAX, on each run's device.
@@ -227,6 +228,7 @@ class Table:
     partial: bool = False
     in_all: bool = True
     asked_by: str = ""
+    not_with: str = ""
     is_measured_beside: bool = False
     parity: tuple[str, ...] = ()
     is_usual: bool = False
@@ -234,7 +236,8 @@ class Table:
 
     def is_in_all(self, said: Mapping[str, Any]) -> bool:
         """Whether `run` with these options, by name, measures it where no table is named."""
-        return self.in_all or said.get(self.asked_by) is not None
+        is_usual = self.in_all and said.get(self.not_with) is None
+        return is_usual or said.get(self.asked_by) is not None
 
     @property
     def work(self) -> Work:

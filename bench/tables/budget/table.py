@@ -205,7 +205,9 @@ TABLE = Table(
     options=BudgetOptions,
     outputs=BudgetOutputs,
     columns=COLUMNS,
-    in_all=False,
+    # Many a scene has no metal/rough materials, which a budget is of.
+    not_with="scene",
+    usual=({"bytes": "12,16"},),
     single={"bytes": "12"},
     group=Group.ANSWER,
     section=Section(
@@ -215,6 +217,7 @@ TABLE = Table(
         intro="How few bytes a pixel does an image bear, and what lies in them?",
         method="Each code of each attribute is measured by itself: the error of the displayed image, by class of "
         "surfaces. An integer program finds the layout whose worst class is best in a number of bytes, and the "
-        "plainest one within 0.2 dB. That is drawn whole.",
+        "plainest one within 0.2 dB. That is drawn whole. Other bytes, next to engines' layouts, are by "
+        "`normalbench budget --bytes 12,14,16,20 --engines`.",
     ),
 )

@@ -13,6 +13,7 @@ import pytest
 from fitting import fit
 from languages import require_runner
 
+from normalbench.bench.door.run import chosen_tables, options_of
 from normalbench.bench.ground.machine.webgpu import adapters
 from normalbench.bench.tables.budget import attributes as held
 from normalbench.bench.tables.budget import changes
@@ -466,6 +467,14 @@ def test_a_run_gives_its_scenes_to_the_budget(run, tmp_path):
     """Before it measures: room cannot be judged by."""
     status, _, err = run("run", "--tables", "budget", "--scene", "room", "--output", str(tmp_path / "run"))
     assert status != 0 and "room has no metal/rough materials" in err, err
+
+
+def test_a_run_measures_a_budget_unless_it_names_scenes():
+    """In no more bytes than two limits take; a scene of any kind may be named then, as nothing judges layouts by it."""
+    (usual,) = options_of(TABLE, {"count": 4096})
+    assert TABLE in chosen_tables("all", {"count": 4096}) and usual.bytes == "12,16"
+    assert TABLE not in chosen_tables("all", {"scene": "room"})
+    assert chosen_tables("budget", {"scene": "studio"}) == [TABLE]
 
 
 def test_a_change_that_brings_nothing_is_not_named():
