@@ -1,6 +1,6 @@
 "use strict";
 
-// Files of pixels, read here: PNG by the browser, Radiance HDR and OpenEXR by hand. Whatever a file holds, reading it ends in
+// Files of pixels, read here: PNG of 8 bits by the browser, PNG of 16, Radiance HDR and OpenEXR by hand. Whatever a file holds, reading it ends in
 // pixels or in an Error of one line.
 const MOST_FILE_PIXELS = 64 * 2 ** 20, KEPT_PIXELS = 4 * 2 ** 20, KEPT_SIDE = 4096, BREATH_MS = 30, MOST_HEADER = 2 ** 20;
 const SHORT = "the file ends too early";
@@ -52,6 +52,7 @@ async function pixelsOfFile(file) {
 
 async function readPng(file, bytes) {
   const view = new DataView(bytes.buffer), kept = new Kept(view.getUint32(16), view.getUint32(20)), { width, height, step } = kept;
+  if (bytes[24] === 16) return wholePng(bytes, view, kept);
   const small = step > 1 ? { resizeWidth: width, resizeHeight: height, resizeQuality: "pixelated" } : {};
   const image = await createImageBitmap(file, { colorSpaceConversion: "none", premultiplyAlpha: "none", ...small }).catch(() => null);
   if (!image) throw new Error("the browser cannot read this PNG");
@@ -60,6 +61,34 @@ async function readPng(file, bytes) {
   const { data } = pen.getImageData(0, 0, width, height);
   for (let i = 0; i < data.length; i++) kept.pixels[i] = data[i] / 255;
   return kept;
+}
+
+// A PNG of 16 bits, of which browsers keep 8: its packed rows (W3C, Portable Network Graphics, 2003).
+async function wholePng(bytes, view, kept) {
+  const [width, height] = kept.full, channels = { 0: 1, 2: 3, 4: 2, 6: 4 }[bytes[25]], near = 2 * channels, size = near * width, parts = [];
+  if (!channels) throw new Error("a PNG of 16 bits has grey or colours; this one has neither");
+  if (bytes[28]) throw new Error("its rows of 16 bits are interlaced, which is not read");
+  for (let at = 8; at + 12 <= bytes.length; at += 12 + view.getUint32(at)) {
+    if (String.fromCharCode(...bytes.subarray(at + 4, at + 8)) === "IDAT") parts.push(bytes.subarray(at + 8, at + 8 + view.getUint32(at)));
+  }
+  const rows = await unpackedBytes(new Blob(parts), "deflate", height * (size + 1)).catch(() => new Uint8Array(0)), places = channels > 2 ? [0, 2, 4] : [0, 0, 0];
+  if (rows.length < height * (size + 1)) throw new Error("its rows are damaged");
+  for (let y = 0, above = new Uint8Array(size); y < height; y++) {
+    const row = rows.subarray(y * (size + 1) + 1, (y + 1) * (size + 1));
+    unfilter(row, above, near, rows[y * (size + 1)]);
+    kept.row(y, (x) => places.map((place) => ((row[near * x + place] << 8) | row[near * x + place + 1]) / 65535));
+    above = row;
+    await kept.breathe();
+  }
+  return kept;
+}
+
+// Undoes the filter of a row: what it is the difference to, of the bytes to the left, above, and to the left of that.
+function unfilter(row, above, near, filter) {
+  const nearest = (a, b, c) => [a, b, c].reduce((one, other) => (Math.abs(a + b - c - other) < Math.abs(a + b - c - one) ? other : one));
+  const guess = [() => 0, (a) => a, (_, b) => b, (a, b) => (a + b) >> 1, nearest][filter];
+  if (!guess) throw new Error("its rows are damaged");
+  for (let i = 0; i < row.length; i++) row[i] += guess(i < near ? 0 : row[i - near], above[i], i < near ? 0 : above[i - near]);
 }
 
 // Radiance's RGBE (G. Ward, Real Pixels, Graphics Gems II, 1991): rows from above, whole or run by run.
