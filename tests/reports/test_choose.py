@@ -4,7 +4,8 @@ import json
 
 import numpy as np
 from browsing import Opened
-from test_pictures import answered_run
+from test_pictures import answered_run, pick_row
+from test_report import a_run
 
 from normalbench.bench.tables.mix.table import USES
 from normalbench.bench.tables.pick.answer import answered
@@ -20,12 +21,13 @@ ASK = """([questions, constants]) => questions.map(([question, asked]) => {
 })"""
 
 
-def made_up_rows(rng: np.random.Generator) -> list[dict]:
+def made_up_rows(rng: np.random.Generator, needs: str | None) -> list[dict]:
     """Rows of a question as a run keeps them: prices and errors of a few sizes, so that many are equal, and codes of
     every kind that is left out."""
     usual = {
         "asked": "rgb10a2",
-        "normals": "sphere",
+        "needs": needs,
+        "normals": needs or "sphere",
         "scene": "studio",
         "aim": "angle",
         "bytes": 4,
@@ -77,7 +79,7 @@ def made_up_rows(rng: np.random.Generator) -> list[dict]:
             rows[-1] |= surveyed(rng, mean, float(encode), float(decode))
             rows[-1]["by_family"] = rows[-1]["by_family"] if is_priced else None
             if rows[-1]["domain"] == "hemisphere":
-                rows[-1]["lost_percent"] = 50.0
+                rows[-1]["lost_percent"] = 0.0 if needs else 50.0
     return rows
 
 
@@ -129,7 +131,7 @@ def test_the_pages_answer_is_picks_for_any_constraints(opened, tmp_path):
     pairs, expected = [], []
     for at in range(SETS):
         if at % 25 == 0:
-            rows = made_up_rows(rng)
+            rows = made_up_rows(rng, needs=(None, "hemisphere")[at // 25 % 2])
             (question,) = extras(tmp_path, {"pick": rows}, [])["choices"]["questions"]
         asked = asked_at_random(rng)
         # A price in the rows is that of their own readers.
@@ -146,6 +148,8 @@ def test_the_pages_answer_is_picks_for_any_constraints(opened, tmp_path):
         len(answers) > 50
         and any("no code qualifies" in one for one in answers)
         and any("In rg16" in one for one in answers)
+        and any("on hemisphere: take" in one for one in answers)
+        and any("on hemisphere: no code qualifies" in one and "for hemisphere" in one for one in answers)
     )
 
 
@@ -171,7 +175,7 @@ def test_constraints_change_the_answer_the_count_and_the_address(browser, run, t
     plot = page.page.locator("[data-of='choose-0'] .plot:has(svg)")
     points = "(plot) => Object.fromEntries(charts.views.get(plot).tables.flat().map((row) => [row.codec, row.rest]))"
     assert plot.evaluate(points) == {"fine rg8": True, "xy rg8": False}
-    page.page.locator("[data-limit=for]").select_option("rgb10a2, on sphere")
+    page.page.locator("[data-part=of]").select_option("rgb10a2")
     assert page.page.locator(".reply:visible .lead").all_text_contents() == ["rgb10a2, on sphere: take xy."]
     # A copied address shows the same.
     other = Opened(browser, tmp_path / "run/report.html", fragment=page.page.evaluate("location.hash"))
@@ -188,5 +192,28 @@ def test_constraints_change_the_answer_the_count_and_the_address(browser, run, t
     )
     page.page.locator("[data-codes] summary").click()
     assert "more than 1 issue slots" in page.page.locator("[data-codes] details").text_content()
+    assert page.said == []
+    page.context.close()
+
+
+def test_half_of_the_sphere_is_a_question_of_its_own(browser, run, tmp_path):
+    """The storage stays, and A and B where they are codes of it; where a storage has no such question, one that has."""
+    half = {"needs": "hemisphere", "normals": "hemisphere"}
+    rows = [pick_row("octahedral", 0.2, 90), pick_row("spheremap", 0.3, 10)]
+    rows += [one | {"asked": "rgb10a2", "storage": "rgb10a2"} for one in rows]
+    rows += [rows[0] | half, pick_row("hemi_octahedral", 0.1, 90) | {"domain": "hemisphere"} | half]
+    assert run("report", str(a_run(tmp_path / "run", {"pick": rows}, request={"tables": "pick"})))[0] == 0
+    page = Opened(browser, tmp_path / "run/report.html")
+    page.page.locator(".constraints").wait_for()
+    of, on = (page.page.locator(f"[data-part={name}]") for name in ("of", "on"))
+    assert on.locator("option").all_text_contents() == ["sphere", "hemisphere: normals with z >= 0"]
+    on.select_option("hemisphere: normals with z >= 0")
+    lead = page.page.locator(".reply:visible .lead")
+    assert lead.all_text_contents() == ["rg8, on hemisphere: take hemi_octahedral."]
+    assert page.page.evaluate("location.hash") == "#v1/choose?for=rg8%2C%20on%20hemisphere"
+    of.select_option("rgb10a2")
+    assert lead.all_text_contents()[0].startswith("rgb10a2, on sphere: take") and on.input_value() == "sphere"
+    on.select_option("hemisphere: normals with z >= 0")
+    assert lead.all_text_contents() == ["rg8, on hemisphere: take hemi_octahedral."] and of.input_value() == "rg8"
     assert page.said == []
     page.context.close()

@@ -12,10 +12,11 @@ from pathlib import Path
 from typing import Any
 
 from ....reports.page.codec_key import CodecKey
+from ....reports.page.verdict import MADE_FOR
 from ...ground.options.gpu_families import FAMILIES
 from ..mix.table import USES
 from . import answer
-from .answer import Row, groups, image_loss, largest, largest_mixed, loss_db, mean, why_unfit
+from .answer import Row, asked_of, groups, image_loss, largest, largest_mixed, loss_db, mean, why_unfit
 from .charts import FOUND, chart_name
 from .sentences import around_gain, called, constraints, not_held, question
 from .table import TABLE
@@ -49,7 +50,8 @@ def _question(group: Sequence[Row]) -> dict[str, Any]:
     asked = {name: first.get(name) for name in ASKED} | {"look_ups": first.get("look_ups") is not False}
     unpriced = {"length": answer.LENGTH_SAID, "hole": answer.HOLE_SAID, "price": answer.LOOPS_SAID}
     said = {**unpriced, "figure": f"{answer.NO_FIGURE} {first['aim']}", "table": answer.TABLE_SAID}
-    about = {"where": question(first), "aim": first["aim"], "asked": asked, "said": said, "needs": _needs_text(first)}
+    about = {"where": question(first), "of": asked_of(first), "on": _on(first), "needs": _needs_text(first)}
+    about |= {"aim": first["aim"], "asked": asked, "said": said}
     codes = [_code(row) for row in group]
     counted = dict.fromkeys(name for code in codes for name in code["families"] or ())
     families = {name: f"{FAMILIES[name].title} ({name})" if name in FAMILIES else name for name in counted}
@@ -59,6 +61,12 @@ def _question(group: Sequence[Row]) -> dict[str, Any]:
         "families": families,
         "codes": codes,
     }
+
+
+def _on(first: Row) -> str:
+    """The normals of a question, and what a code must hold where that is not all of them."""
+    held = MADE_FOR.get(first["needs"] or "")
+    return f"{first['normals']}: {held}" if held else first["normals"]
 
 
 def _needs_text(first: Row) -> Sequence[str]:

@@ -107,6 +107,8 @@ class Choose {
     Object.assign(this, { root, constants, questions, title: found });
     this.control = Object.fromEntries(Array.from(root.querySelectorAll("[data-limit]"), (one) => [one.dataset.limit, one]));
     for (const [key, one] of Object.entries(this.control)) one.addEventListener("input", () => this.take(key, one));
+    this.parts = Array.from(root.querySelectorAll("[data-part]"));
+    for (const one of this.parts) one.addEventListener("input", () => this.ask(one.dataset.part, one.value));
     this.uses = Array.from(root.querySelectorAll("[data-use]"));
     for (const one of this.uses) one.addEventListener("input", () => change({ uses: this.uses.filter(({ checked }) => checked).map(({ value }) => value).join(",") || (this.question.asked.mixing ? "none" : "") }));
     root.querySelector("[data-again]").addEventListener("click", () => change(Object.fromEntries(Object.keys(LIMITS).map((key) => [key, ""]))));
@@ -117,13 +119,18 @@ class Choose {
 
   take(key, { type, checked, value, validity }) {
     if (!validity.valid) return void this.control[key].reportValidity();
-    const next = { [key]: type === "checkbox" ? (checked ? "yes" : "no") : value };
-    change(key === "for" ? { ...next, ...this.sidesOf(value) } : next, type === "number");
+    change({ [key]: type === "checkbox" ? (checked ? "yes" : "no") : value }, type === "number");
+  }
+
+  // The question of a storage, or of normals, and of what else was asked for.
+  ask(part, value) {
+    const asked = { of: this.question.of, on: this.question.on, [part]: value }, fitting = this.questions.filter((one) => one[part] === value);
+    const question = fitting.find(({ of, on }) => of === asked.of && on === asked.on) ?? fitting[0];
+    change({ for: question.where, ...this.sidesOf(question) });
   }
 
   // A and B of another question are its answer and what comes next, unless one of them is a code of it.
-  sidesOf(where) {
-    const question = this.questions.find((one) => one.where === where);
+  sidesOf(question) {
     if (question.codes.some(({ codec }) => CODECS.some((side) => state[side] === codec))) return {};
     const { fit } = answerOf(question, askedOf(question, state), this.constants), name = (at) => (known.codecs.includes(fit[at]?.codec) ? fit[at].codec : "");
     return { a: name(0), b: name(1) };
@@ -173,7 +180,7 @@ class Choose {
 
   // The controls say what is asked for.
   fill(question, asked, isOwn) {
-    this.control.for.value = question.where;
+    for (const one of this.parts) one.value = question[one.dataset.part];
     for (const one of this.uses) one.checked = (asked.mixing || "").split(",").includes(one.value);
     for (const [key, name] of Object.entries(LIMITS)) {
       const one = this.control[key], value = asked[name];

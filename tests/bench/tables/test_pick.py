@@ -9,6 +9,7 @@ from operator import le
 import pytest
 from manual import ROOT
 
+from normalbench.bench.door.run import options_of
 from normalbench.bench.ground.output import cache
 from normalbench.bench.measures.metrics.images import squared_error
 from normalbench.bench.measures.metrics.totals import psnr_db
@@ -31,6 +32,11 @@ ONE_WAY = """// components: 2
 vec2 flat_encode(vec3 n, vec3 view) { return n.xy; }
 vec3 flat_decode(vec2 e, vec3 view) { return vec3(e, sqrt(max(0.0, 1.0 - dot(e, e)))); }
 """
+
+
+def test_a_run_asks_for_half_of_the_sphere_too_unless_normals_are_named():
+    assert [one.domain for one in options_of(TABLES["pick"], {})] == [None, "hemisphere"]
+    assert [one.domain for one in options_of(TABLES["pick"], {"normals": "axes"})] == [None, None]
 
 
 @pytest.fixture(scope="module")
