@@ -58,3 +58,13 @@ def _place(backend: str) -> int:
     """Its place among the back ends; the last for another name."""
     known = backends.BACKENDS
     return known.index(backend) if backend in known else len(known)
+
+
+def bins(text: Any) -> list[tuple[float, float, int]]:
+    """A row's histogram: lower and upper edge in degrees and the count of each bin; none where it is no histogram."""
+    try:
+        pairs = [(float(edge), int(count)) for edge, count in (word.split(":") for word in str(text).split())]
+    except ValueError:
+        return []
+    # A bin is an eighth of its octave wide; the first begins at 0.
+    return [(edge, edge + 2.0 ** math.floor(math.log2(edge)) / 8 if edge > 0 else 0.0, n) for edge, n in pairs]

@@ -61,3 +61,10 @@ ROUNDED_BY = Column(
 )
 SEED = Column("seed", "The random seed.", Role.HOW, drops=8)
 SKIPPED = Column("skipped", "Why there are no figures.", Role.REASON, shown=False)
+ANGLE_COUNTS = Column(
+    "angle_counts",
+    "A histogram of the angles, `from:count`, eight bins an octave.",
+    Role.RAW,
+    shown=False,
+    is_histogram=True,
+)

@@ -17,10 +17,11 @@ from packed import packed_text
 from PIL import Image
 
 from normalbench.bench.subjects.normals.normal_sets import hemisphere
+from normalbench.bench.tables.charts import bins
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.bench.tables.cost.charts import front_chart
 from normalbench.bench.tables.quality import measure as quality
-from normalbench.bench.tables.quality.charts import bins, histogram_chart, steps
+from normalbench.bench.tables.quality.charts import histogram_chart, steps
 from normalbench.bench.tables.quality.work import beside
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.render.charts import image_chart

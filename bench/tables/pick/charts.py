@@ -1,11 +1,14 @@
-"""The chart of an answer: what the codes of a question cost against what they lose."""
+"""The charts of an answer: what codes cost against what they lose, and how often they are off by which angle."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from bisect import bisect_right
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import accumulate
 
-from ....reports.charts.chart import INK, Axis, Chart, Kind, Mark, Scale
+from ....reports.charts.chart import FAINT, INK, Axis, Chart, Kind, Mark, Scale
 from ....reports.page.codec_key import CodecKey
+from ..charts import LEAST_DEG, bins
 from ..table import Row
 from .answer import groups, mean, why_unfit
 from .sentences import called, question
@@ -13,17 +16,29 @@ from .sentences import called, question
 HEIGHT = 300
 # What the title of a chart finds; the page's script fills it in for a reader's own constraints.
 FOUND = "{where}: no other code beats {front} of {all} in both slots and mean error"
+# The angles of a spread begin where so many percent of some code's normals are below, and are at most so many.
+LOWEST_SHARE, MOST_ANGLES = 1.0, 96
 
 
-def charts(rows: Sequence[Row]) -> list[Chart]:
-    """A chart for each question of which two codes have a price."""
-    asked = [(group, [_point(row) for row in group if _has_place(row)]) for group in groups(rows).values()]
-    return [_chart(chart_name(at), group, points) for at, (group, points) in enumerate(asked) if len(points) > 1]
+def charts(rows: Sequence[Row]) -> Iterator[Chart]:
+    """For each question of which two codes have a price, what they cost, and how their angles are spread."""
+    for at, group in enumerate(groups(rows).values()):
+        able = [row for row in group if _has_place(row)]
+        if len(able) > 1:
+            yield _chart(chart_name(at), group, [_point(row) for row in able])
+        counted = [(row, found) for row in able if (found := bins(row.get("angle_counts")))]
+        if len(counted) > 1:
+            yield _spread(spread_name(at), counted)
 
 
 def chart_name(at: int) -> str:
     """The name of the chart of a question, by its place among those of the rows."""
     return f"choose-{at}"
+
+
+def spread_name(at: int) -> str:
+    """The name of the chart of its angles."""
+    return f"spread-{at}"
 
 
 def _has_place(row: Row) -> bool:
@@ -65,3 +80,61 @@ def _chart(name: str, group: Sequence[Row], points: Sequence[Row]) -> Chart:
             Mark(kind=Kind.LABELS, text="name", colour=INK, rest="rest"),
         ),
     )
+
+
+Bins = Sequence[tuple[float, float, int]]
+
+
+def _spread(name: str, counted: Sequence[tuple[Row, Bins]]) -> Chart:
+    """The share of normals that are off by less than an angle: a line for each code, and an area that all lie in."""
+    shares = {CodecKey.of(row).label: _shares_below(found) for row, found in counted}
+    angles = _angles(shares.values())
+    lines = {codec: [_share_at(at, *one) for at in angles] for codec, one in shares.items()}
+    points = tuple(
+        {"codec": codec, "x": x, "y": y} for codec, line in lines.items() for x, y in zip(angles, line, strict=True)
+    )
+    around = tuple(
+        {"x": x, "y": max(at), "low": min(at)} for x, at in zip(angles, zip(*lines.values(), strict=True), strict=True)
+    )
+    first = counted[0][0]
+    tips = (("codec", "codec"), ("x", "angle, degrees"), ("y", "% of normals below it"))
+    return Chart(
+        name=name,
+        title=f"{question(first)}: {_median_sentence(first, *next(iter(shares.values())))}",
+        subtitle="The share of normals that are off by less than an angle; the area has all codes",
+        description="The share of normals over the angle that they are off by less than, on a scale of logarithms. The "
+        "area has all codes that could be the answer, each of which is a thin line in it.",
+        x=Axis(title="angle between normal and decode, degrees", scale=Scale.LOG),
+        y=Axis(title="% of normals", domain=(0.0, 100.0)),
+        rows=points,
+        height=HEIGHT,
+        marks=(
+            Mark(kind=Kind.AREAS, rows=around, y2="low", colour=FAINT),
+            Mark(kind=Kind.LINES, by=("codec",), colour=FAINT, tips=tips),
+        ),
+    )
+
+
+def _shares_below(found: Bins) -> tuple[list[float], list[float]]:
+    """The upper edges of a histogram's bins, and how many percent of all angles lie below each."""
+    total = sum(count for *_, count in found)
+    return [max(high, LEAST_DEG) for _, high, _ in found], [100 * n / total for n in accumulate(c for *_, c in found)]
+
+
+def _share_at(angle: float, edges: Sequence[float], below: Sequence[float]) -> float:
+    """How many percent lie below an angle that is an edge of bins; rows round edges."""
+    at = bisect_right(edges, angle * 1.001)
+    return round(below[at - 1], 1) if at else 0.0
+
+
+def _angles(shares: Iterable[tuple[Sequence[float], Sequence[float]]]) -> list[float]:
+    """Edges of bins, up to that which all normals of all codes are below."""
+    pairs = [pair for edges, below in shares for pair in zip(edges, below, strict=True)]
+    low = min(edge for edge, share in pairs if share >= LOWEST_SHARE)
+    every = sorted({edge for edge, _ in pairs if edge >= low}, reverse=True)
+    return every[:: -(-len(every) // MOST_ANGLES)][::-1]
+
+
+def _median_sentence(row: Row, edges: Sequence[float], below: Sequence[float]) -> str:
+    half, most = (next(edge for edge, share in zip(edges, below, strict=True) if share >= part) for part in (50, 99))
+    return f"half of {called(row)}'s normals are off by less than {half:.2g} degrees, 99 % by less than {most:.2g}"

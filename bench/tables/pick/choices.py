@@ -17,7 +17,7 @@ from ...ground.options.gpu_families import FAMILIES
 from ..mix.table import USES
 from . import answer
 from .answer import Row, asked_of, groups, image_loss, largest, largest_mixed, loss_db, mean, why_unfit
-from .charts import FOUND, chart_name
+from .charts import FOUND, chart_name, spread_name
 from .sentences import around_gain, called, constraints, not_held, question
 from .table import TABLE
 
@@ -41,7 +41,11 @@ ASKED = (
 def extras(_folder: Path, tables: Mapping[str, Sequence[Row]], _remarks: list[str]) -> Mapping[str, Any]:
     """The questions of a run, for the page; nothing where it answers none."""
     asked = enumerate(groups(tables[TABLE.name]).values())
-    made = [_question(group) | {"chart": chart_name(at)} for at, group in asked if group[0]["aim"] != "cost"]
+    made = [
+        _question(group) | {"chart": chart_name(at), "spread": spread_name(at)}
+        for at, group in asked
+        if group[0]["aim"] != "cost"
+    ]
     return {"choices": {"constants": CONSTANTS, "questions": made, "found": FOUND}} if made else {}
 
 

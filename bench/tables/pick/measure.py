@@ -50,7 +50,7 @@ SUPREMUM, AXES = "angle_sup_deg", "angle_axes_deg"
 SURVEYED = (*CHOICES["radeon"], "tgl", "dg2")
 # Normals that tell whether decodes have length 1.
 FEW = 2**14
-QUALITY = ("angle_mean_deg", "angle_max_deg", "worst_normal", "invalid", "count", "device", "skipped")
+QUALITY = ("angle_mean_deg", "angle_max_deg", "angle_counts", "worst_normal", "invalid", "count", "device", "skipped")
 
 
 @dataclass(frozen=True)

@@ -163,6 +163,7 @@ COLUMNS = (
         better="less",
         drops=5,
     ),
+    shared.ANGLE_COUNTS,
     Column("worst_normal", "The normal that came back farthest off: x, y and z.", Role.RAW, shown=False),
     Column(
         "image_db_*",

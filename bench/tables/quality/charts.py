@@ -9,7 +9,7 @@ from typing import Any
 from ....reports.charts.chart import ALL, INK, Axis, Chart, Kind, Mark, Names, Scale, Switch
 from ....reports.page.codec_key import CodecKey
 from ....reports.page.verdict import is_number
-from ..charts import LEAST_DEG, backends_of, having, lines_of, one_backend
+from ..charts import LEAST_DEG, backends_of, bins, having, lines_of, one_backend
 from ..table import Row
 
 # Of a line's pixels, the share that the highest histogram takes, and where its figures are marked.
@@ -77,16 +77,6 @@ def _point_row(row: Row, line: str) -> dict[str, Any]:
         "mean": row["angle_mean_deg"],
         "largest": row.get("angle_max_deg"),
     }
-
-
-def bins(text: Any) -> list[tuple[float, float, int]]:
-    """A row's histogram: lower and upper edge in degrees and the count of each bin; none where it is no histogram."""
-    try:
-        pairs = [(float(edge), int(count)) for edge, count in (word.split(":") for word in str(text).split())]
-    except ValueError:
-        return []
-    # A bin is an eighth of its octave wide; the first begins at 0.
-    return [(edge, edge + 2.0 ** math.floor(math.log2(edge)) / 8 if edge > 0 else 0.0, n) for edge, n in pairs]
 
 
 def steps(found: Sequence[tuple[float, float, int]]) -> tuple[list[float], list[float]]:

@@ -153,13 +153,7 @@ COLUMNS = (
         unit="percent",
         better="less",
     ),
-    Column(
-        "angle_counts",
-        "A histogram of the angles, `from:count`, eight bins an octave.",
-        RAW,
-        shown=False,
-        is_histogram=True,
-    ),
+    shared.ANGLE_COUNTS,
     Column(
         "effective_bits",
         "log2 of the number of ideally placed codes that have this RMS angle; uniform sets only.",

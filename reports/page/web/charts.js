@@ -261,7 +261,7 @@ const DRAW = {
     const shape = d3.line().x((row) => view.x.at(row[mark.x])).y((row) => view.y.at(row[mark.y])), lines = view.groups(mark, rows);
     if (mark.is_stepped) shape.curve(d3.curveStepAfter);
     const dash = (line) => view.look("dash", mark, line[0]) || null, [width, opacity] = mark.is_faint ? [1.2, 0.75] : [1.6, null];
-    view.put(group, "path", mark, lines, { d: shape, "stroke-width": width, "stroke-opacity": opacity, "stroke-dasharray": dash });
+    view.put(group, "path", mark, lines, { d: shape, "stroke-opacity": opacity, "stroke-dasharray": dash }).style("--width", width);
     for (const line of lines) line.map((row) => view.hit(mark, row, view.place(mark, row))).reduce((one, next) => ((one.next = next), next));
   },
 

@@ -146,7 +146,7 @@ class Choose {
     if (before && ["for", ...Object.keys(LIMITS)].every((key) => state[key] === before[key])) return;
     this.fill(question, asked, isOwn);
     for (const reply of this.root.querySelectorAll("[data-question]")) reply.hidden = isOwn || reply.dataset.question !== question.where;
-    for (const place of this.root.querySelectorAll("[data-of]")) place.hidden = place.dataset.of !== question.chart;
+    for (const place of this.root.querySelectorAll("[data-of]")) place.hidden = ![question.chart, question.spread].includes(place.dataset.of);
     for (const plot of this.root.querySelectorAll(`[data-of="${question.chart}"] .plot`)) this.plot(plot);
     const own = this.root.querySelector("[data-own-reply]");
     own.hidden = !isOwn;

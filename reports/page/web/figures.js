@@ -100,7 +100,7 @@ function plainly(one, copy) {
   const css = getComputedStyle(one);
   if (css.display === "none") return copy.remove();
   copy.removeAttribute("style");
-  for (const name of ["fill", "stroke", "opacity", "fill-opacity", "font-size", "font-family"]) copy.setAttribute(name, css.getPropertyValue(name));
+  for (const name of ["fill", "stroke", "stroke-width", "opacity", "fill-opacity", "font-size", "font-family"]) copy.setAttribute(name, css.getPropertyValue(name));
 }
 
 function asSvg(figure) {

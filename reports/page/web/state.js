@@ -96,7 +96,7 @@ function sameAs(name) {
 // What A and B are, everywhere: one rule each, for tables, charts and pictures.
 function ruleOf(name, side) {
   if (!name) return "";
-  return `:is(${sameAs(name)}) { --side: var(--${side}); --side-ground: var(--${side}-ground); --side-name: "${side.toUpperCase()}\\00a0"; }\n`;
+  return `:is(${sameAs(name)}) { --side: var(--${side}); --side-ground: var(--${side}-ground); --side-width: 2.6px; --side-name: "${side.toUpperCase()}\\00a0"; }\n`;
 }
 
 function show(before, goes = false) {

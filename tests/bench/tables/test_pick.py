@@ -17,6 +17,7 @@ from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.bench.subjects.normals.normal_sets import NORMAL_SETS
 from normalbench.bench.tables.pick import measure
 from normalbench.bench.tables.pick.answer import answered, groups
+from normalbench.bench.tables.pick.charts import charts
 from normalbench.bench.tables.pick.sentences import sentences
 from normalbench.bench.tables.quality.table import COMMON
 from normalbench.bench.tables.registry import TABLES
@@ -37,6 +38,24 @@ vec3 flat_decode(vec2 e, vec3 view) { return vec3(e, sqrt(max(0.0, 1.0 - dot(e, 
 def test_a_run_asks_for_half_of_the_sphere_too_unless_normals_are_named():
     assert [one.domain for one in options_of(TABLES["pick"], {})] == [None, "hemisphere"]
     assert [one.domain for one in options_of(TABLES["pick"], {"normals": "axes"})] == [None, None]
+
+
+def test_angles_of_an_answer_are_shares_of_normals_below_each():
+    """Between the largest and the smallest share that a code has; a code without a histogram has no line."""
+    about = {"asked": "rg8", "storage": "rg8", "normals": "sphere", "scene": "studio", "bits": 16, "aim": "angle"}
+    about |= {"angle_mean_deg": 0.3, "slots_once": 9, "family": "navi21", "domain": "sphere"}
+    counts = {"octahedral": "0.25:1 0.28125:2 0.5:1", "spheremap": "0.25:3 2:1", "spherical": None}
+    rows = [TABLES["pick"].empty() | about | {"encoding": n, "angle_counts": text} for n, text in counts.items()]
+    _, spread = charts(rows)
+    assert spread.name == "spread-0"
+    assert spread.title == (
+        "rg8, on sphere: half of octahedral's normals are off by less than 0.31 degrees, 99 % by less than 0.56"
+    )
+    lines = [[(row["x"], row["y"]) for row in spread.rows if row["codec"] == f"{name} rg8"] for name in counts]
+    assert lines[0] == [(0.28125, 25.0), (0.3125, 75.0), (0.5625, 100.0), (2.25, 100.0)]
+    assert lines[1] == [(0.28125, 75.0), (0.3125, 75.0), (0.5625, 75.0), (2.25, 100.0)] and lines[2] == []
+    area = spread.marks[0].rows
+    assert [(row["low"], row["y"]) for row in area] == [(25.0, 75.0), (75.0, 75.0), (75.0, 100.0), (100.0, 100.0)]
 
 
 @pytest.fixture(scope="module")
