@@ -7,6 +7,7 @@ from urllib.parse import unquote
 import devices as made
 import pytest
 from browsing import AXE, DESKTOP, PHONE, Opened
+from html_faults import faults
 from test_codecs import ANSWER, QUALITY, SHORT
 from test_report import Read, a_run
 
@@ -115,6 +116,24 @@ def test_elements_are_closed_and_their_ids_are_their_own(site, pages):
         assert not nested or (nested.wrong, nested.open) == ([], []), f"{name}: {nested.wrong} {nested.open}"
         ids = [one["id"] for _, one in read.tags if "id" in one]
         assert len(set(ids)) == len(ids), f"{name}: {[one for one in ids if ids.count(one) > 1]}"
+
+
+FAULTS = {
+    "<p><div>a</div></p>": "unexpected-end-tag",
+    "<p id='a'><p id='a'>": "a: 2 elements have this id",
+    "<label for='b'>b</label>": "label: nothing has the id b",
+    "<p><style></style>": "style in the body",
+    "<table><tr><p>a</table>": "unexpected-start-tag-implies-table-voodoo",
+}
+
+
+@pytest.mark.nightly("reports/test_site.py::test_elements_are_closed_and_their_ids_are_their_own")
+def test_pages_keep_to_the_rules_of_html(site, pages, results):
+    for text, fault in FAULTS.items():
+        found = faults(f"<!doctype html><title>a</title>{text}")
+        assert any(fault in one for one in found), (text, found)
+    for path in (results[0] / "report.html", *(site / name for name in pages)):
+        assert faults(path.read_text(encoding="utf-8")) == [], path.name
 
 
 def test_the_large_page_is_there_once(site):
