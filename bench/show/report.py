@@ -221,7 +221,7 @@ def gathered(folder: Path, done: Done) -> Found:
     facts = done.facts
     remarks = [f"{plain_text(said)}." for said in (done.damage, done.left_out) if said]
     if facts.get("sources") != sources():
-        remarks.append(f"Another version of the program measured this run; measure it again: {_command(facts)}.")
+        remarks.append(f"{_other_version(facts)} Measure it again: {_command(facts)}.")
     found = Found(
         name=str(plain_text(folder.resolve().name)),
         facts=facts,
@@ -239,6 +239,15 @@ def gathered(folder: Path, done: Done) -> Found:
     sections = answered_first([_section(folder, found, done, table, remarks) for table in shown])
     extras = {**found.extras, "cards": about_codecs(sections), "code": _clean_code(read_code(folder))}
     return replace(found, sections=sections, extras=extras)
+
+
+def _other_version(facts: Row) -> str:
+    """What measured a run that these sources did not."""
+    machine = facts.get("machine")
+    version = plain_text(str(machine.get("normalbench") or "")) if isinstance(machine, dict) else ""
+    there = plain_text(str(facts.get("sources") or "that it did not keep"))
+    program = f"normalbench {version}".strip()
+    return f"{program} of sources {there} measured this run, and this page is made by sources {sources()}."
 
 
 def _clean_code(kept: dict[str, Any]) -> dict[str, Any]:

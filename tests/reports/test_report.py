@@ -16,6 +16,7 @@ import pytest
 from packed import packed_text
 from PIL import Image
 
+from normalbench.bench.ground.output.sources import sources
 from normalbench.bench.subjects.normals.normal_sets import hemisphere
 from normalbench.bench.tables.charts import bins
 from normalbench.bench.tables.cost import measure as cost
@@ -168,7 +169,8 @@ def test_a_stopped_run_and_one_of_other_sources_say_so(run, tmp_path):
     folder = a_run(tmp_path / "run", {"quality": [quality_row("octahedral")]}, finished=False, sources="other")
     _, read = reported(run, folder)
     assert "This run is not finished. Steps that are done: 1." in read.text
-    assert "Another version of the program measured this run; measure it again: normalbench run." in read.text
+    assert f"of sources other measured this run, and this page is made by sources {sources()}." in read.text
+    assert "Measure it again: normalbench run." in read.text
     assert "it was asked for, and has no rows" in read.text
 
 
