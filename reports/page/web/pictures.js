@@ -321,8 +321,7 @@ class Viewer {
 
   fillLists(subject) {
     for (const side of SIDES) {
-      const options = subject.codecs.map((codec, at) => new Option(codec.label, at));
-      this.side(side).replaceChildren(new Option("exact", ORIGINAL), ...options);
+      this.side(side).replaceChildren(new Option("exact", ORIGINAL), ...grouped(subject.codecs.map((codec, at) => [codec.label, at])));
     }
     this.side("left").value = 0;
     this.side("right").value = subject.codecs.length > 1 ? 1 : ORIGINAL;

@@ -144,6 +144,13 @@ function codecNamed(name) {
   return known.codecs.includes(name) ? name : known.codecs.find((codec) => agrees(codec, name)) ?? "";
 }
 
+// Options of a list, those of an encoding together. Each pair is a codec and its value.
+function grouped(pairs) {
+  const groups = new Map();
+  for (const [name, value] of pairs) groups.set(name.split(" ")[0], [...(groups.get(name.split(" ")[0]) ?? []), new Option(name, value)]);
+  return Array.from(groups, ([label, options]) => element("optgroup", { label }, ...options));
+}
+
 function nameButton(name, ...children) {
   const button = element("button", { type: "button", class: "pick", "data-name": name, title: `A: ${name}; with shift B` }, ...children);
   pressed(button);

@@ -47,8 +47,7 @@ class See {
   }
 
   fill() {
-    const names = [EXACT, ...live.data.codecs.map(({ label }) => label)];
-    for (const side of ["left", "right"]) this.control[side].append(...names.map((name) => element("option", {}, name)));
+    for (const side of ["left", "right"]) this.control[side].append(new Option(EXACT), ...grouped(live.data.codecs.map(({ label }) => [label, label])));
     for (const [at, scene] of live.data.scenes.entries()) this.add(String(at), { ...scene, normals: async () => unfolded(scene, await pixelsOf(scene.pixels, scene.width, scene.height)) });
     fillColours(live.data.colours);
     const strip = this.control.strip, pen = penOf(strip);
