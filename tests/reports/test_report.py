@@ -232,9 +232,9 @@ def test_a_run_of_another_version_says_how_to_measure_it_again(run, tmp_path):
     """By the same command, less the folder that holds it."""
     command = ["run", "--tables", "quality", "-o", "old run", "--normals", "my set.npy"]
     folder = a_run(tmp_path / "run", {"quality": [quality_row("xy")]}, sources="other", command=command)
-    said = "measure it again: normalbench run --tables quality --normals 'my set.npy'."
+    said = "Measure it again: normalbench run --tables quality --normals 'my set.npy'."
     assert said in reported(run, folder)[1].text
-    assert "measure it again" in run("report", str(folder), "--markdown")[1]
+    assert "Measure it again" in run("report", str(folder), "--markdown")[1]
 
 
 def test_a_row_without_an_encoding_has_no_empty_heading(run, tmp_path):
