@@ -29,9 +29,9 @@ HOLDS: Mapping[str, frozenset[str]] = MappingProxyType(
 )
 # What normals outside an encoding's domain do.
 BEYOND = {"hemisphere": "point away (z < 0)", "view": "face away from the viewer"}
-# Issue slots of an encoder, or of a reader, that hide behind the write and the read of the target.
+# Issue slots of an encoder, or of a reader, that take no longer than the write or the read of the target.
 HIDDEN_SLOTS = 16
-# How many times the price that hides anybody pays for what is not seen.
+# How many times the price that takes no time anybody pays for what is not seen.
 AFFORDABLE = 2.0
 # Images above it are equal.
 INDISTINGUISHABLE_DB = 70.0
@@ -132,7 +132,7 @@ def loss_db(row: Row) -> float:
 
 
 def floor(row: Row) -> float:
-    """The issue slots that hide behind the traffic of the target: every code costs at least these."""
+    """The issue slots that take no longer than the target's memory traffic: every code costs at least these."""
     return HIDDEN_SLOTS * (1 + row["readers"])
 
 
@@ -144,7 +144,7 @@ def price(row: Row) -> float:
 
 
 def doublings(row: Row) -> float:
-    """How often the price that hides is doubled."""
+    """How often the price that takes no time is doubled."""
     return math.log2(price(row) / floor(row))
 
 

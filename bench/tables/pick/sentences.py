@@ -59,6 +59,8 @@ MOST_NAMED = 6
 UPSAMPLE = "upsample"
 # Axis-aligned normals that come back closer are exact.
 EXACT_DEG = 1e-3
+# What an encoder and its readers wait for anyway.
+TRAFFIC = "the target's memory traffic"
 # How far the mirror's image is, in metres, and the map that it shows.
 FAR, MAP = 10.0, "a 1k environment map"
 WOBBLES = "A code in view space wobbles when the camera turns; one in world space must hold every direction."
@@ -215,7 +217,7 @@ def _price_sentence(row: Row) -> str:
     parts = f"{row['encode_slots']:g} issue slots to encode and {row['decode_slots']:g} to decode"
     parts += f" on {row['dearest_family']}"
     readers = f"{row['readers']} reader{'s' * (row['readers'] != 1)}"
-    return f"It takes {parts}{_recorded_clause(row)}, with {readers} {_of_hidden(row)}{_table_clause(row)}."
+    return f"It takes {parts}{_recorded_clause(row)}: with {readers} {_of_hidden(row)}{_table_clause(row)}."
 
 
 def _recorded_clause(row: Row) -> str:
@@ -223,10 +225,10 @@ def _recorded_clause(row: Row) -> str:
 
 
 def _of_hidden(row: Row) -> str:
-    """A price against what hides behind the traffic of the target."""
+    """A price against what costs no time."""
     if price(row) == floor(row):
-        return f"no more than the {floor(row):g} that hide behind the traffic of the target"
-    return f"{price(row):g}, {price(row) / floor(row):.2g} times what hides behind the traffic of the target"
+        return f"at most {floor(row):g}, which take no longer than {TRAFFIC}"
+    return f"{price(row):g}, {price(row) / floor(row):.2g} times what takes no longer than {TRAFFIC}"
 
 
 def _table_clause(row: Row) -> str:
@@ -309,7 +311,7 @@ def _price_text(row: Row, best: Row) -> str:
     if is_same_price(row, best):
         return f"for the same price{table}"
     if price(row) == floor(row):
-        return f"for {HIDDEN_SLOTS} issue slots a pass, which hide{table}"
+        return f"for {HIDDEN_SLOTS} issue slots a pass, which take no longer than {TRAFFIC}{table}"
     ratio, gain = price(row) / price(best), loss_db(best) - loss_db(row)
     said = f"for {price(row):g} issue slots{table}, {ratio:.2g} times the price"
     if ratio <= 1 or gain <= 0 or is_enough(best):
