@@ -97,7 +97,7 @@ def to_csv(rows: Sequence[dict[str, Any]]) -> str:
     import pandas as pd
 
     made = [{name: _no_formula(value) for name, value in row.items()} for row in rows]
-    return pd.DataFrame(made, dtype=object).to_csv(index=False)
+    return pd.DataFrame(made, dtype=object).to_csv(index=False, lineterminator="\n")
 
 
 def _no_formula(value: Any) -> Any:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import shlex
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
@@ -16,6 +15,7 @@ from ...encodings.codecs.kind import CURVE, FRAME, MOTION, NORMAL, Kind
 from ...gbuffer.gl.device import NoDeviceError
 from ...gbuffer.gl.shader import ShaderError
 from ..ground.choose import choose, unknown_name
+from ..ground.machine.systems.people import command_line
 from ..ground.options.code import CodeOptions
 from ..ground.options.storage_names import roundings_named
 from ..ground.options.targets import that_fit, what_is_left
@@ -240,7 +240,7 @@ def _command(codec: Any, language: str, prefix: str) -> str:
     words = ["normalbench", "code", name, *([] if kind.kind is NORMAL else ["--of", kind.kind.word])]
     words += ["--storage", codec.storage.name, "--to", language]
     words += ["--rounding", rounding_of(codec)] if rounding_of(codec) != "nearest" else []
-    return shlex.join([*words, *(["--prefix", prefix] if prefix else [])])
+    return command_line([*words, *(["--prefix", prefix] if prefix else [])])
 
 
 def _save(code: Code, said: Iterable[str], output: Path | None) -> None:

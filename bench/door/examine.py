@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 import shutil
 import textwrap
 from collections.abc import Mapping, Sequence
@@ -20,6 +19,7 @@ from ...encodings.storages.storage import STORAGES, Storage
 from ...reports import tables
 from ...reports.charts.sphere_chart import sphere_chart
 from ..ground.choose import choose_one
+from ..ground.machine.systems.people import command_line
 from ..ground.options.storage_names import storages_named
 from ..ground.output.errors import UsageError, tell
 from ..ground.output.writing import check_plot, save_plot, write, write_text
@@ -106,7 +106,7 @@ def examine_encoding(
 def _examine_own(file: Path, kind: OwnKind, format: str, output: Path | None) -> int:
     """The same of a code of something else than normals."""
     own = examined_code(kind, file)
-    command = kind.words.command.format(shlex.quote(str(without_settings(file))))
+    command = kind.words.command.format(command_line([str(without_settings(file))]))
     about = {"file": file_of(file).name, "encoding": own.made.name, "domain": kind.words.plural}
     measures = [] if "broken" in own.found else [f"`{command}` measures it"]
     wrong, notes = own.found.get("wrong", []), [*notes_of(own), *measures]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -13,6 +12,7 @@ from ...gbuffer.gl.device import NoDeviceError
 from ...gbuffer.gl.shader import ShaderError
 from ...gbuffer.layouts.layout import Layout
 from ...gbuffer.layouts.presets import LAYOUTS
+from ..ground.machine.systems.people import command_line
 from ..ground.options.code import CodeOptions
 from ..ground.output.errors import MissingError, UsageError, tell
 from ..ground.output.progress import progress
@@ -96,7 +96,7 @@ def _command(code: GBufferCode, options: CodeOptions) -> str:
     files = [word for word in words if word.endswith(ENDING) and Path(word).stem == code.layout.name]
     named = [Path(files[0]).name] if files else [code.layout.name, "--of", LAYOUT]
     prefix = ["--prefix", options.prefix] if options.prefix else []
-    return shlex.join(["normalbench", "code", *named, "--to", code.language, *prefix])
+    return command_line(["normalbench", "code", *named, "--to", code.language, *prefix])
 
 
 def _save(code: GBufferCode, said: Sequence[str], output: Path | None) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import pickle
-import shlex
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
@@ -23,6 +22,7 @@ from ...reports.page.sections import TableSection, answered_first, whole
 from ...reports.page.verdict import is_count
 from ...reports.sheets import Sheet
 from ...reports.tables import LARGEST_WHOLE
+from ..ground.machine.systems.people import command_line
 from ..ground.output import cache
 from ..ground.output.errors import UsageError
 from ..ground.output.sources import sources
@@ -330,7 +330,7 @@ def _command(facts: Row) -> str:
     """How a run was measured, as it is typed into another folder."""
     words = [str(word) for word in facts.get("command") or ("run",)]
     at = next((at for at, word in enumerate(words) if word in ("-o", "--output")), len(words))
-    return shlex.join(["normalbench", *words[:at], *words[at + 2 :]])
+    return command_line(["normalbench", *words[:at], *words[at + 2 :]])
 
 
 def _asked(facts: Row) -> set[str]:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 
 from .encoding import AXES, Encoding
@@ -25,7 +26,8 @@ def settings_in(word: str) -> tuple[str, dict[str, str]]:
     Raises:
         ValueError: a setting has no value, or is there twice; a sentence.
     """
-    name, *settings = word.split(MARK)
+    # A mark in front of a slash is of a drive: table=C:\scales.npy.
+    name, *settings = re.split(rf"{MARK}(?![\\/])", word)
     values: dict[str, str] = {}
     for setting in settings:
         key, is_set, value = setting.partition("=")

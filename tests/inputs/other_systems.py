@@ -10,6 +10,18 @@ from functools import cache
 from pathlib import Path
 
 SYSTEMS = ("win32", "darwin")
+# An encoder with its twin, and a gate.
+ENCODER = """vec2 mine_encode(vec3 n, vec3 view) { return n.xy / (abs(n.x) + abs(n.y) + abs(n.z)); }
+vec3 mine_decode(vec2 e, vec3 view) { return normalize(vec3(e, 1.0 - abs(e.x) - abs(e.y))); }
+"""
+TWIN = """from normalbench.encodings.vec import Vec2, Vec3, normalize
+def encode(n, view):
+    s = abs(n.x) + abs(n.y) + abs(n.z)
+    return Vec2(n.x / s, n.y / s)
+def decode(e, view):
+    return normalize(Vec3(e.x, e.y, 1.0 - abs(e.x) - abs(e.y)))
+"""
+GATE = '[[gate]]\ntable = "quality"\nencoding = "octahedral"\nstorage = "rg8"\nangle_max_deg = "at most 1"\n'
 START = "from normalbench.bench.door.cli.start import program; program()"
 
 
@@ -89,3 +101,9 @@ def on(system, folder, words, **variables):
         cwd=folder,
         timeout=300,
     )
+
+
+def write_examples(folder):
+    """An encoder with its twin, and a gate, as files."""
+    for name, text in {"mine.glsl": ENCODER, "mine.py": TWIN, "gates.toml": GATE}.items():
+        (folder / name).write_text(text)

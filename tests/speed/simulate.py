@@ -116,7 +116,8 @@ def rows(name: str, loads: Sequence[Load], costs: Costs) -> list[Row]:
         row = {"work": name, "workers": workers, "minutes": round(took / 60, 1), "times faster": round(alone / took, 1)}
         made.append(row | {"workers busy %": round(100 * alone / took / workers)})
         made[-1]["command busy %"] = round(100 * sum(one.command for one in found) / took, 1)
-        made[-1]["exponent"] = fewer and exponent((fewer[0], workers), (fewer[1], took))
+        # Of as many digits as machines agree on.
+        made[-1]["exponent"] = fewer and round(exponent((fewer[0], workers), (fewer[1], took)) or 0.0, 6)
         fewer = workers, took
     return made
 

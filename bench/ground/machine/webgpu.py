@@ -7,7 +7,7 @@ import tempfile
 from functools import cache
 from typing import Any
 
-from .systems.remedies import how_to_install, webgpu_api
+from .systems.people import how_to_install, webgpu_api
 
 API = webgpu_api()
 NO_DRIVER = f"WGSL needs a {API} driver; install one ({how_to_install('mesa-vulkan-drivers')})"

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..machine.children import finished
 from ..machine.devices import processor_kind
-from ..machine.systems.remedies import how_to_install
+from ..machine.systems.people import how_to_install
 from ..output import cache as kept
 
 # Sums keep their order, and NaN and -0 are what they are. Integers wrap around, as JAX's do.

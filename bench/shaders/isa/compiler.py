@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from ...ground.machine.systems import system_files
-from ...ground.machine.systems.remedies import how_to_install
+from ...ground.machine.systems.people import how_to_install
 
 EXTENSION = "VK_KHR_pipeline_executable_properties"
 # Mesa's drivers, and what disassembles for RADV; the Vulkan loader is libvulkan.so.

@@ -11,7 +11,7 @@ from functools import cache
 from pathlib import Path
 
 from ...ground.machine import children
-from ...ground.machine.systems.remedies import how_to_install
+from ...ground.machine.systems.people import how_to_install
 from ...ground.options.gpu_families import MOBILE, R600, RADV, TITLES
 from .mobile import driver as mobile
 from .terascale import driver as terascale

@@ -11,8 +11,8 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+from ...ground.machine.systems.people import how_to_install
 from ...ground.machine.systems.preload import preloaded
-from ...ground.machine.systems.remedies import how_to_install
 from ...ground.output import cache as kept
 
 SOURCE = Path(__file__).with_name("null_i915.c")

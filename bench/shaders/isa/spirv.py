@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from ....gbuffer.gl.shader import ShaderError, Source
+from ...ground.machine.systems.people import how_to_install
 from ...ground.machine.systems.processes import file_of_child
-from ...ground.machine.systems.remedies import how_to_install
 from ...ground.output import cache as kept
 from ...ground.output.errors import MissingError
 

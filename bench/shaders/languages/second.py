@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 
 from ...ground.machine import children
+from ...ground.machine.systems.people import how_to_install
 from ...ground.machine.systems.processes import DIVIDED_BY_ZERO, signal_name
-from ...ground.machine.systems.remedies import how_to_install
 from ...ground.output.errors import MissingError
 from . import slang, tools
 from .language import GLSL_NAME, name_of

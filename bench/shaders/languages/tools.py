@@ -13,8 +13,8 @@ from types import MappingProxyType
 from typing import Any
 
 from ...ground.machine.children import text_of
+from ...ground.machine.systems.people import how_to_install
 from ...ground.machine.systems.processes import signal_name
-from ...ground.machine.systems.remedies import how_to_install
 from ...ground.output.errors import MissingError
 from . import slang_library
 

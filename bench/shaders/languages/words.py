@@ -50,7 +50,8 @@ DEFINE, PRELUDE, INCLUDE, LANGUAGE, ALL_PAIRS, FORMAT = SETTINGS = (
     "all_pairs",
     "format",
 )
-_SETTING = rf":({'|'.join(SETTINGS)})=([^:,]*)"
+# A colon in front of a slash is of a drive: include=C:\shaders.
+_SETTING = rf":({'|'.join(SETTINGS)})=((?:[^:,]|:(?=[\\/]))*)"
 _WORD = re.compile(
     rf"(?P<file>{_FILE})(?::(?P<encode>{_FUNCTION}):(?P<decode>{_FUNCTION}))?(?P<settings>(?:{_SETTING})*)", re.I | re.S
 )
@@ -221,7 +222,7 @@ def files_in(word: str, folder: Path = Path()) -> list[str]:
         others = [one for one in (*map(str, files_of(word)[1:]), *settings.preludes) if is_file(folder, one)]
         folders = [root for _, root in settings.roots if (folder / root).is_dir()]
         return list(dict.fromkeys([whole, *others, *folders]))
-    found = [value for setting in word.split(":") if is_file(folder, value := setting.partition("=")[2])]
+    found = [value for setting in re.split(r":(?![\\/])", word) if is_file(folder, value := setting.partition("=")[2])]
     # A chain is ENCODING/STORAGE+ENCODING.
     before, is_chain, then = word.rpartition(CHAIN)
     parts = (before.rpartition("/")[0], then) if is_chain else ()

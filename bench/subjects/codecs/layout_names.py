@@ -29,7 +29,7 @@ from .names import check_twin
 from .user_encodings import encodings_named
 
 # The file of a look-up table: scales.npy of best_fit:table=scales.npy.
-_TABLE_FILE = re.compile(rf"(?<={MARK}{TABLE}=)[^{MARK}]+")
+_TABLE_FILE = re.compile(rf"(?<={MARK}{TABLE}=)(?:[^{MARK}]|{MARK}(?=[\\/]))+")
 
 
 def layouts_named(names: str) -> list[Layout]:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-import shlex
 from collections.abc import Iterator, Sequence
 from typing import Any
 
 from ....encodings.catalogue import ENCODINGS
 from ....reports.page.verdict import MADE_FOR
+from ...ground.machine.systems.people import command_line
 from .answer import (
     ACROSS,
     BEST,
@@ -204,7 +204,7 @@ def _roughness_command(row: Row) -> str:
     """What measures from which roughness on a code carries reflections."""
     words = ["normalbench", "roughness", "--encoding", row["encoding"], "--storage", row["storage"]]
     rounding = row.get("rounding") or "nearest"
-    return shlex.join(words if rounding == "nearest" else [*words, "--rounding", rounding])
+    return command_line(words if rounding == "nearest" else [*words, "--rounding", rounding])
 
 
 def _length_text(value: float) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,6 +14,7 @@ from ....encodings.codecs.codec import Codec
 from ....encodings.codecs.encoding import Encoding
 from ...ground.choose import choose, choose_one
 from ...ground.machine.devices import require_jax
+from ...ground.machine.systems.people import command_line
 from ...ground.options.counts import check_seed, checked_count
 from ...ground.options.storage_names import storages_named
 from ...ground.output.errors import UsageError, tell
@@ -230,7 +230,7 @@ def _say_use(before: Side, after: Side, figure: str, table: Path | None, normals
         said = "keep the look-up with --table FILE.npy to measure it elsewhere"
     else:
         names = ["--encoding", after.codec.encoding.name, "--storage", after.codec.storage.name, "--normals", normals]
-        said = f"elsewhere: normalbench quality {shlex.join(names)}"
+        said = f"elsewhere: normalbench quality {command_line(names)}"
     tell(f"{said}")
 
 

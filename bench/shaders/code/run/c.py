@@ -11,7 +11,7 @@ import numpy as np
 
 from .....gbuffer.gl.shader import ShaderError, read_shader
 from ....ground.machine import children
-from ....ground.machine.systems.remedies import how_to_install
+from ....ground.machine.systems.people import how_to_install
 from ....ground.output.errors import MissingError
 from .interface import MADE, Interface, Ran, Run, Runner, ran_of, rows_of
 from .sources import compile_with, first_line, folder, required, run_apart

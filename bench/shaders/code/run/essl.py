@@ -12,7 +12,7 @@ import numpy as np
 
 from .....gbuffer.gl.shader import ShaderError
 from ....ground.machine import children
-from ....ground.machine.systems.remedies import how_to_install
+from ....ground.machine.systems.people import how_to_install
 from ....ground.output.errors import MissingError
 from .interface import Interface, Ran, Run, Runner, ran_of, rows_of
 from .sources import SECONDS, EmittedSource, folder

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from .....gbuffer.gl.shader import read_shader
-from ....ground.machine.systems.remedies import how_to_install
+from ....ground.machine.systems.people import how_to_install
 from .c import EXACT, LIMITS, MAIN, called, compiled, macros
 from .interface import Interface, Run, Runner
 from .sources import compile_with, first_line, folder, required

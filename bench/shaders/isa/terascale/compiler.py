@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from ....ground.machine.systems.remedies import how_to_install
+from ....ground.machine.systems.people import how_to_install
 from ..compiler import DriverError, MissingDriverError, fingerprint
 from . import disassembly
 

@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
+from ....ground.machine.systems.people import how_to_install
 from ....ground.machine.systems.preload import preloaded
-from ....ground.machine.systems.remedies import how_to_install
 from .. import null_device
 
 SOURCE = Path(__file__).with_name("null_radeon.c")

@@ -10,7 +10,7 @@ import numpy as np
 
 from .....gbuffer.gl.device import FormatError
 from .....gbuffer.gl.shader import Source
-from ....ground.machine.systems.remedies import how_to_install
+from ....ground.machine.systems.people import how_to_install
 from ....ground.machine.webgpu import API, adapters
 from ....ground.output.errors import MissingError
 from ....shaders.isa.spirv import compiled

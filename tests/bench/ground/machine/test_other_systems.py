@@ -3,19 +3,7 @@
 import json
 
 import pytest
-from other_systems import SYSTEMS, is_gone, lacking, on
-
-ENCODER = """vec2 mine_encode(vec3 n, vec3 view) { return n.xy / (abs(n.x) + abs(n.y) + abs(n.z)); }
-vec3 mine_decode(vec2 e, vec3 view) { return normalize(vec3(e, 1.0 - abs(e.x) - abs(e.y))); }
-"""
-TWIN = """from normalbench.encodings.vec import Vec2, Vec3, normalize
-def encode(n, view):
-    s = abs(n.x) + abs(n.y) + abs(n.z)
-    return Vec2(n.x / s, n.y / s)
-def decode(e, view):
-    return normalize(Vec3(e.x, e.y, 1.0 - abs(e.x) - abs(e.y)))
-"""
-GATE = '[[gate]]\ntable = "quality"\nencoding = "octahedral"\nstorage = "rg8"\nangle_max_deg = "at most 1"\n'
+from other_systems import SYSTEMS, is_gone, lacking, on, write_examples
 
 
 @pytest.mark.parametrize("system", SYSTEMS)
@@ -29,9 +17,7 @@ def test_the_list_of_what_a_system_lacks_is_the_type_checkers(system):
 @pytest.fixture(params=SYSTEMS)
 def there(request, tmp_path):
     """What a command does on a system, in a folder with an encoder and a gate."""
-    (tmp_path / "mine.glsl").write_text(ENCODER)
-    (tmp_path / "mine.py").write_text(TWIN)
-    (tmp_path / "gates.toml").write_text(GATE)
+    write_examples(tmp_path)
     return lambda *words: on(request.param, tmp_path, words)
 
 

@@ -13,6 +13,7 @@ from normalbench.bench.shaders.languages.words import file_of, files_in, functio
 from normalbench.bench.subjects.codecs.layout_names import layouts_named
 from normalbench.bench.tables.quality.table import QualityOptions
 from normalbench.bench.tables.registry import TABLES
+from normalbench.encodings.codecs.variants import settings_in
 
 PAIR = """float2 PackDir(float3 n) { return n.xy * SCALE; }
 float3 UnpackDir(float2 e) { return float3(e, sqrt(saturate(1.0 - dot(e, e)))); }
@@ -183,3 +184,15 @@ def test_rows_say_what_they_were_read_with(run, mine, tmp_path):
     status, out, err = run(*asked, "-DHALF=1.0", "--on", "local:1")
     assert status == 0, err
     assert json.loads(out)[0]["angle_mean_deg"] == means["1.0"]
+
+
+def test_a_path_of_windows_has_a_drive():
+    """A colon in front of a slash ends no word."""
+    word = r"C:\shaders\mine.hlsl:Pack:Unpack:include=C:\library:define=ROUND=1"
+    settings = settings_of(word)
+    assert (str(file_of(word)), functions_of(word)) == (r"C:\shaders\mine.hlsl", ("Pack", "Unpack"))
+    assert [root for _, root in settings.roots] == [r"C:\library"] and settings.defines == ("ROUND=1",)
+    assert settings_in(r"best_fit:table=C:\tables\scales.npy:axis=y") == (
+        "best_fit",
+        {"table": r"C:\tables\scales.npy", "axis": "y"},
+    )

@@ -1,8 +1,11 @@
-"""How people install what is missing, and what wgpu reaches a GPU by, on each system."""
+"""How people install what is missing and write a command, and what wgpu reaches a GPU by, on each system."""
 
 from __future__ import annotations
 
+import shlex
+import subprocess
 import sys
+from collections.abc import Iterable
 
 # By Debian's name of what is missing.
 if sys.platform == "win32":
@@ -35,6 +38,11 @@ def how_to_install(packages: str) -> str:
     """What installs Debian's packages here; the first is what is missing, and others are what it needs."""
     way = _WAYS.get(packages.split()[0], ELSEWHERE)
     return way or f"Debian: apt-get install {packages}"
+
+
+def command_line(words: Iterable[str]) -> str:
+    """A command as people type it."""
+    return subprocess.list2cmdline(words) if sys.platform == "win32" else shlex.join(words)
 
 
 def webgpu_api() -> str:
