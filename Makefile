@@ -13,37 +13,40 @@ export PYTHONDONTWRITEBYTECODE =
 
 RUN ?= $(lastword $(sort $(wildcard results/*/run.json)))
 
-.PHONY: bench test slow site setup lint
+.PHONY: bench test slow site setup lint say-bench say-test
 
-bench: .venv/ready
+bench: say-bench .venv/ready
 	$(BIN)/normalbench run
 
 # Twice as many as two cores: a test that waits for a command, a file or a browser leaves its core to another.
-test: .venv/ready
+test: say-test .venv/tests
 	$(BIN)/python -m pytest -n 4 $(if $(ALL),-m "$(if $(filter nightly,$(ALL)),nightly or not nightly,not nightly)")
 
-slow: .venv/ready
+slow: .venv/tests
 	$(BIN)/python -m pytest -n 4 -m "slow and not nightly"
 
 site: .venv/ready
 	@test -n "$(RUN)" || { echo "there is no run in results; make bench measures one" >&2; exit 1; }
 	$(BIN)/normalbench site $(RUN:/run.json=)
 
-setup: .venv/ready
+setup: .venv/tests
 
-lint: .venv/ready
+lint: .venv/tests
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	for system in Linux Windows Darwin; do $(BIN)/basedpyright --pythonplatform $$system || exit 1; done
 
-# The stamp is younger than what it was made from, so that a second call installs nothing.
+# A stamp is younger than what it was made from, so that a second call installs nothing.
 .venv/ready: pyproject.toml .ci/constraints.txt
-	.ci/prepare-venv $(PYTHON)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint .ci/constraints.txt --editable ".[dev]"
-	# Its compiler alone: the package needs torch, and no extra can say --no-deps.
-	-$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint .ci/constraints.txt --no-deps slangtorch
-	# Apart, because it is compiled: where there is no C++ compiler the tests of its files are skipped.
-	-$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint .ci/constraints.txt "meshoptimizer>=0.2.30a0"
-	.ci/prepare-gl $(BIN)/python
-	.ci/prepare-isa $(BIN)/python
-	touch $@
+	@.ci/setup bench $(PYTHON)
+	@touch $@
+
+.venv/tests: .venv/ready
+	@.ci/setup tests $(PYTHON)
+	@touch $@
+
+# Said first, whatever is to be set up.
+say-bench:
+	@echo "make bench: sets up what is missing, then measures the default suite into results: about five minutes, 60 MB"
+say-test:
+	@echo "make test: sets up what is missing, then runs the tests: $(if $(ALL),$(if $(filter nightly,$(ALL)),about an hour,about 25 minutes),about 8 minutes) on two cores"
