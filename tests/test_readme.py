@@ -44,7 +44,7 @@ COMMANDS = [line for line in LINES if line.startswith(("normalbench ", "python "
 PYTEST = [line for line in LINES if line.startswith("pytest ")]
 MAKE = [line for line in LINES if line.startswith("make ")]
 # These install something or change the shell.
-NOT_RUN = [line for line in LINES if line.startswith(("pip install ", ". .venv/"))]
+NOT_RUN = [line for line in LINES if line.startswith(("pip install ", "uv tool ", "pipx ", "docker "))]
 
 
 def users_files(folder: Path) -> None:

@@ -1,11 +1,17 @@
-"""A progress bar for whatever takes over a second, and the place where an interruption is not lost."""
+"""A progress bar for whatever takes over a second, and the place where an interruption is not lost. A run says how far it
+is where no bar can be shown."""
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from threading import Event, Thread
 from typing import Any
 
+from .errors import tell
+
+EVERY = 10  # seconds between two lines where there is no bar
 # What a signal raised to end the program. It may be raised where a library swallows it, as in a callback of the garbage
 # collector; then the next step raises it again.
 ending: list[BaseException] = []
@@ -22,19 +28,31 @@ class Bar:
     def __init__(self, bar: Any, steps: int, tables: int = 0):
         self._bar, self._tables, self._begun = bar, tables, dict[str, None]()
         self._task = bar.add_task("", total=steps)
-        self._of = ""
+        self._steps, self._done = steps, 0
+        self._of = self._under_way = ""
 
     def advance(self, description: str) -> None:
         """One step further; what is under way now."""
         if ending:
             raise ending[0]
-        self._bar.update(self._task, advance=1, description=f"{self._of}{description}")
+        self._move(1, f"{self._of}{description}")
 
     def begin(self, table: str, there: int) -> None:
         """A table of several, some of whose steps are there already."""
         self._begun[table] = None
         self._of = f"table {len(self._begun)} of {self._tables}, {table}: "
-        self._bar.update(self._task, advance=there, description=self._of)
+        self._move(there, self._of)
+
+    def _move(self, steps: int, under_way: str) -> None:
+        self._done, self._under_way = self._done + steps, under_way
+        self._bar.update(self._task, advance=steps, description=under_way)
+
+    def speak_until(self, ended: Event) -> None:
+        """Says every ten seconds how far it is."""
+        waited = 0
+        while not ended.wait(EVERY):
+            waited += EVERY
+            tell(f"{waited} s, {self._done} of {self._steps} steps, {self._under_way}")
 
 
 # The bar of a whole run, while there is one.
@@ -53,9 +71,22 @@ def _shown(steps: int, tables: int = 0) -> Iterator[Bar]:
 
 
 @contextmanager
+def _spoken(bar: Bar) -> Iterator[None]:
+    """Lines on standard error where that is no terminal, such as a log of CI."""
+    ended = Event()
+    speaker = Thread(target=bar.speak_until, args=(ended,), daemon=True)
+    if not sys.stderr.isatty():
+        speaker.start()
+    try:
+        yield
+    finally:
+        ended.set()
+
+
+@contextmanager
 def progress_of_all(steps: int, tables: int) -> Iterator[None]:
-    """One bar for all tables of a run, which the bars of single tables become part of."""
-    with _shown(steps, tables) as bar:
+    """One bar for all tables of a run, which the bars of single tables become part of; lines where it is not shown."""
+    with _shown(steps, tables) as bar, _spoken(bar):
         _whole.append(bar)
         try:
             yield

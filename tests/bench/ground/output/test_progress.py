@@ -1,7 +1,11 @@
 """One bar for a run: which table of how many, and the steps of all."""
 
+import sys
+import time
+
 import pytest
 
+from normalbench.bench.ground.output import progress as module
 from normalbench.bench.ground.output.progress import progress, progress_of_all
 
 
@@ -52,3 +56,24 @@ def test_a_table_alone_has_a_bar_of_its_own(bars):
     with progress(1, "cost") as tick:
         tick("navi21")
     assert bars == [(1, "in all"), (1, "navi21")]
+
+
+def test_a_run_without_a_terminal_says_how_far_it_is(capsys, monkeypatch):
+    monkeypatch.setattr(module, "EVERY", 0.05)
+    with progress_of_all(3, 1), progress(3, "quality") as tick:
+        tick("octahedral/rg8")
+        time.sleep(0.5)
+    time.sleep(0.1)
+    said = capsys.readouterr().err
+    assert "normalbench: 0.05 s, 1 of 3 steps, table 1 of 1, quality: octahedral/rg8\n" in said
+    assert len(said.splitlines()) >= 3
+    time.sleep(0.2)
+    assert not capsys.readouterr().err, "it goes on after the run"
+
+
+def test_a_run_with_a_terminal_shows_its_bar_alone(capsys, monkeypatch):
+    monkeypatch.setattr(module, "EVERY", 0.05)
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    with progress_of_all(3, 1):
+        time.sleep(0.3)
+    assert " steps, " not in capsys.readouterr().err
