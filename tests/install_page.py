@@ -1,4 +1,7 @@
-"""The manual's table of what each extra adds. `python -m tests.install_page` downloads all packages, 650 MB, and writes it."""
+"""The manual's table of what each extra adds.
+
+`python -m tests.install_page` downloads all packages, 650 MB, and writes it.
+"""
 
 from __future__ import annotations
 

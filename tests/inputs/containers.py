@@ -14,7 +14,7 @@ from manual import ROOT
 
 DOCKERFILE = ROOT / "Dockerfile"
 PATH = "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin"
-# How this machine reaches its registries. Docker gives a container the first; the others are for machines behind a proxy.
+# How this machine reaches its registries. Docker gives a container the first; a machine behind a proxy has the others.
 REACHED_BY = ("/etc/resolv.conf", "/etc/pip.conf", "/etc/ssl/certs/ca-certificates.crt")
 MOUNTED = 'mount -t proc proc "$1/proc"; mount --rbind /dev "$1/dev"; root=$1; shift; exec chroot "$@"'
 
@@ -72,7 +72,14 @@ class Container:
     def make(self) -> subprocess.CompletedProcess[str]:
         """The image that FROM names, and how this machine reaches its registries."""
         (image,) = [text for word, text in instructions(DOCKERFILE.read_text()) if word == "FROM"]
-        words = ["debootstrap", "--variant=minbase", "--include=ca-certificates", suite(image), str(self.root), mirror()]
+        words = [
+            "debootstrap",
+            "--variant=minbase",
+            "--include=ca-certificates",
+            suite(image),
+            str(self.root),
+            mirror(),
+        ]
         done = subprocess.run(words, capture_output=True, text=True)
         if done.returncode == 0:
             self._reach_registries()

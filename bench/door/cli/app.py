@@ -37,6 +37,7 @@ from .commands import OnOption, add_tables, command_with, with_options
 from .device_commands import add_devices
 from .formats import Format, FormatOption, format_of
 from .history_commands import add_history
+from .renderdoc_commands import add_renderdoc
 from .typed import added_up, check_begins_with_command
 
 
@@ -307,6 +308,7 @@ def report(
 
 
 add_history(app)
+add_renderdoc(app)
 add_devices(app)
 
 

@@ -1,5 +1,7 @@
-"""A progress bar for whatever takes over a second, and the place where an interruption is not lost. A run says how far it
-is where no bar can be shown."""
+"""A progress bar for whatever takes over a second, and the place where an interruption is not lost.
+
+A run says how far it is where no bar can be shown.
+"""
 
 from __future__ import annotations
 

@@ -324,7 +324,11 @@ def test_version_and_short_help(run):
 
 
 @pytest.mark.parametrize(
-    "name", [*TABLES, "run", "check", "compare", "report", "list", "doctor", "columns", "import", "site", "history"]
+    "name",
+    [
+        *TABLES,
+        *("run", "check", "compare", "report", "list", "doctor", "columns", "import", "site", "history", "renderdoc"),
+    ],
 )
 def test_help_fits_80_columns_and_groups_its_options(run, monkeypatch, name):
     monkeypatch.setenv("COLUMNS", "80")

@@ -1,0 +1,418 @@
+"""Saves the G-buffer of a RenderDoc capture, for normalbench: every target and the depth as EXR, matrices as text.
+
+In RenderDoc, open the capture, then Window > Python Shell > Run Scripts. The folder `gbuffer` is made next to it. Or:
+
+    python3 save_gbuffer.py FRAME.rdc [FOLDER] [EVENT]
+
+with RenderDoc's Python module (Debian: apt-get install python3-renderdoc). EVENT is the number of the draw after which
+targets are read. Without it that is the last draw into the targets that most draws with two or more targets write.
+
+It ends with the commands that measure what it saved. RenderDoc's own EXR files hold half floats; these have 32 bits.
+It needs RenderDoc 1.18 or newer, Python 3.6, and nothing else.
+"""
+
+import json
+import math
+import re
+import struct
+import sys
+from array import array
+from pathlib import Path
+
+DEPTH = "depth.exr"
+FARTHEST = 1e9  # in place of a far plane that is infinitely far
+# A channel of each file: 1 where the depth is not that of the background.
+COVERED = "covered"
+# A target holds normals where nine tenths of what is covered have such a length.
+LEAST, MOST, SHARE = 0.97, 1.03, 0.9
+FLOATS = {2: "e", 4: "f", 8: "d"}
+
+
+# Numbers of a texture
+
+
+def shares(data, code, largest):
+    """Integers as shares of the largest, never below -1."""
+    return [max(value / largest, -1.0) for value in little(code, data)]
+
+
+def little(code, data):
+    """An array of little-endian numbers."""
+    numbers = array(code)
+    numbers.frombytes(bytes(data))
+    if sys.byteorder == "big":
+        numbers.byteswap()
+    return numbers
+
+
+def small_float(bits, mantissa):
+    """A float of 5 bits of exponent, without a sign."""
+    exponent, fraction = bits >> mantissa, bits & ((1 << mantissa) - 1)
+    if exponent == 0:
+        return fraction * 2.0 ** (-14 - mantissa)
+    if exponent == 31:
+        return float("nan") if fraction else float("inf")
+    return (1 + fraction / (1 << mantissa)) * 2.0 ** (exponent - 15)
+
+
+def regular(data, kind, width):
+    """The numbers of channels that are 1, 2 or 4 bytes each."""
+    if kind == "Float":
+        return struct.unpack(f"<{len(data) // width}{FLOATS[width]}", data)
+    signed = kind in ("SNorm", "SInt", "SScaled")
+    code = {1: "b", 2: "h", 4: "i"}[width]
+    code = code if signed else code.upper()
+    if kind in ("UInt", "SInt", "UScaled", "SScaled"):
+        return [float(value) for value in little(code, data)]
+    return shares(data, code, 2 ** (8 * width - (1 if signed else 0)) - 1)
+
+
+def planes(data, layout, kind, width, count, bgra=False):
+    """A list of numbers for each channel.
+
+    Args:
+        layout: Regular, R10G10B10A2 or R11G11B10, as RenderDoc names it.
+        kind: UNorm, Float and so on; `width` bytes for each of `count` channels.
+    """
+    if layout == "R10G10B10A2":
+        words = little("I", data)
+        scale = 1.0 if kind == "UInt" else 1 / 1023.0
+        found = [[(word >> shift & 1023) * scale for word in words] for shift in (0, 10, 20)]
+        found.append([(word >> 30) * (1.0 if kind == "UInt" else 1 / 3.0) for word in words])
+    elif layout == "R11G11B10":
+        words = little("I", data)
+        eleven = [small_float(bits, 6) for bits in range(2048)]
+        ten = [small_float(bits, 5) for bits in range(1024)]
+        found = [[eleven[word >> shift & 2047] for word in words] for shift in (0, 11)]
+        found.append([ten[word >> 22] for word in words])
+    elif layout == "Regular":
+        numbers = regular(data, kind, width)
+        found = [list(numbers[channel::count]) for channel in range(count)]
+    else:
+        raise ValueError(f"formats like {layout} are not read")
+    return [found[2], found[1], found[0], *found[3:]] if bgra else found
+
+
+def depths(data, pixels, kind, is_opengl):
+    """The numbers of a depth buffer, in [0, 1]; what is stencil is left out."""
+    width = len(data) // pixels
+    if width == 2:
+        return shares(data, "H", 65535)
+    if width == 8:
+        return list(struct.unpack(f"<{2 * pixels}f", data)[::2])
+    if kind == "D32":
+        return list(struct.unpack(f"<{pixels}f", data))
+    # 24 bits. OpenGL has them above the stencil, the others below.
+    return [(word >> 8 if is_opengl else word & 0xFFFFFF) / 16777215.0 for word in little("I", data)]
+
+
+def from_above(plane, width):
+    """Rows in the other order: OpenGL's first is the lowest."""
+    rows = [plane[at : at + width] for at in range(0, len(plane), width)]
+    return [value for row in reversed(rows) for value in row]
+
+
+# Files
+
+
+def attribute(name, kind, value):
+    return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
+
+
+def write_exr(path, width, height, channels):
+    """An EXR file of 32-bit floats, not compressed; `channels` are numbers by their names, the top row first."""
+    names = sorted(channels)
+    described = b"".join(name.encode() + b"\0" + struct.pack("<iB3xii", 2, 0, 1, 1) for name in names) + b"\0"
+    box = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    header = b"\x76\x2f\x31\x01\x02\0\0\0" + b"".join(
+        (
+            attribute("channels", "chlist", described),
+            attribute("compression", "compression", b"\0"),
+            attribute("dataWindow", "box2i", box),
+            attribute("displayWindow", "box2i", box),
+            attribute("lineOrder", "lineOrder", b"\0"),
+            attribute("pixelAspectRatio", "float", struct.pack("<f", 1.0)),
+            attribute("screenWindowCenter", "v2f", struct.pack("<2f", 0.0, 0.0)),
+            attribute("screenWindowWidth", "float", struct.pack("<f", 1.0)),
+            b"\0",
+        )
+    )
+    size = 4 * width * len(names)
+    first = len(header) + 8 * height
+    with path.open("wb") as file:
+        file.write(header)
+        file.write(struct.pack(f"<{height}Q", *[first + row * (size + 8) for row in range(height)]))
+        for row in range(height):
+            file.write(struct.pack("<ii", row, size))
+            for name in names:
+                file.write(struct.pack(f"<{width}f", *channels[name][row * width : (row + 1) * width]))
+
+
+def file_name(name, at, taken):
+    """A texture's name as that of a file."""
+    plain = f"{re.sub(r'[^A-Za-z0-9]+', '_', name).strip('_').lower() or 'target'}.exr"
+    is_free = plain != DEPTH and plain not in [one["file"] for one in taken.values()]
+    return plain if is_free else f"{at}_{plain}"
+
+
+# What the numbers are
+
+
+def covered(plane):
+    """1 where a depth is not that of the background, which is the one of 0 and 1 that more pixels have."""
+    background = 1.0 if plane.count(1.0) >= plane.count(0.0) else 0.0
+    return [0.0 if value == background else 1.0 for value in plane]
+
+
+def normals_in(found, mask):
+    """Of unit normals "--no-unpack", of such in [0, 1] "--unpack", of anything else nothing."""
+    x, y, z = found[:3]
+    inside = [at for at, is_covered in enumerate(mask) if is_covered]
+    for option, scale, bias in (("--no-unpack", 1, 0), ("--unpack", 2, -1)):
+        lengths = [sum((plane[at] * scale + bias) ** 2 for plane in (x, y, z)) ** 0.5 for at in inside]
+        good = sum(LEAST < length < MOST for length in lengths)
+        if lengths and good >= SHARE * len(lengths):
+            return option
+    return ""
+
+
+def planes_of_projection(rows, lowest):
+    """The near and the far plane of a projection matrix, by rows; None if it is not a perspective.
+
+    Args:
+        lowest: the depth of the near plane after the division: -1 in OpenGL, else 0.
+    """
+    towards = rows[3][2]
+    if abs(abs(towards) - 1) > 1e-5 or rows[3][3] or not rows[2][3] or not rows[1][1]:
+        return None
+    slope = rows[2][2] / towards
+    near, far = (rows[2][3] / (end - slope) if abs(end - slope) > 1e-9 else math.inf for end in (lowest, 1.0))
+    return (near, far) if near > 0 and far > 0 else None
+
+
+def is_rotation(rows):
+    """Whether the upper left of a matrix turns and does nothing else, and its last row is 0, 0, 0, 1."""
+    turn = [row[:3] for row in rows[:3]]
+    products = [sum(a * b for a, b in zip(one, other)) for one in turn for other in turn]
+    return rows[3] == [0.0, 0.0, 0.0, 1.0] and all(abs(p - (i % 4 == 0)) < 1e-3 for i, p in enumerate(products))
+
+
+def measuring(folder, targets, matrices, has_depth, is_opengl):
+    """The commands that measure what was saved."""
+    ends = {name: planes_of_projection(rows, -1.0 if is_opengl else 0.0) for name, rows in matrices.items()}
+    camera = next(((matrices[name][1][1], found) for name, found in ends.items() if found), None)
+    fov = f" --fov {math.degrees(2 * math.atan(1 / abs(camera[0]))):.6g}" if camera else ""
+    lines = []
+    for target in targets.values():
+        if target["normals"]:
+            lines += of_normals(folder, target, matrices, (f" --mask {COVERED}" if has_depth else "") + fov)
+    return lines + ([of_depth(folder, *camera[1], fov)] if has_depth and camera else [])
+
+
+def of_normals(folder, target, matrices, options):
+    """The command for a target of normals, and what to add where they are in world space."""
+    read = f"--normals {folder / target['file']} {target['normals']}{options}"
+    lines = [f"normalbench quality {read} --storage rg8,rgb10a2 --encoding octahedral"]
+    for name, rows in matrices.items():
+        if re.search("view", name, re.I) and not re.search("inv|prev", name, re.I) and is_rotation(rows):
+            lines.append(
+                f"# if they are in world space, add: --space world --view-matrix {folder / file_of_matrix(name)}"
+            )
+    return lines
+
+
+def of_depth(folder, near, far, fov):
+    """The command for the depth buffer; a far plane that is nearer than the near one is reversed depth."""
+    code = "window" if near < far else "reversed_window"
+    ends = f"--near {min(near, far):.6g} --far {min(max(near, far), FARTHEST):.6g}"
+    read = f"--depths {folder / DEPTH} --depths-are {code} {ends}{fov}"
+    return f"normalbench depth {read} --depth window,reversed_window,linear"
+
+
+def file_of_matrix(name):
+    return re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_") + ".txt"
+
+
+# What RenderDoc knows
+
+
+def all_actions(actions):
+    for action in actions:
+        yield action
+        yield from all_actions(action.children)
+
+
+def targets_of(action, rd):
+    return tuple(int(one) for one in action.outputs if one != rd.ResourceId.Null())
+
+
+def chosen(controller, rd, event):
+    """The draw after which targets are read."""
+    draws = [one for one in all_actions(controller.GetRootActions()) if one.flags & rd.ActionFlags.Drawcall]
+    if event is not None:
+        draws = [one for one in draws if one.eventId == event]
+        return draws[0] if draws else sys.exit(f"no draw has the number {event}")
+    several = [one for one in draws if len(targets_of(one, rd)) > 1] or [one for one in draws if targets_of(one, rd)]
+    if not several:
+        sys.exit("no draw of the capture writes a target")
+    sets = [targets_of(one, rd) for one in several]
+    most = max(sets, key=sets.count)
+    return [one for one in several if targets_of(one, rd) == most][-1]
+
+
+def constants(controller, rd):
+    """All matrices of 4 x 4 that the draw's shaders are given, by rows, by their names."""
+    state, found = controller.GetPipelineState(), {}
+    for stage in (rd.ShaderStage.Vertex, rd.ShaderStage.Pixel):
+        reflection = state.GetShaderReflection(stage)
+        for at, _ in enumerate(reflection.constantBlocks if reflection else ()):
+            for variable in block(controller, state, stage, at):
+                add_matrices(found, variable, rd)
+    return found
+
+
+def block(controller, state, stage, at):
+    """The variables of a constant buffer."""
+    if hasattr(state, "GetConstantBlock"):  # RenderDoc 1.32 and newer
+        used = state.GetConstantBlock(stage, at, 0).descriptor
+        place = (used.resource, used.byteOffset, used.byteSize)
+    else:
+        used = state.GetConstantBuffer(stage, at, 0)
+        place = (used.resourceId, used.byteOffset, used.byteSize)
+    pipeline = state.GetGraphicsPipelineObject()
+    shader = (state.GetShader(stage), stage, state.GetShaderEntryPoint(stage))
+    return controller.GetCBufferVariableContents(pipeline, shader[0], shader[1], shader[2], at, *place)
+
+
+def add_matrices(found, variable, rd):
+    if variable.rows == 4 and variable.columns == 4 and variable.type == rd.VarType.Float:
+        numbers = list(variable.value.f32v[:16])
+        found.setdefault(variable.name, [numbers[at : at + 4] for at in (0, 4, 8, 12)])
+    for member in variable.members:
+        add_matrices(found, member, rd)
+
+
+def name_of(kind, value):
+    """RenderDoc's name of an enumeration's value."""
+    return next(name for name in dir(kind) if name[:1].isupper() and getattr(kind, name) == value)
+
+
+class Saving:
+    """What a draw of a capture has left, saved into a folder."""
+
+    def __init__(self, controller, rd, folder, event):
+        self.controller, self.rd, self.folder = controller, rd, folder
+        self.action = chosen(controller, rd, event)
+        controller.SetFrameEvent(self.action.eventId, True)
+        self.is_opengl = controller.GetAPIProperties().pipelineType == rd.GraphicsAPI.OpenGL
+        self.textures = {int(one.resourceId): one for one in controller.GetTextures()}
+        self.names = {int(one.resourceId): one.name for one in controller.GetResources()}
+        folder.mkdir(parents=True, exist_ok=True)
+
+    def data_of(self, texture):
+        """The bytes of its first mip level, slice and sample."""
+        return bytes(self.controller.GetTextureData(texture.resourceId, self.rd.Subresource(0, 0, 0)))
+
+    def upright(self, plane, texture):
+        return from_above(plane, texture.width) if self.is_opengl else plane
+
+    def write(self, name, texture, channels, says=""):
+        write_exr(self.folder / name, texture.width, texture.height, channels)
+        print(f"{name}: {self.names[int(texture.resourceId)]}, {texture.format.Name()}{says}")
+
+    def depth(self):
+        """The mask of what is covered; None where the draw has no depth buffer."""
+        texture = self.textures.get(int(self.action.depthOut))
+        if texture is None:
+            return None
+        form = texture.format.Name()[:3]
+        plane = depths(self.data_of(texture), texture.width * texture.height, form, self.is_opengl)
+        plane = self.upright(plane, texture)
+        mask = covered(plane)
+        self.write(DEPTH, texture, {"Z": plane, COVERED: mask})
+        return mask
+
+    def planes(self, texture):
+        """The channels of a target. Raises ValueError for a format that cannot be read."""
+        form = texture.format
+        layout, kind = name_of(self.rd.ResourceFormatType, form.type), name_of(self.rd.CompType, form.compType)
+        found = planes(self.data_of(texture), layout, kind, form.compByteWidth, form.compCount, form.BGRAOrder())
+        return [self.upright(plane, texture) for plane in found]
+
+    def target(self, texture, name, mask):
+        """Writes one; what is known of it."""
+        found = self.planes(texture)
+        pixels = len(found[0])
+        own = mask if mask and len(mask) == pixels else [1.0] * pixels
+        normals = normals_in(found, own) if len(found) >= 3 else ""
+        channels = dict(zip("RGBA", found))
+        channels[COVERED] = own
+        self.write(name, texture, channels, ", unit normals" if normals else "")
+        return {"file": name, "format": texture.format.Name(), "normals": normals}
+
+    def targets(self, mask):
+        """Writes all; what is known of each, by its name in the capture."""
+        kept = {}
+        for at, number in enumerate(targets_of(self.action, self.rd)):
+            name = self.names[number]
+            try:
+                kept[name] = self.target(self.textures[number], file_name(name, at, kept), mask)
+            except ValueError as why:
+                print(f"{name} is left out: {why}")
+        return kept
+
+    def matrices(self):
+        """Writes all matrices of the draw's shaders, which they are by rows."""
+        found = constants(self.controller, self.rd)
+        for name, rows in found.items():
+            lines = [" ".join(f"{value:.9g}" for value in row) for row in rows]
+            (self.folder / file_of_matrix(name)).write_text("\n".join(lines) + "\n")
+            print(f"{file_of_matrix(name)}: {name}, by rows")
+        return found
+
+
+def save(controller, rd, folder, event=None):
+    """Everything into the folder; prints the commands that measure it."""
+    saving = Saving(controller, rd, folder, event)
+    mask = saving.depth()
+    targets = saving.targets(mask)
+    matrices = saving.matrices()
+    lines = measuring(folder, targets, matrices, mask is not None, saving.is_opengl)
+    kept = {"event": saving.action.eventId, "targets": targets, "matrices": matrices, "commands": lines}
+    (folder / "gbuffer.json").write_text(json.dumps(kept, indent=1) + "\n")
+    if not any(one["normals"] for one in targets.values()):
+        print("No target holds unit normals. If one holds a code, write what your shader decodes into a float target.")
+    print("\n".join(lines))
+
+
+def opened(rd, path):
+    """A capture as the Python module opens it."""
+    rd.InitialiseReplay(rd.GlobalEnvironment(), [])
+    capture = rd.OpenCaptureFile()
+    capture.OpenFile(path, "", None)
+    status, controller = capture.OpenCapture(rd.ReplayOptions(), None)
+    if controller is None:
+        sys.exit(f"{path} cannot be replayed: {status}")
+    return capture, controller
+
+
+def main(words):
+    import renderdoc as rd  # pyright: ignore[reportMissingImports] # RenderDoc's own Python has it
+
+    shell = globals().get("pyrenderdoc")
+    if shell is not None:
+        folder = Path(shell.GetCaptureFilename()).with_name("gbuffer")
+        shell.Replay().BlockInvoke(lambda controller: save(controller, rd, folder))
+        return
+    if not words:
+        sys.exit(__doc__)
+    capture, controller = opened(rd, words[0])
+    folder = Path(words[1] if len(words) > 1 else "gbuffer")
+    save(controller, rd, folder, int(words[2]) if len(words) > 2 else None)
+    controller.Shutdown()
+    capture.Shutdown()
+    rd.ShutdownReplay()
+
+
+if __name__ == "__main__" or "pyrenderdoc" in globals():
+    main(sys.argv[1:])
