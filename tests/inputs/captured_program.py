@@ -1,6 +1,6 @@
 """A small OpenGL program that RenderDoc captures: a sphere into a G-buffer of three targets and a depth buffer.
 
-As a program, with RenderDoc's library loaded: `python captured_program.py PATH`, which is the capture's without its ending.
+As a program, with RenderDoc's library loaded: `python captured_program.py PATH`. The capture's name begins with PATH.
 """
 
 import ctypes

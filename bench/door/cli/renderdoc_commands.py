@@ -10,7 +10,7 @@ import typer
 from ...ground.output.writing import write_text
 from ...tables.table import Group
 
-SCRIPT = Path(__file__).parents[1] / "renderdoc" / "save_gbuffer.py"
+SCRIPT = Path(__file__).parents[1] / "in_renderdoc" / "save_gbuffer.py"
 
 
 def add_renderdoc(app: typer.Typer) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 import OpenImageIO as oiio  # noqa: N813 # as its own documentation has it
 import pytest
 
-from normalbench.bench.door.renderdoc import save_gbuffer as script
+from normalbench.bench.door.in_renderdoc import save_gbuffer as script
 
 TEXT = Path(script.__file__).read_text()
 

@@ -148,6 +148,11 @@ def write_exr(path, width, height, channels):
                 file.write(struct.pack(f"<{width}f", *channels[name][row * width : (row + 1) * width]))
 
 
+def write_text(path, text):
+    with path.open("w", encoding="utf-8", newline="\n") as file:
+        file.write(text + "\n")
+
+
 def file_name(name, at, taken):
     """A texture's name as that of a file."""
     plain = f"{re.sub(r'[^A-Za-z0-9]+', '_', name).strip('_').lower() or 'target'}.exr"
@@ -366,7 +371,7 @@ class Saving:
         found = constants(self.controller, self.rd)
         for name, rows in found.items():
             lines = [" ".join(f"{value:.9g}" for value in row) for row in rows]
-            (self.folder / file_of_matrix(name)).write_text("\n".join(lines) + "\n")
+            write_text(self.folder / file_of_matrix(name), "\n".join(lines))
             print(f"{file_of_matrix(name)}: {name}, by rows")
         return found
 
@@ -379,7 +384,7 @@ def save(controller, rd, folder, event=None):
     matrices = saving.matrices()
     lines = measuring(folder, targets, matrices, mask is not None, saving.is_opengl)
     kept = {"event": saving.action.eventId, "targets": targets, "matrices": matrices, "commands": lines}
-    (folder / "gbuffer.json").write_text(json.dumps(kept, indent=1) + "\n")
+    write_text(folder / "gbuffer.json", json.dumps(kept, indent=1))
     if not any(one["normals"] for one in targets.values()):
         print("No target holds unit normals. If one holds a code, write what your shader decodes into a float target.")
     print("\n".join(lines))

@@ -1,0 +1,1 @@
+"""What runs in RenderDoc's Python, and imports nothing of this package."""
