@@ -56,7 +56,7 @@ OTHERS = ("CONTRIBUTING.md", ".dockerignore", ".gitignore", ".pre-commit-hooks.y
 
 @pytest.mark.slow
 def test_a_source_archive_has_all_that_the_tests_need(tmp_path):
-    """Every file, and tests that read many of them pass in it."""
+    """Every file; tests that read the manual, the scripts and other tests pass in it."""
     pytest.importorskip("setuptools", minversion="77", reason="pyproject.toml asks for it")
     checkout = copied(tmp_path / "checkout", *FOR_TESTS, *OTHERS)
     before = files_in(checkout)
@@ -64,7 +64,7 @@ def test_a_source_archive_has_all_that_the_tests_need(tmp_path):
     shutil.unpack_archive(next(tmp_path.glob("*.tar.gz")), tmp_path / "unpacked")
     (unpacked,) = (tmp_path / "unpacked").iterdir()
     assert before <= files_in(unpacked), sorted(before - files_in(unpacked))
-    words = ("-q", "-p", "no:cacheprovider", "tests/test_house.py", "tests/test_nightly.py", "tests/test_container.py")
+    words = ("-q", "-p", "no:cacheprovider", "tests/test_nightly.py", "tests/test_container.py")
     done = subprocess.run([sys.executable, "-m", "pytest", *words], cwd=unpacked, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout
 
@@ -187,3 +187,14 @@ def test_the_page_has_the_sizes_that_the_set_up_says():
     for name, size in said[:5]:
         found = re.search(r"(\d+ MB) to download", size), re.search(r"(\d+ MB) on disk", size)
         assert tuple(one[1] if one else "" for one in found) == shown[name], name
+
+
+@pytest.mark.parametrize("target", ["say-bench", "say-test", "say-test ALL=1", "say-test ALL=nightly"])
+def test_make_says_first_what_it_does_and_how_long(target):
+    """Before anything is set up."""
+    done = subprocess.run(["make", "-s", *target.split()], cwd=ROOT, capture_output=True, text=True)
+    assert re.match(
+        r"make (bench|test): sets up what is missing, then .* about (five|\d+) minutes|.*an hour", done.stdout
+    )
+    goal = target.split()[0].removeprefix("say-")
+    assert re.search(rf"^{goal}: say-{goal} ", (ROOT / "Makefile").read_text(), re.M)
