@@ -36,8 +36,16 @@ def library(source: Path | None = None) -> Path:
     """The shared library of a source, Intel's by default, that stands for a GPU. Raises NullDeviceError."""
     folder, source = _library_folder(), source or SOURCE
     stem = f"{source.stem}-{kept.key_of(source.read_bytes(), SHARED.read_bytes(), platform.machine())[:16]}"
-    sound = (path for path in sorted(folder.glob(f"{stem}-*.so")) if path.name == _library_name(stem, path))
-    return next(sound, None) or _built_library(folder, stem, source)
+    return _kept_library(folder, stem) or _built_library(folder, stem, source)
+
+
+def _kept_library(folder: Path, stem: str) -> Path | None:
+    """What was built before; None where others own the folder, so that building there says what is wrong."""
+    try:
+        paths = sorted(folder.glob(f"{stem}-*.so"))
+    except OSError:
+        return None
+    return next((path for path in paths if path.name == _library_name(stem, path)), None)
 
 
 def _library_folder() -> Path:
