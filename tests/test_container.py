@@ -53,7 +53,7 @@ def container():
 @pytest.mark.usefixtures("gl")
 @pytest.mark.nightly("test_container.py::test_the_dockerfile_has_only_what_the_chroot_can_do")
 def test_the_container_ends_in_the_rows_of_this_machine(container):
-    """Measured by somebody who is not root. Another leaves a run with its page, although the caches are the first one's."""
+    """Measured by somebody who is not root. Another one leaves a run with its page, without the caches of the first."""
     assert "Usage" in container.run().stdout
     done = container.run(*WORDS)
     assert done.returncode == 0 and not done.stderr, done.stderr
