@@ -47,6 +47,6 @@ lint: .venv/tests
 
 # Said first, whatever is to be set up.
 say-bench:
-	@echo "make bench: sets up what is missing, then measures the default suite into results: about five minutes, 60 MB"
+	@echo "make bench: sets up what is missing, then measures the default suite into results: about five minutes, 100 MB"
 say-test:
 	@echo "make test: sets up what is missing, then runs the tests: $(if $(ALL),$(if $(filter nightly,$(ALL)),about an hour,about 25 minutes),about 8 minutes) on two cores"

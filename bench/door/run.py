@@ -16,7 +16,7 @@ from ..ground.choose import choose
 from ..ground.machine.memory import give_back_what_a_table_needed, have_few_heaps, keep_what_is_imported
 from ..ground.options.option import fields_of
 from ..ground.output.errors import MissingError, UsageError, leave_out, noting_what_is_left_out, tell, told
-from ..ground.output.progress import progress_of_all
+from ..ground.output.progress import progress_of_all, spoken
 from ..ground.output.writing import say
 from ..keep.commit import commit_of
 from ..keep.runs import Row, Run, facts_of, opened, read_run, unfinished
@@ -127,7 +127,7 @@ def run_command(request: Any, output: Path | None, on: str | None = None, commit
     """
     have_few_heaps()
     # It imports what it needs while this process does, and finds out what there is to measure.
-    with _second(request, on) as second:
+    with spoken(), _second(request, on) as second:
         from ..ground.machine.devices import require_jax
 
         require_jax()

@@ -13,7 +13,7 @@ from typing import Any
 
 from .errors import tell
 
-EVERY = 10  # seconds between two lines where there is no bar
+EVERY = 8  # seconds between two lines where there is no bar
 # What a signal raised to end the program. It may be raised where a library swallows it, as in a callback of the garbage
 # collector; then the next step raises it again.
 ending: list[BaseException] = []
@@ -49,12 +49,9 @@ class Bar:
         self._done, self._under_way = self._done + steps, under_way
         self._bar.update(self._task, advance=steps, description=under_way)
 
-    def speak_until(self, ended: Event) -> None:
-        """Says every ten seconds how far it is."""
-        waited = 0
-        while not ended.wait(EVERY):
-            waited += EVERY
-            tell(f"{waited} s, {self._done} of {self._steps} steps, {self._under_way}")
+    def says(self) -> str:
+        """How far it is."""
+        return f"{self._done} of {self._steps} steps, {self._under_way}"
 
 
 # The bar of a whole run, while there is one.
@@ -72,11 +69,18 @@ def _shown(steps: int, tables: int = 0) -> Iterator[Bar]:
         yield Bar(bar, steps, tables)
 
 
+def _speak_until(ended: Event) -> None:
+    waited = 0
+    while not ended.wait(EVERY):
+        waited += EVERY
+        tell(f"{waited} s, {_whole[-1].says() if _whole else 'no step is under way'}")
+
+
 @contextmanager
-def _spoken(bar: Bar) -> Iterator[None]:
-    """Lines on standard error where that is no terminal, such as a log of CI."""
+def spoken() -> Iterator[None]:
+    """Says how far a run is, at least every ten seconds, where standard error is no terminal, such as a log of CI."""
     ended = Event()
-    speaker = Thread(target=bar.speak_until, args=(ended,), daemon=True)
+    speaker = Thread(target=_speak_until, args=(ended,), daemon=True)
     if not sys.stderr.isatty():
         speaker.start()
     try:
@@ -87,8 +91,8 @@ def _spoken(bar: Bar) -> Iterator[None]:
 
 @contextmanager
 def progress_of_all(steps: int, tables: int) -> Iterator[None]:
-    """One bar for all tables of a run, which the bars of single tables become part of; lines where it is not shown."""
-    with _shown(steps, tables) as bar, _spoken(bar):
+    """One bar for all tables of a run, which the bars of single tables become part of."""
+    with _shown(steps, tables) as bar:
         _whole.append(bar)
         try:
             yield

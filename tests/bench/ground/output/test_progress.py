@@ -6,7 +6,7 @@ import time
 import pytest
 
 from normalbench.bench.ground.output import progress as module
-from normalbench.bench.ground.output.progress import progress, progress_of_all
+from normalbench.bench.ground.output.progress import progress, progress_of_all, spoken
 
 
 @pytest.fixture
@@ -60,7 +60,7 @@ def test_a_table_alone_has_a_bar_of_its_own(bars):
 
 def test_a_run_without_a_terminal_says_how_far_it_is(capsys, monkeypatch):
     monkeypatch.setattr(module, "EVERY", 0.05)
-    with progress_of_all(3, 1), progress(3, "quality") as tick:
+    with spoken(), progress_of_all(3, 1), progress(3, "quality") as tick:
         tick("octahedral/rg8")
         time.sleep(0.5)
     time.sleep(0.1)
@@ -74,6 +74,6 @@ def test_a_run_without_a_terminal_says_how_far_it_is(capsys, monkeypatch):
 def test_a_run_with_a_terminal_shows_its_bar_alone(capsys, monkeypatch):
     monkeypatch.setattr(module, "EVERY", 0.05)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    with progress_of_all(3, 1):
+    with spoken(), progress_of_all(3, 1):
         time.sleep(0.3)
     assert " steps, " not in capsys.readouterr().err
