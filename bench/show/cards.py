@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from ...encodings.catalogue import ENCODINGS
-from ...encodings.codecs.codec import Codec
+from ...encodings.codecs.codec import Codec, fewer_bits
 from ...encodings.codecs.encoding import Encoding
 from ...encodings.storages.rules import rule_of_first, storage_of
 from ...gbuffer.layouts.presets import LAYOUTS
@@ -56,12 +56,14 @@ def _takes(table: str, option: str) -> bool:
 
 
 def _codec_record(key: CodecKey) -> dict[str, Any]:
-    """The storage of a codec in words, its bits, what numbers it stores and which normals it holds; empty where that is
-    not known."""
+    """The storage of a codec in words, its bits, what its codes are worth where that is less, what numbers it stores
+    and which normals it holds; empty where that is not known."""
     if not (codec := codec_of(key)):
         return {}
     numbers = f"{rule_of_first(codec.storage, codec.encoding.components)} {codec.rounding}"
-    about = {"storage": codec.storage.title, "bits": codec.bits, "numbers": numbers}
+    about: dict[str, Any] = {"storage": codec.storage.title, "bits": codec.bits, "numbers": numbers}
+    codes = fewer_bits(codec.bits, codec.code_bits)
+    about |= {"codes": codes} if codes else {}
     return about | {"domain": codec.encoding.domain}
 
 

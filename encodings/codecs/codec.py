@@ -36,6 +36,11 @@ def numbers_misfit(storage: Storage, levels: Sequence[int]) -> str | None:
     return None
 
 
+def fewer_bits(bits: int | None, code_bits: float | None) -> int | None:
+    """What a codec's codes are worth in whole bits; None where that is all that they occupy."""
+    return round(code_bits) if bits and code_bits and round(code_bits) < bits else None
+
+
 def codec_name(encoding: str, storage: str, rounding: str) -> str:
     """What a codec is called; rounding to the nearest is not said."""
     return f"{encoding}/{storage}" + ("" if rounding == "nearest" else f"/{rounding}")
@@ -179,6 +184,12 @@ class Codec:
             return 2**self.encoding.packed_bits
         size = self.encoding.components + self.encoding.sign_bits
         return math.prod(self.encoding.levels_of(i) or self.storage.count(i) for i in range(size))
+
+    @property
+    def code_bits(self) -> float | None:
+        """The logarithm to base 2 of how many codes it has, where no storage gives it more."""
+        is_fixed = all(map(self.encoding.levels_of, range(self.encoding.components)))
+        return math.log2(self.codes) if is_fixed else None
 
     def numbers(self, component: int) -> np.ndarray:
         """Every number in [-1, 1] that a component comes back as from the storage, ascending; float64."""

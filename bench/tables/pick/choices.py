@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from ....encodings.codecs.codec import fewer_bits
 from ....reports.page.codec_key import CodecKey
 from ....reports.page.verdict import MADE_FOR
 from ...ground.options.gpu_families import FAMILIES
@@ -102,6 +103,7 @@ def _code(row: Row) -> dict[str, Any]:
         "once": row["slots_once"],
         "priced": row["slots"] is not None,
         "bits": row["bits"],
+        "codes": fewer_bits(row["bits"], row["code_bits"]),
         "free": row["free_bits"],
         "table": bool(row["table"]),
         "image": answer.image_db(row),

@@ -309,7 +309,7 @@ def _case_columns(case: Case) -> Row:
             "table": encoding.has_tables,
         }
         | {"seed": case.normal_set.seed, "lost_percent": _lost_percent(case.normal_set, encoding.domain)}
-        | {"code_bits": math.log2(codec.codes) if all(map(encoding.levels_of, range(encoding.components))) else None}
+        | {"code_bits": codec.code_bits}
     )
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from ....encodings.catalogue import ENCODINGS
+from ....encodings.codecs.codec import fewer_bits
 from ....reports.page.verdict import MADE_FOR
 from ...ground.machine.systems.people import command_line
 from .answer import (
@@ -242,7 +243,9 @@ def _bits_sentence(row: Row) -> str:
 
 def _bits_text(row: Row) -> str:
     has_sign = row["encoding"] in ENCODINGS and ENCODINGS[row["encoding"]].sign_bits
-    return f"{row['bits']} bits" + (", one of them in the sign of the depth" if has_sign else "")
+    codes = fewer_bits(row["bits"], row.get("code_bits"))
+    sign = ", one of them in the sign of the depth" if has_sign else ""
+    return f"{row['bits']} bits{sign}" + (f", for codes of {codes}" if codes else "")
 
 
 def _images_text(row: Row) -> str:

@@ -113,8 +113,8 @@ class Cards {
     });
     const cell = (value, text, of) => element("td", { class: "n", ...(value === undefined || value === null ? {} : { "data-v": String(value) }) }, of ? `${text}\n${of}` : text);
     const line = (name) => {
-      const { mean, largest, slots, of, domain } = this.codecs[name], bits = this.bits(name), aside = [of === this.usual ? "" : of, { hemisphere: "z >= 0 alone", view: "facing alone" }[domain]].filter(Boolean).join(", ");
-      const figures = [cell(bits, String(bits ?? "")), cell(mean, mean === undefined ? "" : degrees(mean), mean === undefined ? "" : aside), cell(largest, largest === undefined ? "" : degrees(largest)), cell(slots, String(slots ?? ""))];
+      const { mean, largest, slots, of, domain, codes } = this.codecs[name], bits = this.bits(name), aside = [of === this.usual ? "" : of, { hemisphere: "z >= 0 alone", view: "facing alone" }[domain]].filter(Boolean).join(", ");
+      const figures = [cell(bits, bitsText({ bits }), codes ? `codes of ${codes}` : ""), cell(mean, mean === undefined ? "" : degrees(mean), mean === undefined ? "" : aside), cell(largest, largest === undefined ? "" : degrees(largest)), cell(slots, String(slots ?? ""))];
       return element("tr", { "data-codec": name }, element("th", { scope: "row" }, nameButton(name, name)), element("td", { class: "take" }, ...sideButtons(name)), ...figures);
     };
     const counts = new Map();
@@ -156,7 +156,7 @@ class Cards {
 
   // What it is: formulas, source, storage, and who uses it.
   head(name, side) {
-    const [encoding, ...rest] = name.split(" "), about = this.encodings[encoding], { storage, bits, numbers } = this.codecs[name];
+    const [encoding, ...rest] = name.split(" "), about = this.encodings[encoding], { storage, numbers } = this.codecs[name];
     const facts = [], fact = (title, ...said) => said.some(Boolean) && facts.push(element("dt", {}, title), element("dd", {}, ...said.filter(Boolean)));
     const formula = ([says, ...lines]) => [says, ...lines.flatMap((line) => [element("br", {}), element("code", {}, line)])];
     if (about) {
@@ -168,7 +168,7 @@ class Cards {
       fact("used by", usersOf(about.used, rest[0]));
     } else fact("what", `An encoding of your own, ${encoding}: its formulas are in its file.`);
     const more = about?.sign ? " The sign takes one bit elsewhere." : "", table = about?.tables ? " It comes with look-up tables." : "";
-    fact("stored in", storage ? `${storage}: ${about.components} numbers, ${bits} bits.${more}${table}` : rest.join(" "));
+    fact("stored in", storage ? `${storage}: ${about.components} numbers, ${bitsText(this.codecs[name], " bits")}.${more}${table}` : rest.join(" "));
     const same = numbers ? Object.keys(this.codecs).filter((other) => other !== name && other.split(" ")[0] === encoding && this.codecs[other].numbers === numbers) : [];
     if (same.length) fact("the same numbers", ...same.flatMap((other) => [nameButton(other, other), " "]), "stores the same numbers of as many bits: what is lost is the same.");
     return element("div", {}, element("h3", { id: "card-h" }, element("b", { class: `side-${side}` }, `${side.toUpperCase()} `), name), element("dl", { class: "facts" }, ...facts));
@@ -317,7 +317,7 @@ class Cards {
     const encoding = name.split(" ")[0], others = Object.keys(this.codecs).filter((other) => other.split(" ")[0] === encoding);
     if (others.length < 2) return null;
     const line = (other) => {
-      const { storage, mean, largest, slots } = this.codecs[other], figures = [this.bits(other) ?? "", mean === undefined ? "" : degrees(mean), largest === undefined ? "" : degrees(largest), slots ?? ""];
+      const { storage, mean, largest, slots } = this.codecs[other], figures = [bitsText(this.codecs[other]), mean === undefined ? "" : degrees(mean), largest === undefined ? "" : degrees(largest), slots ?? ""];
       return element("tr", { "data-codec": other }, element("th", { scope: "row" }, nameButton(other, other)), element("td", { class: "take" }, ...sideButtons(other)), element("td", {}, storage ?? ""), ...figures.map((text) => element("td", { class: "n" }, String(text))));
     };
     const heads = ["codec", "A or B", "storage", "bits", "mean", "largest", "slots"].map((title, at) => element("th", { scope: "col", ...(at > 2 ? { class: "n" } : {}) }, title));

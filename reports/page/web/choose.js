@@ -89,13 +89,15 @@ function askedOf(question, state) {
   return asked;
 }
 
+// What a code occupies; of one that has fewer codes than that, also what these are worth.
+const bitsText = ({ bits, codes }, unit = "") => (bits ? `${bits}${unit}${codes ? `, for codes of ${codes}` : ""}` : "");
 const degrees = (value) => (value === null ? "" : `${Number(value.toPrecision(3))}°`);
 const COMPARED = [
   ["mean error", (code) => degrees(code.mean), (code) => code.mean, "less"],
   ["largest error", (code) => degrees(code.largest), (code) => code.largest, "less"],
   ["slots to encode + decode", (code) => (code.priced ? `${code.encode} + ${code.decode}` : ""), (code) => code.once, "less"],
   ["worst image", (code) => (code.image === null ? "" : `${code.image.toFixed(1)} dB`), (code) => code.image, "more"],
-  ["bits", (code) => String(code.bits ?? ""), (code) => code.bits, "less"],
+  ["bits", (code) => bitsText(code), (code) => code.bits, "less"],
   ["bits free", (code) => String(code.free ?? ""), (code) => code.free, "more"],
 ];
 
@@ -212,7 +214,7 @@ class Choose {
     const isEnough = (code) => code.largest !== null && 2 * code.largest <= asked.enough, limit = degrees(asked.enough);
     const moved = isEnough(best) ? [`A reflection moves by at most ${degrees(2 * best.largest)}, which is enough. Of codes that are enough and cost little, that of the fewest bits is taken.`] : fit.some(isEnough) || !asked.enough ? [] : [`No code that is left moves a reflection by ${limit} or less.`];
     const image = best.image === null ? [] : [`Of its images, without mixing, the worst has ${best.image.toFixed(1)} dB.`];
-    const slots = best.priced ? `It takes ${best.encode} issue slots to encode and ${best.decode} to decode, and has ${best.bits} bits.` : "What it costs is not known on this machine.";
+    const slots = best.priced ? `It takes ${best.encode} issue slots to encode and ${best.decode} to decode, and has ${bitsText(best, " bits")}.` : "What it costs is not known on this machine.";
     const rung = (code) => {
       const better = gain(code), ratio = price(code) / price(best);
       return `${better < 0 ? "Less exact" : code === exact ? "Most exact to 0.1 dB" : "More exact"}: ${code.name}, ${Math.abs(better).toFixed(1)} dB, ${isSame(code, best) ? "for the same price" : `for ${Number(ratio.toPrecision(2))} times the price`}.`;

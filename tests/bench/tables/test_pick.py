@@ -40,6 +40,21 @@ def test_a_run_asks_for_half_of_the_sphere_too_unless_normals_are_named():
     assert [one.domain for one in options_of(TABLES["pick"], {"normals": "axes"})] == [None, None]
 
 
+def test_codes_of_a_fixed_size_are_not_taken_for_the_bits_that_they_occupy():
+    """An index of 65536 directions stays one where it lies in 20 bits."""
+    codec = codecs_named("spherical_fibonacci", "rgb10a2", "nearest")[0]
+    assert codec.code_bits == 16 and codec.bits == 20
+    assert codecs_named("octahedral", "rgb10a2", "nearest")[0].code_bits is None
+    about = {"asked": "rgb10a2", "storage": "rgb10a2", "normals": "sphere", "scene": "studio", "aim": "angle"}
+    about |= {"encoding": codec.encoding.name, "domain": "sphere", "family": "navi21", "readers": 4, "worth": 3.0}
+    about |= {"angle_mean_deg": 0.3, "angle_max_deg": 0.6, "worst_normal": "(0.0, 0.0, 1.0)", "invalid": 0}
+    about |= {"encode_slots": 20, "decode_slots": 20, "slots_once": 40, "slots": 100, "enough": 0.3, "look_ups": True}
+    about |= {"bits": codec.bits, "free_bits": 12, "bytes": 4}
+    for code_bits, said in ((codec.code_bits, "20 bits, for codes of 16; 12 stay"), (None, "20 bits; 12 stay")):
+        (group,) = groups(answered([TABLES["pick"].empty() | about | {"code_bits": code_bits}])).values()
+        assert said in " ".join(sentences(group))
+
+
 def test_angles_of_an_answer_are_shares_of_normals_below_each():
     """Between the largest and the smallest share that a code has; a code without a histogram has no line."""
     about = {"asked": "rg8", "storage": "rg8", "normals": "sphere", "scene": "studio", "bits": 16, "aim": "angle"}
