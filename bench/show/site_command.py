@@ -14,11 +14,12 @@ from ...reports.page.site import Site, ViewPage, view_html
 from ...reports.sheets import View
 from ..ground.output.errors import UsageError, tell
 from ..ground.output.writing import say
-from ..keep.runs import RUN, read_to_show
+from ..keep.runs import RUN, Done, read_to_show
 from ..tables.devices.agreement import many
 from ..tables.devices.device_file import Read, read_device_file
-from ..tables.devices.reading import SAVED, Device, checked_number, devices
+from ..tables.devices.reading import SAVED, Device, checked_number, devices, reads_of_rows
 from ..tables.devices.site.pages import FOLDER, INDEX, pages
+from ..tables.devices.table import TABLE
 from .report import drawn_page, gathered, library_of
 from .site_files import write_site
 
@@ -32,7 +33,8 @@ DESCRIPTION = (
 
 
 def site_command(folders: Sequence[Path], output: Path) -> int:
-    """Write the site of a run, of the device files in folders and their folders, or of both.
+    """Write the site of a run and the devices that were imported into it, of the device files in folders and their
+    folders, or of both.
 
     Returns:
         the exit status: 1 where a file was left out because something is wrong with it.
@@ -43,8 +45,9 @@ def site_command(folders: Sequence[Path], output: Path) -> int:
     runs, others = [one for one in folders if _is_run(one)], [one for one in folders if not _is_run(one)]
     if len(runs) > 1:
         raise UsageError(f"{runs[0]} and {runs[1]} are both runs; a site is of one")
-    found, wrong = _devices_in(others)
-    made = _pages_of_run(runs[0], found) if runs else pages(found)
+    run = read_to_show(runs[0]) if runs else None
+    found, wrong = _devices_in(others, reads_of_rows(run.tables.get(TABLE.name, []), runs[0]) if run else [])
+    made = _pages_of_run(runs[0], run, found) if run else pages(found)
     write_site(output, made)
     say(f"{output / INDEX}: {_counted(made, found, bool(runs))}\n")
     return int(wrong > 0)
@@ -59,12 +62,13 @@ def _counted(made: dict[str, str], found: Sequence[Device], is_run: bool) -> str
     return f"{many(len(made), 'page')}, {devices_there}" if is_run else devices_there
 
 
-def _devices_in(folders: Sequence[Path]) -> tuple[list[Device], int]:
-    """The devices of folders, and how many files are not theirs. Raises UsageError where folders have none."""
+def _devices_in(folders: Sequence[Path], imported: Sequence[Read]) -> tuple[list[Device], int]:
+    """The devices of folders and those imported, and how many files are not theirs. Raises UsageError where folders
+    have none."""
     read, wrong = _device_files(checked_number([path for folder in folders for path in _files_in(folder)]))
     if folders and not read:
         raise UsageError(f"{folders[0]}: there is no device file in it; {SAVED}")
-    return devices(read), wrong
+    return devices([*imported, *read]), wrong
 
 
 def _files_in(folder: Path) -> list[Path]:
@@ -88,9 +92,9 @@ def _device_files(paths: list[Path]) -> tuple[list[Read], int]:
     return found, wrong
 
 
-def _pages_of_run(folder: Path, found: Sequence[Device]) -> dict[str, str]:
+def _pages_of_run(folder: Path, done: Done, found: Sequence[Device]) -> dict[str, str]:
     """A run's page, which begins with the laboratory, and the pages that need no scripts."""
-    run, gallery, specs = drawn_page(gathered(folder, read_to_show(folder)))
+    run, gallery, specs = drawn_page(gathered(folder, done))
     names = page.codecs(run, specs)
     views, devices_there = _views(run), f"{FOLDER}/{INDEX}"
     titles = {one.path: one.title for one in views} | ({CODECS: ENCODINGS} if names else {}) | {devices_there: DEVICES}

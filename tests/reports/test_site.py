@@ -1,5 +1,6 @@
 """The website of a run: what is in it, that its links lead somewhere, and that it is read without scripts."""
 
+import shutil
 from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote
@@ -50,6 +51,22 @@ def test_the_pages_are_those_of_the_run(pages):
     device = "devices/swiftshader-chromium-156.html"
     top = {"index.html", "choose.html", "layouts.html", "codecs/index.html", "devices/index.html", device}
     assert set(pages) == top | {f"codecs/{name}.html" for name in ENCODINGS}
+
+
+def test_imported_devices_have_the_pages_that_their_files_have(run, run_folder, tmp_path):
+    """But for the browser, which a run knows by its short name."""
+    shutil.copytree(run_folder, tmp_path / "run")
+    file = made.write(tmp_path / "files" / "a.json")
+    assert run("import", str(file), "-o", str(tmp_path / "run"))[0] == 0
+    assert run("site", str(tmp_path / "run"), "-o", str(tmp_path / "site"))[0] == 0
+    assert run("site", str(tmp_path / "files"), "-o", str(tmp_path / "alone"))[0] == 0
+    texts = [
+        " ".join(Read((tmp_path / path).read_text(encoding="utf-8")).text.partition("agrees with the run")[2].split())
+        for path in (f"{one}/devices/swiftshader-chromium-156.html" for one in ("site", "alone"))
+    ]
+    assert texts[0] and texts[0] == texts[1].replace(made.CHROMIUM, "Chromium 156")
+    status, out, err = run("site", str(tmp_path / "run"), str(tmp_path / "files"), "-o", str(tmp_path / "both"))
+    assert status == 0 and "1 device\n" in out and "is of the same device and browser, and not older" in err
 
 
 def test_every_link_leads_to_a_page_and_a_place_in_it(site, pages):

@@ -8,6 +8,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from functools import cached_property
@@ -42,6 +43,8 @@ BOM = b"\xef\xbb\xbf"
 AHEAD = timedelta(days=2)
 # What is shown of a value that is wrong.
 SHOWN = 40
+# What rows say of their device's file.
+ABOUT = ("renderer", "vendor", "browser", "made", "program", "sources")
 
 
 def _plain_line(text: str) -> str:
@@ -188,6 +191,17 @@ def read_device_file(path: Path) -> Read:
         return Read(path, _checked_file(_parsed(file_bytes(path, MOST_BYTES))))
     except (OSError, ValueError) as error:
         raise UsageError(f"{path}: {error}") from None
+
+
+def file_of_rows(codecs: Sequence[Mapping[str, Any]], facts: Mapping[str, Any]) -> DeviceFile:
+    """The file that rows of a device came from, but that its browser has the short name alone.
+
+    Raises:
+        ValueError: no device file has such rows.
+    """
+    about = {name: codecs[0].get(name) or "" for name in ABOUT} if codecs else {}
+    rows = [{**row, "equal": row["normals"] - row["one_step"] - row["further"]} for row in codecs]
+    return _checked_file({"normalbench_device": FORMAT, **about, "codecs": rows, "facts": dict(facts)})
 
 
 def _parsed(data: bytes) -> Any:

@@ -10,7 +10,7 @@ from typing import Any
 from ...ground.choose import file_names, names_a_folder
 from ...ground.output.errors import UsageError, tell
 from ..table import Row, Step
-from .device_file import CodecRow, DeviceFile, Read, read_device_file
+from .device_file import CodecRow, DeviceFile, Read, file_of_rows, read_device_file
 from .names import browser_name, told_apart
 from .table import CODEC, FACT
 
@@ -87,6 +87,26 @@ def devices(found: Iterable[Read]) -> list[Device]:
             newest[read.file.identity] = kept
             tell(f"left out: {dropped.path}: {kept.path} is of the same device and browser, and not older")
     return named([read.file for read in newest.values()])
+
+
+def reads_of_rows(rows: Iterable[Row], path: Path) -> list[Read]:
+    """The devices of a run's rows; one whose rows no device file has is named on standard error."""
+    found: dict[tuple[Any, ...], list[Row]] = {}
+    for row in rows:
+        found.setdefault((row.get("device"), row.get("renderer"), row.get("browser")), []).append(row)
+    made = []
+    for (device, _, browser), part in found.items():
+        try:
+            made.append(Read(path, _file_of(part)))
+        except (KeyError, TypeError, ValueError) as error:
+            tell(f"left out: {called(device, browser)} of {path}: {error}")
+    return made
+
+
+def _file_of(rows: Sequence[Row]) -> DeviceFile:
+    facts = [row for row in rows if row.get("row_of") == FACT]
+    values = {row["name"]: row["value"] if row["number"] is None else row["number"] for row in facts}
+    return file_of_rows([row for row in rows if row.get("row_of") != FACT], values)
 
 
 def named(files: Sequence[DeviceFile]) -> list[Device]:
