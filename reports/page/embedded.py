@@ -20,7 +20,7 @@ from ..charts.pictures import GAIN, POWER
 from .pixels import LEAST_LOG2, NOT_A_NUMBER, STEPS_PER_OCTAVE, ImagePixels, NormalPixels, Pictured, Subject
 
 # What all pictures inside a page may take, in bytes of text; and inside one of a whole run, which has much besides.
-BUDGET, BUDGET_OF_A_RUN = 1_750_000, 350_000
+BUDGET, BUDGET_OF_A_RUN = 1_750_000, 330_000
 # Inside a page a picture is at most this wide or high: larger ones are shown as every second pixel, or every third.
 INSIDE = 400
 # Pixels that WebP has room for on a side.
