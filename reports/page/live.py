@@ -18,7 +18,19 @@ from .embedded import small_uri
 FOLDER = Path(__file__).parent / "web" / "live"
 # In the order in which the page runs them, as one script.
 MEASURING = ("checks.js", "probe.js", "measure.js", "timing.js", "measuring.js", "keep.js")
-SEEING = ("scenes.js", "see.js", "orbit.js", "inspect.js", "trips.js", "own.js", "share.js", "files.js", "dropped.js")
+SEEING = (
+    "scenes.js",
+    "drawn.js",
+    "orbit.js",
+    "see.js",
+    "inspect.js",
+    "trips.js",
+    "own.js",
+    "share.js",
+    "files.js",
+    "dropped.js",
+    "chosen.js",
+)
 SCRIPTS = ("view.js", "gl.js", *SEEING, *MEASURING, "live.js")
 # The encoder that a reader begins with.
 EXAMPLE = "first.glsl"

@@ -54,7 +54,7 @@ def test_a_browser_without_webgl2_says_so(gl_browser, report):
 
 @pytest.mark.slow
 def test_every_slider_changes_the_picture_and_its_number_by_keyboard(laboratory):
-    laboratory.choose(subject="spheres", shown="lit")
+    laboratory.choose(subject="studio", shown="lit")
     for name in SLIDERS:
         # Bits are lost where light hardly shows it.
         laboratory.choose(shown="error" if name == "bits" else "lit")
@@ -66,7 +66,7 @@ def test_every_slider_changes_the_picture_and_its_number_by_keyboard(laboratory)
 
 @pytest.mark.slow
 def test_each_view_shows_what_its_name_says(laboratory):
-    laboratory.choose(subject="spheres", left="exact normals", right="xy rgba8", shown="error")
+    laboratory.choose(subject="studio", left="exact normals", right="xy rgba8", shown="error")
     picture = laboratory.picture()
     middle = picture.shape[1] // 2
     assert len(np.unique(picture[:, : middle - 2].reshape(-1, 3), axis=0)) == 1, "exact normals have no error"
@@ -88,7 +88,7 @@ def test_each_view_shows_what_its_name_says(laboratory):
 
 @pytest.mark.slow
 def test_the_divider_is_dragged_by_its_line_and_moved_by_keyboard(laboratory):
-    laboratory.choose(subject="spheres", left="exact normals", right="xy rgba8", shown="error")
+    laboratory.choose(subject="studio", left="exact normals", right="xy rgba8", shown="error")
     laboratory.page.locator("[data-live=canvas]").scroll_into_view_if_needed()
     box = laboratory.page.locator("[data-live=canvas]").bounding_box()
     laboratory.page.mouse.move(box["x"] + box["width"] / 2 + 4, box["y"] + 20)
@@ -102,7 +102,8 @@ def test_the_divider_is_dragged_by_its_line_and_moved_by_keyboard(laboratory):
     nothing = picture[0, 0]
     assert (picture[:, : at - 2] == nothing).all() and (picture[:, at + 2 :] != nothing).any(axis=2).mean() > 0.8
     laboratory.press("[data-see=divider]", "End")
-    assert (laboratory.picture() == nothing).all()
+    picture = laboratory.picture()
+    assert ((picture == nothing) | (picture == 0)).all(), "black where no surface is"
 
 
 @pytest.mark.slow

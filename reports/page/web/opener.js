@@ -1,19 +1,37 @@
 "use strict";
 
-// The laboratory is unpacked and run when its view is shown.
-const laboratory = document.querySelector("#live");
-if (laboratory && !window.WebGL2RenderingContext) laboratory.querySelector("[data-live=said]").textContent = "This browser has no WebGL2, which the laboratory needs.";
-if (laboratory && window.WebGL2RenderingContext) {
-  let opening = null;
-  const open = async () => {
-    const [script, data] = await Promise.all([unpacked("#live-script"), unpacked("#live-data")]);
-    document.head.append(element("script", {}, script));
-    await openLaboratory(laboratory, JSON.parse(data));
-  };
-  shows.push(({ view }) => {
-    if (view !== laboratory.closest(".view").dataset.view) return;
-    opening ||= open().catch((error) => (laboratory.querySelector("[data-live=said]").textContent = `The laboratory cannot be opened: ${error.message}.`));
+const IDLE_MS = 2000;
+
+// What draws on the reader's GPU is unpacked when it is needed: the laboratory when its view is shown, and the pictures of A and B
+// when they are touched, or seen while the page is idle.
+const laboratory = document.querySelector("#live"), pair = viewer?.pair, hasGpu = Boolean(window.WebGL2RenderingContext);
+const once = (work) => {
+  let done = null;
+  return () => (done ??= work());
+};
+const readLive = once(async () => {
+  const [script, data] = await Promise.all([unpacked("#live-script"), unpacked("#live-data")]);
+  document.head.append(element("script", {}, script));
+  takeLive(JSON.parse(data));
+});
+if (laboratory) {
+  const say = (text) => (laboratory.querySelector("[data-live=said]").textContent = text);
+  const open = once(() => readLive().then(() => openLaboratory(laboratory)).catch((error) => say(`The laboratory cannot be opened: ${error.message}.`)));
+  if (!hasGpu) say("This browser has no WebGL2, which the laboratory needs.");
+  else shows.push(({ view }) => view === laboratory.closest(".view").dataset.view && open());
+}
+if (laboratory && pair) {
+  const enliven = once(() => readLive().then(() => pair.enliven()).catch((error) => pair.say(`These pictures are stills: ${error.message}.`)));
+  const whenIdle = window.requestIdleCallback ?? ((work) => setTimeout(work, IDLE_MS));
+  let waiting = 0;
+  const seen = new IntersectionObserver((entries) => {
+    clearTimeout(waiting);
+    if (entries.at(-1).isIntersecting) waiting = setTimeout(() => whenIdle(enliven), IDLE_MS);
   });
+  if (hasGpu) {
+    seen.observe(pair.place);
+    for (const touch of ["pointerdown", "focusin"]) pair.place.addEventListener(touch, enliven);
+  } else pair.say("These pictures are stills: this browser has no WebGL2.");
 }
 
 // Everything that follows the state is there.

@@ -575,13 +575,13 @@ class Viewer {
 // A beside B as the answer's scene shows them: the image, and how far it is off, of both at one gain.
 class Pair {
   constructor(place) {
-    Object.assign(this, { place, turn: 0, read: new Map() });
+    Object.assign(this, { place, scene: place.dataset.proof, turn: 0, read: new Map(), stills: [], said: "" });
     shows.push((state, before) => CODECS.some((side) => state[side] !== before[side]) && this.show(state));
     this.show(state);
   }
 
   async show(state) {
-    const turn = ++this.turn, of = ({ title }) => title.split(" at power ")[0] === `the answer on ${this.place.dataset.proof}`;
+    const turn = ++this.turn, of = ({ title }) => title.split(" at power ")[0] === `the answer on ${this.scene}`;
     const has = (subject, name) => name && subject.codecs.find(({ codec }) => codec === name);
     const subject = viewer.data.subjects.find((one) => of(one) && CODECS.some((side) => has(one, state[side])));
     const sides = subject ? CODECS.filter((side) => has(subject, state[side])) : [];
@@ -591,11 +591,26 @@ class Pair {
     const views = [["final", () => "image"], ["apart", (one) => one.offBy().said]];
     const buttons = views.flatMap(([view, said]) => planes.map((one, at) => this.button(subject, sides[at], one, view, most, said(one))));
     const missing = CODECS.filter((side) => state[side] && !sides.includes(side)).map((side) => `${side.toUpperCase()}, ${state[side]}`);
-    const scene = subject ? subject.title.replace("the answer on ", "") : this.place.dataset.proof;
+    const scene = subject ? subject.title.replace("the answer on ", "") : this.scene;
     const note = missing.length ? `No picture on ${scene} is in this page of ${missing.join(" and of ")}.` : `On ${scene}; full colour at ${most} of 255.`;
-    this.place.replaceChildren(...buttons, element("p", { class: "note" }, note));
+    this.note = element("p", { class: "note" }, `${note} `, element("span", { role: "status" }, this.said));
+    this.place.replaceChildren(...buttons, this.note);
+    this.stills = planes.map((one, at) => ({ name: state[sides[at]], canvas: buttons[at].querySelector("canvas") }));
     this.place.dataset.sides = sides.length;
     this.place.hidden = false;
+    this.live?.take();
+  }
+
+  say(text) {
+    this.said = text;
+    if (this.note) this.note.lastChild.textContent = text;
+  }
+
+  // The images are drawn by the reader's GPU, where the laboratory has their scene.
+  enliven() {
+    if (!(this.scene in SCENES)) return this.say("These pictures are stills: the laboratory does not have their scene.");
+    this.live = new Chosen(this);
+    this.say("Live: drag an image to turn it, press it for the wheel to come nearer. No shadows and few lights; the differences are the run's.");
   }
 
   async planes(subject, codec) {
@@ -619,7 +634,7 @@ const viewerRoot = document.querySelector("#viewer");
 if (viewerRoot) {
   viewer = new Viewer(viewerRoot, JSON.parse(document.querySelector("#picture-data").textContent));
   const place = document.querySelector("[data-proof]");
-  if (place) new Pair(place);
+  if (place) viewer.pair = new Pair(place);
   const start = new IntersectionObserver((entries) => {
     if (!entries.some((entry) => entry.isIntersecting)) return;
     start.disconnect();

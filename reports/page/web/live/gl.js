@@ -168,7 +168,8 @@ class LiveDevice {
     this.nearest();
     gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
     gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
-    const works = gl.checkFramebufferStatus(gl.FRAMEBUFFER) === gl.FRAMEBUFFER_COMPLETE;
+    // To ask waits for all that is being drawn.
+    const works = this.renderable.get(format) ?? gl.checkFramebufferStatus(gl.FRAMEBUFFER) === gl.FRAMEBUFFER_COMPLETE;
     this.renderable.set(format, works);
     const made = { texture, framebuffer, format, name, width, height };
     if (works) return made;

@@ -1,11 +1,15 @@
 "use strict";
 
-// The laboratory, once it is opened: its parts, one context for all of them, and what is said when that is lost.
-async function openLaboratory(root, data) {
-  live.root = root;
+// What is done once the laboratory's data is there. `openLaboratory` makes its parts, one context for all of them, and says when
+// that is lost.
+function takeLive(data) {
   live.data = data;
   for (const [at, codec] of data.codecs.entries()) codec.checks = data.sums[at];
   for (const codec of [...data.codecs, ...data.storages]) live.byLabel.set(codec.label, codec);
+}
+
+async function openLaboratory(root) {
+  live.root = root;
   const said = root.querySelector("[data-live=said]");
   try {
     live.device = new LiveDevice(root.querySelector("[data-live=canvas]"));

@@ -6,34 +6,36 @@ const NEARER = { "+": -1, "=": -1, "-": 1, _: 1 };
 // Degrees for a pixel and for a key; how much nearer a step comes, and a pixel of a wheel.
 const TURNED = 0.35, KEY_TURNED = 3, STEPPED = 1.1, WHEELED = 1.0015, LINE_PIXELS = 16;
 
+// It turns what has `turn`, in degrees around and above, and `nearer`, a factor.
 class Orbit {
-  constructor(see) {
-    this.see = see;
+  constructor(turned) {
+    this.turned = turned;
     this.fingers = new Map();
-    const { stage, canvas, control } = see, { line } = control;
+  }
+
+  // Takes a canvas in hand, and keys where the focus is. Where the page scrolls, a wheel counts after a press alone, until the
+  // pointer leaves.
+  hold(canvas, focus, scrolls = false) {
+    this.pressed = scrolls ? null : canvas;
     canvas.addEventListener("pointerdown", (event) => this.press(event));
     canvas.addEventListener("pointermove", (event) => this.drag(event));
     for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, ({ pointerId }) => this.fingers.delete(pointerId));
-    canvas.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
+    if (scrolls) canvas.addEventListener("pointerleave", () => (this.pressed = null));
+    canvas.addEventListener("wheel", (event) => canvas === this.pressed && this.wheel(event), { passive: false });
     // A drag is no press.
-    canvas.addEventListener("click", (event) => this.hasTurned && event.stopImmediatePropagation());
-    stage.addEventListener("keydown", (event) => this.key(event));
-    line.addEventListener("pointerdown", (event) => {
-      line.setPointerCapture(event.pointerId);
-      event.preventDefault();
-    });
-    line.addEventListener("pointermove", (event) => line.hasPointerCapture(event.pointerId) && this.divide(event));
+    canvas.addEventListener("click", (event) => this.hasTurned && this.spend(event));
+    focus.addEventListener("keydown", (event) => event.target === focus && this.key(event));
   }
 
-  divide({ clientX }) {
-    const { canvas, control } = this.see, box = canvas.getBoundingClientRect();
-    control.divider.value = Math.round((100 * (clientX - box.left)) / box.width);
-    this.see.change();
+  spend(event) {
+    event.stopImmediatePropagation();
+    event.preventDefault();
   }
 
   press(event) {
     if (event.button) return;
-    this.see.canvas.setPointerCapture(event.pointerId);
+    this.pressed = event.currentTarget;
+    this.pressed.setPointerCapture(event.pointerId);
     if (!this.fingers.size) this.hasTurned = false;
     this.fingers.set(event.pointerId, [event.clientX, event.clientY]);
   }
@@ -44,8 +46,8 @@ class Orbit {
     this.hasTurned = true;
     const apart = this.apart;
     this.fingers.set(event.pointerId, now);
-    if (apart) this.nearer(apart / Math.max(this.apart, 1));
-    else this.turn(-TURNED * (now[0] - before[0]), TURNED * (now[1] - before[1]));
+    if (apart) this.turned.nearer(apart / Math.max(this.apart, 1));
+    else this.turned.turn(-TURNED * (now[0] - before[0]), TURNED * (now[1] - before[1]));
   }
 
   // How far two fingers are apart; 0 for one.
@@ -54,30 +56,17 @@ class Orbit {
     return b ? Math.hypot(a[0] - b[0], a[1] - b[1]) : 0;
   }
 
-  turn(around, over) {
-    const { see } = this;
-    see.aim({ around: see.value("around") + around, over: see.value("over") + over });
-  }
-
-  nearer(by) {
-    this.see.aim({ away: this.see.value("away") * by });
-  }
-
   wheel(event) {
     event.preventDefault();
-    this.nearer(WHEELED ** Math.max(-400, Math.min(400, event.deltaY * (event.deltaMode ? LINE_PIXELS : 1))));
+    this.turned.nearer(WHEELED ** Math.max(-400, Math.min(400, event.deltaY * (event.deltaMode ? LINE_PIXELS : 1))));
   }
 
   key(event) {
-    if (event.ctrlKey || event.metaKey || event.altKey || event.target !== this.see.stage) return;
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
     const [x, y] = ARROWS[event.key] ?? [], step = NEARER[event.key];
     if (x === undefined ? !step : event.shiftKey) return;
     event.preventDefault();
-    if (step) this.nearer(STEPPED ** step);
-    else this.turn(-x * KEY_TURNED, -y * KEY_TURNED);
+    if (step) this.turned.nearer(STEPPED ** step);
+    else this.turned.turn(-x * KEY_TURNED, -y * KEY_TURNED);
   }
 }
-
-live.parts.push(() => {
-  live.orbit = new Orbit(live.see);
-});

@@ -5,12 +5,13 @@ const FULL_DEGREES = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2
 const SHOWN = { lit: 0, error: 1, normals: 2, code: 3, zebra: 4, studio: 5 };
 const RADIANS = Math.PI / 180, SLOPE = 0.62, SHAPE = 4 / 3, AS_STORED = 17;
 // Each scene's shader, the place that the camera turns around, its set of lights in reflections.frag, and where the camera is at
-// first: degrees around and above, and the distance. A preset also says how it is shown.
+// first: degrees around and above, and the distance; `high` is the slope of its upper edge. A preset also says how it is shown.
 const SCENES = {
   bonnet: { shader: "bonnet.frag", middle: [0, 0.55, 0.35], studio: 0, camera: { around: 18, over: 30, away: 2.75 }, preset: { shown: "zebra", roughness: 0.1 } },
   floor: { shader: "floor.frag", middle: [0, 0.25, -1], studio: 1, backdrop: 0.02, camera: { around: -8, over: 7, away: 3 }, preset: { shown: "studio", roughness: 0.12 } },
   face: { shader: "face.frag", middle: [0, 0.98, 0], studio: 2, camera: { around: -13, over: 3, away: 3 }, preset: { shown: "studio", roughness: 0.3 } },
-  spheres: { shader: "spheres.frag", middle: [0, 0.75, 0], studio: 0, camera: { around: 20, over: 14, away: 3.5 } },
+  // As gbuffer/scenes has it: its camera looks from (0, 2.1, 8.6), 38 degrees high. Roughness is that of its materials, or more.
+  studio: { shader: "studio.frag", middle: [0, 1.45, 0], studio: 3, backdrop: 0.02, exposure: 2 ** -1.5, high: Math.tan(19 * RADIANS), camera: { around: 0, over: 4.322, away: 8.625 } },
 };
 const FIRST_SCENE = "bonnet", DROPPED = "dropped", PICTURE_CAMERA = { around: 0, over: 0, away: 3.5 };
 
@@ -31,7 +32,8 @@ function cameraOf({ middle }, { around, over, away }) {
 // The slopes of the rays at the window's right and upper edge, and how far a picture reaches there.
 function slopesOf(scene, [width, height], away) {
   const shape = width / height;
-  if (!scene.isPicture) return { slope: shape > SHAPE ? [(SLOPE / SHAPE) * shape, SLOPE / SHAPE] : [SLOPE, SLOPE / shape] };
+  const high = scene.high ?? SLOPE / SHAPE;
+  if (!scene.isPicture) return { slope: shape > SHAPE ? [high * shape, high] : [high * SHAPE, (high * SHAPE) / shape] };
   const own = scene.width / scene.height, near = away / PICTURE_CAMERA.away, reach = [Math.max(shape / own, 1) * near, Math.max(own / shape, 1) * near];
   return { slope: reach.map((by, axis) => by * scene.slope[axis]), reach };
 }

@@ -4,6 +4,7 @@ uniform float power;
 uniform float roughness;
 uniform float full;  // degrees that full colour stands for
 uniform float gain;  // of an error that is laid over the picture; 0 for none
+uniform float exposure;
 uniform float backdrop;  // how wide the surroundings behind everything are blurred
 uniform vec3 light;  // towards the light, view space
 uniform mat3 to_view;
@@ -12,11 +13,28 @@ uniform highp sampler2D colours;
 
 out vec4 colour;
 
-// Reflected light, and in w how much is mirrored head-on: walls, spheres, the column, paint, water and skin.
-const vec4 MATERIALS[11] = vec4[](
-    vec4(0.0), vec4(0.4, 0.4, 0.4, 0.3), vec4(0.3, 0.32, 0.36, 0.0), vec4(0.36, 0.32, 0.3, 0.0), vec4(0.55, 0.16, 0.12, 0.3),
-    vec4(0.14, 0.32, 0.52, 0.3), vec4(0.5, 0.42, 0.12, 0.3), vec4(0.18, 0.42, 0.26, 0.3), vec4(0.03, 0.11, 0.3, 0.35),
-    vec4(0.05, 0.05, 0.055, 0.12), vec4(0.42, 0.3, 0.25, 0.06));
+// Reflected light, and in w how much is mirrored head-on, 1 for metals, which mirror their colour: a picture, ground, paint, water
+// and skin; then those of the scene studio: plastic, metal, paint, brushed metal, a mirror, tiles, walls and a lamp.
+const vec4 MATERIALS[14] = vec4[](
+    vec4(0.0), vec4(0.4, 0.4, 0.4, 0.3), vec4(0.3, 0.32, 0.36, 0.0), vec4(0.03, 0.11, 0.3, 0.35), vec4(0.05, 0.05, 0.055, 0.12),
+    vec4(0.42, 0.3, 0.25, 0.06), vec4(0.55, 0.08, 0.06, 0.04), vec4(0.95, 0.93, 0.88, 1.0), vec4(0.03, 0.09, 0.28, 0.04),
+    vec4(0.78, 0.78, 0.8, 1.0), vec4(0.98, 0.98, 0.98, 1.0), vec4(0.3, 0.27, 0.24, 0.04), vec4(0.42, 0.42, 0.43, 0.04),
+    vec4(0.8, 0.8, 0.8, 0.04));
+// From SPHERES on, nine spheres of each kind have the roughness 0 to 1; the ones behind them each have their own.
+const int SPHERES = 6, ROWS = 2, SHINING = 29;
+const float OWN[6] = float[](0.12, 0.3, 0.0, 0.35, 0.6, 1.0);
+const float EMITTED = 50.0;
+
+vec4 material_of(int number) {
+    int behind = SPHERES + 9 * ROWS;
+    return MATERIALS[number < SPHERES ? number : number < behind ? SPHERES + (number - SPHERES) / 9 : number - 8 * ROWS];
+}
+
+float roughness_of(int number) {
+    int behind = SPHERES + 9 * ROWS;
+    float own = number < behind ? float((number - SPHERES) % 9) / 8.0 : OWN[max(number - behind, 0)];
+    return number < SPHERES ? roughness : max(roughness, own);
+}
 
 #if SHOWN == 0
 vec3 lit(vec3 base, vec3 n, vec3 v) {
@@ -26,26 +44,29 @@ vec3 lit(vec3 base, vec3 n, vec3 v) {
 }
 #elif SHOWN == 5
 // All in the world's axes. `blur` is a pixel's share of the mirrored lobe's width.
-vec3 in_studio(vec4 material, vec3 n, vec3 v, vec3 place, float blur) {
-    float n_v = max(dot(n, v), 1e-3), a = roughness * roughness;
+vec3 in_studio(int number, vec3 n, vec3 v, vec3 place, float blur) {
+    vec4 material = material_of(number);
+    bool is_metal = material.w == 1.0;
+    vec3 mirrored = is_metal ? material.rgb : vec3(material.w), matt = is_metal ? vec3(0.0) : material.rgb;
+    float roughness = roughness_of(number), n_v = max(dot(n, v), 1e-3), a = roughness * roughness;
     // A mirrored direction moves by twice the half vector's angle in the plane of both, and by n.v times that across it (J. Wang
     // et al., All-Frequency Rendering of Dynamic, Spatially-Varying Reflectance, 2009): here by their geometric mean.
     float width = sqrt(4.0 * a * a * n_v + blur * blur);
     vec2 share = share_of_surroundings(roughness, n_v);
-    vec3 made = surroundings(reflect(-v, n), width) * (material.w * share.x + share.y);
-    made += material.rgb * (1.0 - material.w) * scattered(n);
+    vec3 made = surroundings(reflect(-v, n), width) * (mirrored * share.x + share.y);
+    made += matt * (1.0 - mirrored) * scattered(n) + (number == SHINING ? EMITTED : 0.0);
     for (int i = 0; i < LAMPS && studio >= 0; ++i) {
         vec4 lamp = LAMP[studio * LAMPS + i];
         vec3 apart = lamp.xyz - place, l = normalize(apart);
         float power = lamp.w / dot(apart, apart);
-        made += power * (material.rgb * max(dot(n, l), 0.0) / PI + vec3(ggx(n, v, l, roughness, material.w)));
+        made += power * (matt * max(dot(n, l), 0.0) / PI + ggx(n, v, l, roughness, mirrored));
     }
     return made;
 }
 
 // A. Narkowicz, ACES Filmic Tone Mapping Curve, 2016.
 vec3 on_screen(vec3 x) {
-    x *= 0.6;
+    x *= exposure;
     return clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
 }
 #endif
@@ -55,7 +76,7 @@ void main() {
     Surface seen = surface_at(pixel);
     uvec4 found = texelFetch(decoded, pixel, 0);
     vec3 n = uintBitsToFloat(found.xyz), v = -normalize(seen.view), made = vec3(0.0);
-    vec4 material = MATERIALS[seen.material];
+    vec4 material = material_of(seen.material);
 #if SHOWN == 0
     made = lit(material.rgb, n, v);
 #elif SHOWN == 2
@@ -70,7 +91,7 @@ void main() {
     made = mix(material.rgb * 0.25 + 0.02, material.rgb * 0.3 + 0.62, material.w > 0.0 ? share : 0.3);
 #else
     float blur = clamp(0.5 * length(fwidth(exact)), 1e-4, 0.2);
-    made = on_screen(seen.covered ? in_studio(material, mirror, eyeward, eye + seen.view * to_view, blur) : surroundings(ray_at(pixel) * to_view, backdrop));
+    made = on_screen(seen.covered ? in_studio(seen.material, mirror, eyeward, eye + seen.view * to_view, blur) : surroundings(ray_at(pixel) * to_view, backdrop));
 #endif
 #endif
 #if SHOWN != 2 && SHOWN != 3

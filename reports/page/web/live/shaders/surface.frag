@@ -10,5 +10,5 @@ struct Surface {
 
 Surface surface_at(ivec2 pixel) {
     uvec4 found = texelFetch(surfaces, pixel, 0);
-    return Surface(uintBitsToFloat(found.xyz), ray_at(pixel) * uintBitsToFloat(found.w & ~15u), int(found.w & 15u), found.w != 0u);
+    return Surface(uintBitsToFloat(found.xyz), ray_at(pixel) * uintBitsToFloat(found.w & ~31u), int(found.w & 31u), found.w != 0u);
 }

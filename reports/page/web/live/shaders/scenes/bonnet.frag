@@ -36,7 +36,7 @@ Hit met(vec3 ray) {
         t -= left / min(ray.y - dot(found.yz, ray.xz), -0.02);
     }
     if (abs(left) < 1e-3 && is_sheet((eye + t * ray).xz)) {
-        return Hit(t, vec3(-found.y, 1.0, -found.z), 8);
+        return Hit(t, vec3(-found.y, 1.0, -found.z), 3);
     }
     return Hit(-eye.y / ray.y, vec3(0.0, 1.0, 0.0), 2);
 }

@@ -80,5 +80,5 @@ Hit met(vec3 ray) {
     // One of Newton's steps, along the ray.
     vec4 found = bust(from + t * ray);
     float along = dot(found.xyz, ray);
-    return Hit(along < -0.05 ? t - found.w / along : t, found.xyz, 10);
+    return Hit(along < -0.05 ? t - found.w / along : t, found.xyz, 5);
 }

@@ -16,5 +16,5 @@ Hit met(vec3 ray) {
         float share = exp(-0.5 * dot(k, k) * covers * covers);
         slopes += share * WAVES[i].w * cos(dot(k, p) + WAVES[i].z) * normalize(k);
     }
-    return Hit(t, vec3(-slopes.x, 1.0, -slopes.y), 9);
+    return Hit(t, vec3(-slopes.x, 1.0, -slopes.y), 4);
 }

@@ -5,5 +5,5 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     Hit hit = met(ray_at(pixel) * to_view);
     surface = hit.t > 0.0
-        ? uvec4(floatBitsToUint(normalize(to_view * hit.n)), (floatBitsToUint(hit.t) & ~15u) | uint(hit.material)) : uvec4(0u);
+        ? uvec4(floatBitsToUint(normalize(to_view * hit.n)), (floatBitsToUint(hit.t) & ~31u) | uint(hit.material)) : uvec4(0u);
 }
