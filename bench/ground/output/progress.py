@@ -5,15 +5,18 @@ A run says how far it is where no bar can be shown.
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from threading import Event, Thread
 from typing import Any
 
-from .errors import tell
+from .errors import tell_together
 
 EVERY = 8  # seconds between two lines where there is no bar
+# Set where a log is to have none of these lines.
+OFF = "NORMALBENCH_NO_PROGRESS"
 # What a signal raised to end the program. It may be raised where a library swallows it, as in a callback of the garbage
 # collector; then the next step raises it again.
 ending: list[BaseException] = []
@@ -73,7 +76,8 @@ def _speak_until(ended: Event) -> None:
     waited = 0
     while not ended.wait(EVERY):
         waited += EVERY
-        tell(f"{waited} s, {_whole[-1].says() if _whole else 'no step is under way'}")
+        # Each line as it is: what is told once is counted in the main thread.
+        tell_together(f"{waited} s, {_whole[-1].says() if _whole else 'no step is under way'}", ())
 
 
 @contextmanager
@@ -81,7 +85,7 @@ def spoken() -> Iterator[None]:
     """Says how far a run is, at least every ten seconds, where standard error is no terminal, such as a log of CI."""
     ended = Event()
     speaker = Thread(target=_speak_until, args=(ended,), daemon=True)
-    if not sys.stderr.isatty():
+    if not (os.environ.get(OFF) or sys.stderr.isatty()):
         speaker.start()
     try:
         yield

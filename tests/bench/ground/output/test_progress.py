@@ -60,6 +60,7 @@ def test_a_table_alone_has_a_bar_of_its_own(bars):
 
 def test_a_run_without_a_terminal_says_how_far_it_is(capsys, monkeypatch):
     monkeypatch.setattr(module, "EVERY", 0.05)
+    monkeypatch.delenv(module.OFF)
     with spoken(), progress_of_all(3, 1), progress(3, "quality") as tick:
         tick("octahedral/rg8")
         time.sleep(0.5)
@@ -69,6 +70,10 @@ def test_a_run_without_a_terminal_says_how_far_it_is(capsys, monkeypatch):
     assert len(said.splitlines()) >= 3
     time.sleep(0.2)
     assert not capsys.readouterr().err, "it goes on after the run"
+    monkeypatch.setenv(module.OFF, "1")
+    with spoken(), progress_of_all(3, 1):
+        time.sleep(0.2)
+    assert not capsys.readouterr().err, "it speaks though it is not to"
 
 
 def test_a_run_with_a_terminal_shows_its_bar_alone(capsys, monkeypatch):
