@@ -70,6 +70,9 @@ def test_commands_end_well(windows, tmp_path):
     write_examples(tmp_path)
     assert "apt-get" not in well(windows(tmp_path, "doctor"))
     assert "pass" in well(windows(tmp_path, "check", "gates.toml"))
+    quality = ["quality", "--encoding", "xyz", "--storage", "rgb10a2", "--backend", "jax"]
+    well(windows(tmp_path, *quality, "-o", "rows.csv", "--report", "page.html"))
+    assert {path.name for path in tmp_path.iterdir()} >= {"rows.csv", "page.html"} and not [*tmp_path.glob(".*.rows")]
     well(windows(tmp_path, "code", "octahedral", "--storage", "rg8", "--to", "hlsl", "-o", "code"))
     assert (tmp_path / "code" / "octahedral_rg8.hlsl").is_file()
     answer = well(windows(tmp_path, "pick", "--bytes", "2", "--scene", "studio"))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import platform
+import shutil
 import sys
 import tempfile
 import time
@@ -143,8 +144,9 @@ def _bring(table: Table, outputs: Any, folder: Path) -> None:
     """Have what was written elsewhere in a run's folder too."""
     for name, inside in table.files.items():
         target = getattr(outputs, name, None)
-        if target is not None and not (folder / inside).exists():
-            (folder / inside).symlink_to(target.resolve(), target_is_directory=target.is_dir())
+        if target is not None and target.exists() and not (folder / inside).exists():
+            copy = shutil.copytree if target.is_dir() else shutil.copy
+            copy(target, folder / inside)
 
 
 def _write_page(table: Table, done: Measured, folder: Path, target: Path) -> None:

@@ -20,9 +20,10 @@ def commit_of(named: str | None, folder: Path) -> Row:
     """
     if named:
         return {"name": named}
-    if not (said := _git(folder, "log", "-1", "--format=%H%n%ct%n%s")):
+    if not (said := _git(folder, "log", "-1", "--no-show-signature", "--format=%H%n%ct%n%s")):
         return {}
-    name, time, subject = said.split("\n", 2)
+    # A commit may have no message.
+    name, time, subject = (*said.split("\n", 2), "")[:3]
     # Of a clone that is not deep, the rank is the same for all.
     rank = _git(folder, "rev-list", "--count", f"--max-age={time}", "HEAD") or "0"
     changed = bool(_git(folder, "status", "--porcelain", "--untracked-files=no"))

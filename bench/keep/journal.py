@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ...encodings.codecs.files import file_bytes
-from ..ground.machine.systems.locks import lock, put_in_place
+from ..ground.machine.systems.locks import lock, put_in_place, remove
 from ..ground.output.errors import UsageError
 from ..ground.output.writing import clear_away, partial_of
 
@@ -76,6 +76,10 @@ class Journal:
         finally:
             partial.unlink(missing_ok=True)
         self.lines = list(lines)
+
+    def remove(self) -> None:
+        """Take the file away. Raises OSError."""
+        remove(self.path, self._file)
 
     def close(self) -> None:
         """Close the file, so that others may write it."""

@@ -306,4 +306,4 @@ def beside(output: Path | None, work: Row) -> Iterator[Beside | None]:
         elif kept.lines[0] != header:
             raise UsageError(f"{kept.path} keeps rows of another version or machine; delete it, or name another file")
         yield Beside(kept)
-        kept.path.unlink(missing_ok=True)
+        kept.remove()

@@ -26,13 +26,12 @@ from typing import IO, Any
 
 from ..ground.machine.children import environment, python, text_of
 from ..ground.machine.memory import look_for_garbage_seldom
+from ..ground.machine.systems.files import TEMPORARY
 from ..ground.machine.systems.processes import end_group, end_this_group, started
 from ..ground.output.errors import MissingError, UsageError
 
 # How long a process may take to end by itself, in seconds.
 END_S = 5.0
-# Where Python, compilers and the process's own children write what is to go with it.
-TEMPORARY = "TMPDIR"
 Send = Callable[[Any], None]
 
 
@@ -56,7 +55,7 @@ class Piped:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self._errors,
-            env=environment() | {TEMPORARY: self._folder},
+            env=environment() | dict.fromkeys(TEMPORARY, self._folder),
         )
         self.call(first)
         self._reader = Thread(target=self._read, args=(take,), daemon=True)
@@ -105,7 +104,7 @@ class Piped:
 
 def _end_now(*_: int | FrameType | None) -> None:
     """End this process at once, whatever it computes, with all that it started and its folder."""
-    shutil.rmtree(os.environ[TEMPORARY], ignore_errors=True)
+    shutil.rmtree(os.environ[TEMPORARY[0]], ignore_errors=True)
     end_this_group()
 
 

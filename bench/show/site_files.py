@@ -92,7 +92,11 @@ def _marker_text(files: list[str]) -> str:
 def _put(partial: Path, folder: Path, made: Mapping[str, str]) -> None:
     """What was written takes its place: at once where there is nothing, else the marker first and the index last."""
     if not folder.exists() or not any(folder.iterdir()):
-        partial.replace(folder.resolve())
+        place = folder.resolve()
+        if place.exists():
+            # Windows puts nothing in the place of a folder.
+            place.rmdir()
+        partial.replace(place)
         return
     for path in (MARKER, *(path for path in made if path != INDEX), INDEX):
         (folder / path).parent.mkdir(exist_ok=True)

@@ -43,7 +43,7 @@ _TYPES = {"i": ctypes.c_int, "u": ctypes.c_uint, "f": ctypes.c_float, "b": ctype
 
 
 # GL's libraries, and what finds its functions in them.
-FINDERS = {
+_FINDERS = {
     "libEGL.so.1": "eglGetProcAddress",
     "libGL.so.1": "glXGetProcAddress",
     "opengl32.dll": "wglGetProcAddress",
@@ -53,16 +53,26 @@ FINDERS = {
 @cache
 def _lookup() -> Callable[[bytes], int | None]:
     """The function that finds GL's functions for the current context."""
-    for name, function in FINDERS.items():
+    for name, function in _FINDERS.items():
         try:
             library = ctypes.CDLL(name)
             find = getattr(library, function)
         except (OSError, AttributeError):
             continue
         find.restype, find.argtypes = ctypes.c_void_p, [ctypes.c_char_p]
-        # Windows finds those of GL 1.1 in the library alone.
-        return lambda wanted: find(wanted) or ctypes.cast(getattr(library, wanted.decode()), ctypes.c_void_p).value
-    raise OSError(f"none of {', '.join(FINDERS)} can be loaded")
+        return lambda wanted: _address(find(wanted)) or _address_within(library, wanted.decode())
+    raise OSError(f"none of {', '.join(_FINDERS)} can be loaded")
+
+
+def _address(found: int | None) -> int | None:
+    """What a finder gave; None where it is one of the numbers that WGL says "not found" by."""
+    return None if found in (None, 1, 2, 3, ctypes.c_void_p(-1).value) else found
+
+
+def _address_within(library: ctypes.CDLL, name: str) -> int | None:
+    """Where a library itself has a function, as opengl32.dll has those of GL 1.1; None where it does not."""
+    found = getattr(library, name, None)
+    return ctypes.cast(found, ctypes.c_void_p).value if found else None
 
 
 @cache

@@ -55,7 +55,7 @@ def programs_folder() -> Path:
 def processor_kind() -> list[str]:
     """What tells a kind of processor from others that need other programs."""
     facts = {line for line in processor_lines() if line.startswith(("model name", "flags", "Features"))}
-    return [platform.machine(), *sorted(facts)]
+    return [platform.machine(), platform.processor(), *sorted(facts)]
 
 
 def found_device() -> tuple[Device | None, str]:

@@ -7,6 +7,8 @@ import stat
 import tempfile
 from pathlib import Path
 
+from .systems.files import HOME, is_closed, user
+
 
 def prepare() -> None:
     """Before anything else is used: a home, where the system knows none."""
@@ -14,13 +16,12 @@ def prepare() -> None:
         Path.home()
     except RuntimeError:
         # An unknown user id, as containers have it. Caches and settings of libraries lie in the home folder.
-        os.environ["HOME"] = str(_home_for_the_unknown())
+        os.environ[HOME] = str(_home_for_the_unknown())
 
 
 def _home_for_the_unknown() -> Path:
     """A folder that this user alone can have written into; another one for each process where there is none."""
     from ..output.cache import PRIVATE
-    from .systems.files import is_closed, user
 
     home = Path(tempfile.gettempdir()) / f"normalbench-home-{user()}"
     try:

@@ -98,7 +98,7 @@ def _made(text: str, functions: tuple[str, ...]) -> ctypes.CDLL | str:
     try:
         if not kept.is_off() and _is_whole(path):
             return _loaded(path, functions)
-        with tempfile.TemporaryDirectory() as folder:
+        with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
             made = _compiled(text, Path(folder))
             found = _loaded(made, functions)
             if not kept.is_off():
@@ -149,14 +149,14 @@ def _loaded_elsewhere(path: Path) -> ctypes.CDLL:
     Raises:
         OSError: it is not a library, or no folder will do.
     """
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         try:
             return ctypes.CDLL(shutil.copy(path, folder))
         except OSError:
             if kept.is_off():
                 raise
     kept.make_folder(kept.folder())
-    with tempfile.TemporaryDirectory(dir=kept.folder()) as folder:
+    with tempfile.TemporaryDirectory(dir=kept.folder(), ignore_cleanup_errors=True) as folder:
         return ctypes.CDLL(shutil.copy(path, folder))
 
 

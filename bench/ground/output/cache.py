@@ -20,7 +20,7 @@ from errno import EACCES
 from pathlib import Path
 from typing import Any
 
-from ..machine.systems.files import cache_home, forbids_execution, is_closed, is_own
+from ..machine.systems.files import cache_home, forbids_execution, is_closed, is_own, moved_over
 from .errors import MissingError
 
 # The cache is for its user alone.
@@ -172,7 +172,7 @@ def put(path: Path, data: bytes) -> None:
         try:
             file.write(data)
             file.close()
-            Path(file.name).replace(path)
+            moved_over(Path(file.name), path)
         finally:
             Path(file.name).unlink(missing_ok=True)
 

@@ -14,6 +14,7 @@ from typing import Any
 
 from ....reports import tables
 from ....reports.charts import plots
+from ..machine.systems.files import is_closed_pipe, moved_over
 from ..machine.systems.processes import is_running
 from .errors import UsageError
 
@@ -110,7 +111,7 @@ def whole_file(path: Path) -> Iterator[Path]:
         clear_away(path)
         yield partial
         if partial != path:
-            partial.replace(path)
+            moved_over(partial, path)
     except OSError as error:
         raise UsageError(f"cannot write {path}: {error.strerror or error}") from error
     finally:
@@ -149,7 +150,9 @@ def say(text: str) -> None:
     try:
         sys.stdout.write(text)
         sys.stdout.flush()
-    except BrokenPipeError:
+    except OSError as error:
+        if not is_closed_pipe(error):
+            raise
         abandon_output()
 
 

@@ -124,7 +124,7 @@ def _lacks(ask: Asked, step: Step, rows: Sequence[Row]) -> list[str]:
 def _taken(folder: Path) -> dict[str, bytes]:
     """The pictures that a step wrote; they are there no more."""
     root = folder / PICTURES
-    found = {str(path.relative_to(root)): path for path in sorted(root.rglob("*")) if path.is_file()}
+    found = {path.relative_to(root).as_posix(): path for path in sorted(root.rglob("*")) if path.is_file()}
     taken = {name: path.read_bytes() for name, path in found.items()}
     for path in found.values():
         path.unlink()

@@ -33,7 +33,7 @@ def no_driver(library: str) -> str:
     if library in MOBILE:
         return f"no {TITLES[library]}: no Vulkan driver file names {library}; {mobile.INSTALL}"
     said = f"no {TITLES[library]}: no Vulkan driver file names {library}"
-    return f"{said}; install Mesa's ({how_to_install('mesa-vulkan-drivers')})"
+    return f"{said}; install Mesa's ({how_to_install('mesa-vulkan-drivers', counts=True)})"
 
 
 @cache

@@ -18,7 +18,9 @@ from ...ground.output import cache as kept
 SOURCE = Path(__file__).with_name("null_i915.c")
 SHARED = SOURCE.with_name("null_drm.h")
 COMPILER = "cc"
-NO_COMPILER = f"no C compiler: these counts need {COMPILER}; install it ({how_to_install('gcc libc6-dev')})"
+NO_COMPILER = (
+    f"no C compiler: these counts need {COMPILER}; install it ({how_to_install('gcc libc6-dev', counts=True)})"
+)
 # A build takes a tenth of a second.
 SECONDS = 60.0
 SAID = "NORMALBENCH_NULL_I915"
@@ -97,4 +99,6 @@ def _compile(path: Path, source: Path) -> None:
     if done.returncode or not path.exists():
         last = [line.strip() for line in done.stderr.splitlines() if line.strip()][-1:]
         said = f"{COMPILER} does not compile {source.name}: {last[0][:200] if last else f'status {done.returncode}'}"
-        raise NullDeviceError(f"{said}; the headers of libc may be missing ({how_to_install('gcc libc6-dev')})")
+        raise NullDeviceError(
+            f"{said}; the headers of libc may be missing ({how_to_install('gcc libc6-dev', counts=True)})"
+        )

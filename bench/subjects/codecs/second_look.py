@@ -105,7 +105,7 @@ def _disagreement(
 
 
 def _by_second_way(path: Path, difference: Callable[[Way, tuple[str, str]], str]) -> str:
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         is_wgsl = name_of(path) == "WGSL"
         return difference(second_way(path, translated(path), Path(folder)), OF_WGSL if is_wgsl else SLANG_S)
 

@@ -1,16 +1,36 @@
-"""Whose a file is, where caches lie, and functions of the C library that this process has loaded."""
+"""Whose a file is, how it takes the place of another one, where caches lie, and functions of the C library."""
 
 from __future__ import annotations
 
 import ctypes
+import errno
 import os
 import stat
 import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 if sys.platform == "win32":
+    # What names the folder of this user, and folders of temporary files.
+    HOME, TEMPORARY = "USERPROFILE", ("TMPDIR", "TMP", "TEMP")
+    # A file that somebody has open keeps its place: an indexer has it for a moment. In seconds.
+    _WAITS = (0.01, 0.05, 0.2, 0.5, 1.0)
+
+    def moved_over(partial: Path, path: Path) -> None:
+        """Have a file take the place of another one, or of none. Raises OSError."""
+        for wait in _WAITS:
+            try:
+                partial.replace(path)
+                return
+            except PermissionError:
+                time.sleep(wait)
+        partial.replace(path)
+
+    def is_closed_pipe(error: OSError) -> bool:
+        """Whether nobody reads any more what was written."""
+        return error.errno in (errno.EPIPE, errno.EINVAL)
 
     def user() -> str:
         """What tells the user that this process acts for from others."""
@@ -33,6 +53,16 @@ if sys.platform == "win32":
         return Path(os.environ.get("LOCALAPPDATA") or Path("~/AppData/Local").expanduser())
 
 else:
+    # What names the folder of this user, and folders of temporary files.
+    HOME, TEMPORARY = "HOME", ("TMPDIR",)
+
+    def moved_over(partial: Path, path: Path) -> None:
+        """Have a file take the place of another one, or of none. Raises OSError."""
+        partial.replace(path)
+
+    def is_closed_pipe(error: OSError) -> bool:
+        """Whether nobody reads any more what was written."""
+        return error.errno == errno.EPIPE
 
     def user() -> str:
         """What tells the user that this process acts for from others."""

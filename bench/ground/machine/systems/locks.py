@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import sys
+from contextlib import suppress
 from io import FileIO
 from pathlib import Path
+
+from .files import moved_over
 
 if sys.platform == "win32":
     import msvcrt
@@ -36,10 +39,16 @@ if sys.platform == "win32":
         """
         new.close()
         old.close()
-        partial.replace(path)
+        moved_over(partial, path)
         new = path.open("r+b", buffering=0)
         lock(new)
         return new
+
+    def remove(path: Path, file: FileIO) -> None:
+        """Take away a file that is open and locked. None is while it is open: another process may have it by then."""
+        file.close()
+        with suppress(PermissionError):
+            path.unlink(missing_ok=True)
 
 else:
     import fcntl
@@ -58,6 +67,11 @@ else:
         Raises:
             OSError: it cannot be replaced.
         """
-        partial.replace(path)
+        moved_over(partial, path)
         old.close()
         return new
+
+    def remove(path: Path, file: FileIO) -> None:
+        """Take away a file that is open and locked. Raises OSError."""
+        path.unlink(missing_ok=True)
+        file.close()

@@ -29,14 +29,19 @@ elif sys.platform == "darwin":
         "gcc": "xcode-select --install",
         "g++": "xcode-select --install",
         "clang": "xcode-select --install",
+        "mesa-vulkan-drivers": "it comes with macOS, where there is a GPU",
     }
 else:
     ELSEWHERE, _WAYS = "", {}
 
 
-def how_to_install(packages: str) -> str:
-    """What installs Debian's packages here; the first is what is missing, and others are what it needs."""
-    way = _WAYS.get(packages.split()[0], ELSEWHERE)
+def how_to_install(packages: str, counts: bool = False) -> str:
+    """What installs Debian's packages here; the first is what is missing, and others are what it needs.
+
+    Args:
+        counts: whether instructions are to be counted by it, which Linux alone does.
+    """
+    way = ELSEWHERE if counts else _WAYS.get(packages.split()[0], ELSEWHERE)
     return way or f"Debian: apt-get install {packages}"
 
 

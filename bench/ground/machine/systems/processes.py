@@ -35,6 +35,7 @@ if sys.platform == "win32":
     DIVIDED_BY_ZERO = 0xC0000094
     # Of what Windows ends a process with, in words. Other statuses from 0xC0000000 on are said as they are.
     _ENDINGS = {
+        1816: "the limit of processor time",  # ERROR_NOT_ENOUGH_QUOTA of winerror.h
         0xC0000005: "an access violation",
         0xC0000017: "a lack of memory",
         0xC000001D: "an illegal instruction",
@@ -63,7 +64,7 @@ if sys.platform == "win32":
     def signal_name(status: int) -> str:
         """What the system ended a process by; empty where it ended by itself."""
         status &= 0xFFFFFFFF
-        return _ENDINGS.get(status, f"0x{status:08X}") if status >= 0xC0000000 else ""
+        return _ENDINGS.get(status, f"0x{status:08X}" if status >= 0xC0000000 else "")
 
     def limit(seconds: int, _: int, memory: int) -> None:
         """Limit this process to seconds of processor time and bytes of memory; Windows limits no files."""
@@ -78,7 +79,7 @@ if sys.platform == "win32":
     @contextmanager
     def file_of_child() -> Iterator[FileOfChild]:
         """A file for another process to write, which is gone afterwards."""
-        with TemporaryDirectory(prefix="normalbench-") as folder:
+        with TemporaryDirectory(prefix="normalbench-", ignore_cleanup_errors=True) as folder:
             path = Path(folder, "written")
             yield FileOfChild(str(path), (), lambda: path.read_bytes() if path.exists() else b"")
 

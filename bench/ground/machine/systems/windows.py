@@ -23,8 +23,9 @@ SET_QUOTA, TERMINATE, SYNCHRONIZE = 0x0100, 0x0001, 0x00100000
 WAIT_TIMEOUT = 0x102
 # A job counts time in steps of 100 ns.
 TICKS = 10_000_000
-# The status of a process that its job ended.
-ENDED = 1
+ACCESS_DENIED = 5
+# The status of a process that its job ended: STATUS_CONTROL_C_EXIT of ntstatus.h, as if it were interrupted.
+ENDED = 0xC000013A
 
 
 class _Basic(ctypes.Structure):
@@ -63,16 +64,18 @@ _own: list[int] = []
 
 
 def hold(process: int) -> None:
-    """Put a process, and all that it starts from here on, into a job that ends when this process does.
+    """Put a process, and all that it starts from here on, into a job that ends when this process does. One that has
+    ended is in none.
 
     Raises:
         OSError: Windows does not.
     """
-    handle = _kernel.OpenProcess(SET_QUOTA | TERMINATE, False, process)
-    if not handle:
-        return  # it has ended
+    handle = _checked(_kernel.OpenProcess(SET_QUOTA | TERMINATE | SYNCHRONIZE, False, process))
     try:
         _jobs[process] = _job_of(handle, _Extended(_Basic(limit_flags=KILL_ON_JOB_CLOSE)))
+    except OSError:
+        if _waits(handle):
+            raise
     finally:
         _kernel.CloseHandle(wintypes.HANDLE(handle))
 
@@ -80,7 +83,7 @@ def hold(process: int) -> None:
 def end(process: int) -> None:
     """End what is left of a job."""
     if job := _jobs.pop(process, None):
-        _kernel.TerminateJobObject(wintypes.HANDLE(job), ENDED)
+        _kernel.TerminateJobObject(wintypes.HANDLE(job), wintypes.UINT(ENDED))
         _kernel.CloseHandle(wintypes.HANDLE(job))
 
 
@@ -103,8 +106,12 @@ def _job_of(process: int, limits: _Extended) -> int:
     """The handle of a new job with a process in it. Raises OSError."""
     job = _checked(_kernel.CreateJobObjectW(None, None))
     size = ctypes.sizeof(limits)
-    _checked(_kernel.SetInformationJobObject(wintypes.HANDLE(job), EXTENDED_LIMITS, ctypes.byref(limits), size))
-    _checked(_kernel.AssignProcessToJobObject(wintypes.HANDLE(job), wintypes.HANDLE(process)))
+    try:
+        _checked(_kernel.SetInformationJobObject(wintypes.HANDLE(job), EXTENDED_LIMITS, ctypes.byref(limits), size))
+        _checked(_kernel.AssignProcessToJobObject(wintypes.HANDLE(job), wintypes.HANDLE(process)))
+    except OSError:
+        _kernel.CloseHandle(wintypes.HANDLE(job))
+        raise
     return job
 
 
@@ -119,8 +126,14 @@ def is_running(process: int) -> bool:
     """Whether there is a process of a number that has not ended."""
     handle = _kernel.OpenProcess(SYNCHRONIZE, False, process)
     if not handle:
-        return False
+        # Another user's.
+        return ctypes.get_last_error() == ACCESS_DENIED
     try:
-        return _kernel.WaitForSingleObject(wintypes.HANDLE(handle), 0) == WAIT_TIMEOUT
+        return _waits(handle)
     finally:
         _kernel.CloseHandle(wintypes.HANDLE(handle))
+
+
+def _waits(handle: int) -> bool:
+    """Whether a process has not ended."""
+    return _kernel.WaitForSingleObject(wintypes.HANDLE(handle), 0) == WAIT_TIMEOUT
