@@ -32,7 +32,6 @@ from normalbench.bench.ground.machine.memory import (
     look_for_garbage_seldom,
 )
 from normalbench.bench.ground.options.gpu_families import ANV, HASVK, R600, RADV
-from normalbench.bench.ground.output import progress
 from normalbench.bench.ground.output.errors import MissingError
 from normalbench.bench.keep.machine import require_mobile
 from normalbench.bench.measures.metrics import published
@@ -89,14 +88,6 @@ def _resident_bytes() -> int:
         return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
     except OSError:
         return 0
-
-
-@pytest.fixture(scope="session", autouse=True)
-def runs_say_nothing_of_time():
-    """What a run prints does not depend on how busy the machine is."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(progress, "EVERY", 3600)
-        yield
 
 
 @pytest.fixture(scope="session", autouse=True)

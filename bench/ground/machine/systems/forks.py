@@ -21,9 +21,7 @@ else:
         """
         return children.finished(children.python(module, *words), seconds)
 
-    def stop() -> None:
-        """End what is under way: whoever waits for it has it as killed."""
-        children.stop()
+    stop = children.stop
 
 
 __all__ = ["finished", "stop"]

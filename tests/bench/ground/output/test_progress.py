@@ -78,6 +78,7 @@ def test_a_run_without_a_terminal_says_how_far_it_is(capsys, monkeypatch):
 
 def test_a_run_with_a_terminal_shows_its_bar_alone(capsys, monkeypatch):
     monkeypatch.setattr(module, "EVERY", 0.05)
+    monkeypatch.delenv(module.OFF)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     with spoken(), progress_of_all(3, 1):
         time.sleep(0.3)
