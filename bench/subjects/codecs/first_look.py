@@ -23,7 +23,7 @@ import os
 import re
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import astuple
 from pathlib import Path
 from typing import Any
@@ -56,7 +56,7 @@ from .doctor.probe import VIEW, Probe, Trip, probe_of, trip_of
 from .names import check_twin
 from .second_look import second_look
 from .signatures import NO_FUNCTION, OWN_MAIN, OWN_VERSION, of_hlsl
-from .user_encodings import ANY, encoding_alone, read_encoding, twin_is_looked_at
+from .user_encodings import ANY, encoding_alone, path_with, read_encoding, twin_is_looked_at
 
 # What one function of a pair is called.
 SIDES = ("encode", "decode")
@@ -257,12 +257,16 @@ def _closely(probe: Probe, gl: Device, domain: Domain) -> dict[str, Any]:
     }
 
 
-def twin_look(path: Path) -> dict[str, Any]:
-    """What there is to say of a file's Python twin; see above."""
+def twin_look(path: Path, found: Mapping[str, Any]) -> dict[str, Any]:
+    """What there is to say of a file's Python twin; see above.
+
+    Args:
+        found: what a first look found of its shader: the twin is of the functions that it took.
+    """
     n = directions()
     view = np.tile(np.array([*VIEW, 0.0], np.float32), (len(n), 1))
     try:
-        encoding = read_encoding(path)
+        encoding = read_encoding(path_with(path, found), by=found.get("by", ""))
         check_twin(encoding)
         codes = _by_twin(encoding.encode, n, view)
         decoded = _by_twin(encoding.decode, codes, view)
@@ -317,7 +321,7 @@ def _looks(path: Path, domain: str = "") -> Iterator[dict[str, Any]]:
     found = first_look(path, domain)
     yield found
     if twin_is_looked_at(path, found):
-        yield twin_look(path)
+        yield twin_look(path, found)
 
 
 def main(words: Sequence[str]) -> None:

@@ -6,7 +6,7 @@ import importlib.util
 import json
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import redirect_stdout
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -441,9 +441,7 @@ def _look(path: Path, domain: str = "") -> Looks:
     lines = list(_answers(said))
     if not lines:
         raise UsageError(f"{path}: its shader {ended}")
-    # What its ending does not say; and of several pairs, the only one that undoes itself.
-    path = Path(with_settings(str(path), language=lines[0]["language"])) if "language" in lines[0] else path
-    path = with_pair(path, lines[0]["pair"]) if "pair" in lines[0] else path
+    path = path_with(path, lines[0])
     said_of_it, is_asked = (
         () if "error" in lines[0] else _said_of(path, lines[0].get("by", "")),
         domain not in ("", ANY),
@@ -453,6 +451,13 @@ def _look(path: Path, domain: str = "") -> Looks:
         return Looks(path, lines[0], {}, f"{path}: its Python twin {ended}", said_of_it, is_asked)
     twin = lines[1] if has_twin else {}
     return Looks(path, lines[0], twin, twin.get("error", ""), said_of_it, is_asked)
+
+
+def path_with(path: Path, found: Mapping[str, Any]) -> Path:
+    """A file with what a first look found of it: the language that its ending does not say, and of several pairs the
+    only one that undoes itself."""
+    path = Path(with_settings(str(path), language=found["language"])) if "language" in found else path
+    return with_pair(path, found["pair"]) if "pair" in found else path
 
 
 def _said_of(path: Path, by: str) -> tuple[str, ...]:

@@ -66,6 +66,10 @@ def test_without_a_twin_the_jax_row_says_so_and_with_one_it_agrees(run, tmp_path
     by_jax, by_gl = json.loads(out)
     assert err.count("\n") == 1 and by_jax["psnr_db"] == pytest.approx(by_gl["psnr_db"], abs=0.02)
     assert by_gl["psnr_db"] == gl_row["psnr_db"]
+    # The twin's functions are encode and decode; those of the shader may be, too.
+    (tmp_path / "mine.glsl").write_text(MINE.replace("mine_", ""))
+    renamed = json.loads(run("quality", "--encoding", path, *QUICK)[1])
+    assert [row["psnr_db"] for row in renamed] == [by_jax["psnr_db"], by_gl["psnr_db"]], renamed
 
 
 @pytest.mark.slow
