@@ -10,6 +10,8 @@ from functools import cache
 from pathlib import Path
 
 SYSTEMS = ("win32", "darwin")
+# What else is so on a system: the OpenGL that Mesa's drivers then have.
+ITS_OWN = {"darwin": {"MESA_GL_VERSION_OVERRIDE": "4.1", "MESA_GLSL_VERSION_OVERRIDE": "410"}}
 # An encoder with its twin, and a gate.
 ENCODER = """vec2 mine_encode(vec3 n, vec3 view) { return n.xy / (abs(n.x) + abs(n.y) + abs(n.z)); }
 vec3 mine_decode(vec2 e, vec3 view) { return normalize(vec3(e, 1.0 - abs(e.x) - abs(e.y))); }
@@ -97,7 +99,7 @@ def on(system, folder, words, **variables):
         [sys.executable, "-c", START, *words],
         capture_output=True,
         encoding="cp1252",
-        env=os.environ | ours | variables,
+        env=os.environ | ours | ITS_OWN.get(system, {}) | variables,
         cwd=folder,
         timeout=300,
     )

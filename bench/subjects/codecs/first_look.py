@@ -87,7 +87,7 @@ def first_look(path: Path, domain: str = "") -> dict[str, Any]:
     again = _first_look(path, domain, GLSL_NAME)
     # Those that the device refuses for their form alone are read here.
     is_of_form = found["error"].endswith((OWN_MAIN, OWN_VERSION))
-    is_nearer = (is_of_form or NO_FUNCTION in found["error"]) and NO_PAIR not in again.get("error", NO_PAIR)
+    is_nearer = (is_of_form or NO_FUNCTION in found["error"]) and NO_PAIR not in again.get("error", "")
     return again if is_nearer or not {"error", "missing"} & again.keys() else found
 
 
@@ -102,7 +102,11 @@ def _first_look(path: Path, domain: str, by: str) -> dict[str, Any]:
     try:
         return _look_at_one(path, domain, by)
     except SeveralEncodersError as error:
-        kept = _that_undo_themselves(path, error.pairs, by)
+        try:
+            kept = _that_undo_themselves(path, error.pairs, by)
+        except NoDeviceError as missing:
+            named = ", ".join(dict.fromkeys(str(with_pair(path, one)) for one in error.pairs[:MOST_PAIRS]))
+            return {"error": f"{path}: name one of its pairs, which none is tried of here ({missing}): {named}"}
         if len(kept) == 1:
             return _look_at_one(with_pair(path, kept[0]), domain, by) | {"pair": kept[0]}
         how = "name one, or take --all-pairs"
@@ -167,7 +171,7 @@ def _look_at_one(path: Path, domain: str, by: str) -> dict[str, Any]:
             encoding = read_encoding(path, NOT_ASKED, is_unit=True, by=by)
         return (broken or _judged(probe_of(gl, encoding), gl, domain)) | unit | other
     except (NoDeviceError, MissingError) as error:
-        return {"missing": str(error)}
+        return {"missing": str(error)} | ({"by": by} if by else {})
     except SeveralEncodersError:
         raise
     except AloneError as error:

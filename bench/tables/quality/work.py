@@ -11,10 +11,11 @@ from ....encodings.storages.storage import DITHERED, ROUNDINGS_AND_DITHERED
 from ....reports.page.verdict import counted_set
 from ....reports.tables import text_of
 from ...ground.machine.devices import require_device, require_jax
+from ...ground.machine.systems.people import LAST_OPENGL
 from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_count
 from ...ground.options.targets import not_with_noise, what_is_left, without_noise
-from ...ground.output.errors import UsageError, lacks_twin, leave_out, names_by_reason
+from ...ground.output.errors import UsageError, lacks_twin, leave_out, names_by_reason, tell
 from ...ground.output.writing import check_folder, without
 from ...measures.metrics import published
 from ...subjects.codecs.names import check_twin, codecs_named, fitting
@@ -61,6 +62,8 @@ def cases(options: QualityOptions) -> list[measure.Case]:
     )
     backends = backends_named(options.backend, measure.BACKENDS)
     codecs, left_out = fitting(codecs)
+    if LAST_OPENGL and not any(codec.is_dithered for codec in codecs):
+        backends = _as_wgsl(backends)
     if reason := _not_of_noise(options, backends):
         codecs = without_noise(codecs, reason)
     require_jax()
@@ -80,6 +83,13 @@ def cases(options: QualityOptions) -> list[measure.Case]:
     asked = [case for case in made if _is_asked(case, said)]
     lacking = lacking_rays((case.codec.encoding, case.normal_set) for case in asked)
     return what_is_left([case for case in asked if case.normal_set.serves(case.codec.encoding)], lacking)
+
+
+def _as_wgsl(backends: Sequence[str]) -> list[str]:
+    """Back ends where no device compiles GLSL."""
+    if "glsl" in backends:
+        tell(f"the shaders run as WGSL in place of GLSL: OpenGL ends at {LAST_OPENGL} on this system")
+    return list(dict.fromkeys("wgsl" if name == "glsl" else name for name in backends))
 
 
 def _not_of_noise(options: QualityOptions, backends: Sequence[str]) -> str:

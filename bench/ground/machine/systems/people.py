@@ -50,6 +50,10 @@ def command_line(words: Iterable[str]) -> str:
     return subprocess.list2cmdline(words) if sys.platform == "win32" else shlex.join(words)
 
 
+# The last OpenGL of a system whose OpenGL ends before compute shaders.
+LAST_OPENGL = "4.1" if sys.platform == "darwin" else ""
+
+
 def webgpu_api() -> str:
     """The interface of GPUs that wgpu goes through."""
     return "Metal" if sys.platform == "darwin" else "Vulkan"

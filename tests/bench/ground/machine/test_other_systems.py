@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from other_systems import SYSTEMS, is_gone, lacking, on, write_examples
+from other_systems import ENCODER, SYSTEMS, is_gone, lacking, on, write_examples
 
 
 @pytest.mark.parametrize("system", SYSTEMS)
@@ -26,6 +26,24 @@ def test_a_users_encoder_is_measured(there):
     done = there("quality", "--encoding", "mine.glsl", "--storage", "rg8", "--backend", "jax", "--format", "json")
     assert done.returncode == 0 and "Traceback" not in done.stderr, done.stderr
     assert [row["bits"] for row in json.loads(done.stdout)] == [16]
+
+
+def test_shaders_run_as_wgsl_where_opengl_ends_early(tmp_path):
+    """By the interface of that system, which is not here; of functions of any names, and with their twin."""
+    write_examples(tmp_path)
+    (tmp_path / "mine.glsl").write_text(ENCODER.replace("mine_", ""))
+    done = on("darwin", tmp_path, ("quality", "--encoding", "mine.glsl", "--storage", "rg8", "--format", "json"))
+    by_jax, by_wgsl = json.loads(done.stdout)
+    assert (by_jax["backend"], by_wgsl["backend"]) == ("jax", "wgsl") and by_jax["psnr_db"]
+    assert "in place of GLSL: OpenGL ends at 4.1" in done.stderr and "Metal" in by_wgsl["skipped"], by_wgsl
+
+
+@pytest.mark.slow
+def test_several_pairs_of_a_file_are_named_where_no_device_tries_them(tmp_path):
+    (tmp_path / "two.glsl").write_text(ENCODER.replace("mine_", "first_") + ENCODER.replace("mine_", "second_"))
+    done = on("darwin", tmp_path, ("doctor", "two.glsl:language=glsl"))
+    assert done.returncode == 2 and done.stderr.count("\n") == 1, done.stderr
+    assert "two.glsl:first_encode:first_decode" in done.stderr and "no GL 4.3 device" in done.stderr, done.stderr
 
 
 @pytest.mark.slow
