@@ -62,6 +62,8 @@ UPSAMPLE = "upsample"
 EXACT_DEG = 1e-3
 # What an encoder and its readers wait for anyway.
 TRAFFIC = "the target's memory traffic"
+# From so far on a reflection is not the same picture moved.
+ELSEWHERE_DEG = 30.0
 # How far the mirror's image is, in metres, and the map that it shows.
 FAR, MAP = 10.0, "a 1k environment map"
 WOBBLES = "A code in view space wobbles when the camera turns; one in world space must hold every direction."
@@ -193,9 +195,11 @@ def _seen_sentences(row: Row) -> str:
     moved = _moved_deg(row)
     if len(moved) < 2:
         return ""
-    texels = " and ".join(f"{value / TEXEL_DEG:.2g}" for value in moved)
-    far = " and ".join(_length_text(100 * FAR * math.tan(math.radians(min(value, 89.0)))) for value in moved)
     said = f"A mirror's reflection moves by {degrees(moved[0])} in the mean and at most {degrees(moved[1])}: "
+    if moved[1] >= ELSEWHERE_DEG:
+        return f"{said}it shows something else."
+    texels = " and ".join(f"{value / TEXEL_DEG:.2g}" for value in moved)
+    far = " and ".join(_length_text(100 * FAR * math.tan(math.radians(value))) for value in moved)
     said += f"{texels} texels of {MAP}, {far} cm at {FAR:g} m."
     enough = " That is enough for such a map." if is_enough(row) else ""
     return f"{said}{enough} {_roughness_command(row)} says from which roughness on no step shows."

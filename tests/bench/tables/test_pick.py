@@ -202,6 +202,13 @@ def test_the_sentences_say_the_rows_figures(rows):
         assert any(lost in said for said in rest), rest
 
 
+def test_a_reflection_that_moves_far_is_no_distance(rows):
+    """A hole of 50 degrees moves it by 100: no tangent says where it goes."""
+    far = [row | {"aim": "angle", "angle_max_deg": 50.0, "angle_sup_deg": 50.0, "accept_holes": True} for row in rows]
+    group = next(iter(groups(answered(far)).values()))
+    assert "at most 100°: it shows something else." in sentences(group)[1], sentences(group)
+
+
 # What a senior graphics engineer takes, by the words of the question; and a rung or a hint that he expects.
 EXPECTED = {
     "--storage rg8": ("octahedral", "More exact: octahedral_precise"),
