@@ -52,7 +52,10 @@ async function pixelsOfFile(file) {
 
 async function readPng(file, bytes) {
   const view = new DataView(bytes.buffer), kept = new Kept(view.getUint32(16), view.getUint32(20)), { width, height, step } = kept;
-  if (bytes[24] === 16) return wholePng(bytes, view, kept);
+  const chunks = [...pngChunks(bytes, view)];
+  // Some browsers show what there is of a file that ends too early.
+  if (chunks.at(-1)?.name !== "IEND") throw new Error(SHORT);
+  if (bytes[24] === 16) return wholePng(bytes, chunks, kept);
   const small = step > 1 ? { resizeWidth: width, resizeHeight: height, resizeQuality: "pixelated" } : {};
   const image = await createImageBitmap(file, { colorSpaceConversion: "none", premultiplyAlpha: "none", ...small }).catch(() => null);
   if (!image) throw new Error("the browser cannot read this PNG");
@@ -63,14 +66,20 @@ async function readPng(file, bytes) {
   return kept;
 }
 
+// The parts of a PNG up to its end.
+function* pngChunks(bytes, view) {
+  for (let at = 8, name = ""; at + 12 <= bytes.length && name !== "IEND"; at += 12 + view.getUint32(at)) {
+    name = String.fromCharCode(...bytes.subarray(at + 4, at + 8));
+    yield { name, data: bytes.subarray(at + 8, at + 8 + view.getUint32(at)) };
+  }
+}
+
 // A PNG of 16 bits, of which browsers keep 8: its packed rows (W3C, Portable Network Graphics, 2003).
-async function wholePng(bytes, view, kept) {
-  const [width, height] = kept.full, channels = { 0: 1, 2: 3, 4: 2, 6: 4 }[bytes[25]], near = 2 * channels, size = near * width, parts = [];
+async function wholePng(bytes, chunks, kept) {
+  const [width, height] = kept.full, channels = { 0: 1, 2: 3, 4: 2, 6: 4 }[bytes[25]], near = 2 * channels, size = near * width;
   if (!channels) throw new Error("a PNG of 16 bits has grey or colours; this one has neither");
   if (bytes[28]) throw new Error("its rows of 16 bits are interlaced, which is not read");
-  for (let at = 8; at + 12 <= bytes.length; at += 12 + view.getUint32(at)) {
-    if (String.fromCharCode(...bytes.subarray(at + 4, at + 8)) === "IDAT") parts.push(bytes.subarray(at + 8, at + 8 + view.getUint32(at)));
-  }
+  const parts = chunks.filter(({ name }) => name === "IDAT").map(({ data }) => data);
   const rows = await unpackedBytes(new Blob(parts), "deflate", height * (size + 1)).catch(() => new Uint8Array(0)), places = channels > 2 ? [0, 2, 4] : [0, 0, 0];
   if (rows.length < height * (size + 1)) throw new Error("its rows are damaged");
   for (let y = 0, above = new Uint8Array(size); y < height; y++) {

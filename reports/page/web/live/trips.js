@@ -14,7 +14,8 @@ async function tripsOf(device, codec, domain) {
   let sum = 0, squares = 0, differences = 0, worst = -1, at = 0, lost = 0;
   for (let i = 0; i < found.length; i += 4) {
     const off = found[i];
-    if (!(off >= 0)) {
+    // The angle of what is no number is 0 by some drivers; its difference is none by any.
+    if (!(off >= 0 && found[i + 1] >= 0)) {
       lost++;
       continue;
     }
