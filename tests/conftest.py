@@ -48,6 +48,10 @@ jax.config.update("jax_numpy_rank_promotion", "raise")
 jax.config.update("jax_numpy_dtype_promotion", "strict")
 
 
+def pytest_addoption(parser):
+    parser.addoption("--firefox", action="store_true", help="open pages in Firefox: pytest tests/reports --firefox")
+
+
 def pytest_configure(config):
     if os.environ.get("CI"):
         config.option.normalbench_require_gl = True
@@ -55,14 +59,16 @@ def pytest_configure(config):
 
 # What takes seconds to begin with, and a test of it seldom fails where no other one does.
 SLOW_FIXTURES = frozenset(
-    {"browser", "gl_browser", "chromium", "results", "scheduler", "radv", "intel", "nvidia", "vendor_rows"}
+    {"browser", "gl_browser", "browser_path", "results", "scheduler", "radv", "intel", "nvidia", "vendor_rows"}
 )
 
 
 @pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items):
+def pytest_collection_modifyitems(items, config):
     """A test that opens a browser, starts workers or asks for a vendor's compilers is slow without saying so."""
     for item in items:
+        if config.option.firefox and (mark := item.get_closest_marker("chromium")):
+            item.add_marker(pytest.mark.skip(reason=mark.args[0]))
         if SLOW_FIXTURES & set(item.fixturenames) and not item.get_closest_marker("nightly"):
             item.add_marker(pytest.mark.slow)
 
@@ -194,12 +200,13 @@ def results(tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
-def chromium():
+def browser_path(request):
     """The browser that reports are opened in; where CI is set, a machine without one fails the tests that need it."""
-    found = shutil.which("chromium")
+    name = "firefox-esr" if request.config.option.firefox else "chromium"
+    found = shutil.which(name)
     if not found and not os.environ.get("CI"):
-        pytest.skip("no Chromium to open reports in; install it (Debian: apt-get install chromium)")
-    assert found, "no Chromium"
+        pytest.skip(f"no {name} to open reports in; install it (Debian: apt-get install {name})")
+    assert found, f"no {name}"
     return found
 
 

@@ -4,6 +4,7 @@ import base64
 import io
 
 import numpy as np
+import pytest
 from PIL import Image
 from playwright.sync_api import expect
 
@@ -12,8 +13,19 @@ ARGUMENTS = [
     *("--disable-background-networking", "--disable-component-update", "--disable-sync"),
 ]
 DESKTOP, PHONE = (1280, 900), (360, 740)
+# What Firefox cannot be asked for by its own protocol.
+no_files = pytest.mark.chromium("its protocol keeps no files that are saved")
+no_paper = pytest.mark.chromium("its protocol does not show a page as on paper, or in the dark")
+no_swiftshader = pytest.mark.chromium("its figures are those of SwiftShader")
+no_fingers = pytest.mark.chromium("its protocol has no fingers")
 # Once the viewer shows two codecs.
 VIEWED = "[data-pixel=right]:not(:empty)"
+
+
+def within(browser, theme="light", motion="reduce") -> dict:
+    """What a window is opened with: Firefox has it from its preferences."""
+    is_firefox = browser.browser_type.name == "firefox"
+    return {} if is_firefox else {"color_scheme": theme, "reduced_motion": motion, "offline": True}
 
 
 class Opened:
@@ -23,11 +35,7 @@ class Opened:
         self.asked, self.said, self.theme = [], [], theme
         width, height = size
         self.context = browser.new_context(
-            viewport={"width": width, "height": height},
-            color_scheme=theme,
-            reduced_motion=motion,
-            offline=True,
-            device_scale_factor=scale,
+            viewport={"width": width, "height": height}, device_scale_factor=scale, **within(browser, theme, motion)
         )
         if before:
             self.context.add_init_script(before)
@@ -36,7 +44,14 @@ class Opened:
         self.page.on("console", lambda message: self.said.append(f"{message.type}: {message.text}"))
         self.page.on("pageerror", lambda error: self.said.append(str(error)))
         self.address, self.is_new = path.as_uri() + fragment, True
+        # Firefox does not tell of files.
+        self.is_told = browser.browser_type.name != "firefox"
+        self.go()
+
+    def go(self) -> None:
         self.page.goto(self.address)
+        if not self.is_told:
+            self.asked.append(self.address.partition("#")[0])
         self.unfold()
 
     def unfold(self) -> None:
@@ -52,8 +67,7 @@ class Opened:
             self.page.mouse.move(0, 0)
             self.page.goto("about:blank")
             self.asked.clear()
-            self.page.goto(self.address)
-            self.unfold()
+            self.go()
             self.said.clear()
         self.is_new = False
 
@@ -100,6 +114,16 @@ DRAWN = """async () => {
 }"""
 
 
+# WebGL2 by Mesa's driver, below an X server; no motion, as `Opened` has it; and no network.
+PREFERENCES = {
+    "webgl.force-enabled": True,
+    "ui.prefersReducedMotion": 1,
+    "layout.css.prefers-color-scheme.content-override": 1,
+    "network.proxy.type": 1,
+    "network.proxy.http": "127.0.0.1",
+    "network.proxy.http_port": 9,
+}
+
 # What a reader can see or change of an open laboratory, and what a test may have done to the page behind it. A function
 # of the page's keys at first.
 STATE = """() => {
@@ -116,7 +140,7 @@ STATE = """() => {
     unfolded: Array.from(document.querySelectorAll("details"), (one) => one.open),
     text: live.root.innerText,
     picture: digest(canvas.toDataURL()),
-    window: [innerWidth, innerHeight, Math.round(live.root.getBoundingClientRect().top), location.href],
+    window: [innerWidth, innerHeight, location.href],
     focus: document.activeElement.tagName,
     pixel: live.inspect.at,
     measuring: [rows.length, codecs.length, live.measuring.isBusy],

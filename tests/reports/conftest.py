@@ -1,8 +1,10 @@
 """A browser, and the page of the small run in it."""
 
+import shutil
+
 import both_ways
 import pytest
-from browsing import ARGUMENTS, GL_ARGUMENTS, Laboratory, Opened
+from browsing import ARGUMENTS, GL_ARGUMENTS, PREFERENCES, Laboratory, Opened
 from playwright.sync_api import sync_playwright
 
 
@@ -12,17 +14,37 @@ def play():
         yield playing
 
 
+def _launched(play, path, arguments):
+    """Chromium, or with --firefox Firefox: one that is there, by its own protocol."""
+    if path.endswith("chromium"):
+        return play.chromium.launch(executable_path=path, args=arguments)
+    return play.firefox.launch(
+        channel="moz-firefox", executable_path=path, headless=False, firefox_user_prefs=PREFERENCES
+    )
+
+
 @pytest.fixture(scope="session")
-def browser(play, chromium):
-    opened = play.chromium.launch(executable_path=chromium, args=ARGUMENTS)
+def browser(play, browser_path):
+    opened = _launched(play, browser_path, ARGUMENTS)
     yield opened
     opened.close()
 
 
 @pytest.fixture(scope="session")
-def gl_browser(play, chromium):
+def gl_browser(play, browser_path):
     """A browser with WebGL2, by software."""
-    opened = play.chromium.launch(executable_path=chromium, args=GL_ARGUMENTS)
+    opened = _launched(play, browser_path, GL_ARGUMENTS)
+    yield opened
+    opened.close()
+
+
+@pytest.fixture(scope="session")
+def reader_browser(play, gl_browser):
+    """The browser of somebody who is sent a link: another one, where pages are opened in Firefox."""
+    if gl_browser.browser_type.name == "chromium":
+        yield gl_browser
+        return
+    opened = _launched(play, shutil.which("chromium"), GL_ARGUMENTS)
     yield opened
     opened.close()
 

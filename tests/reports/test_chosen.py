@@ -103,6 +103,7 @@ def test_a_touch_makes_the_stills_live_and_hands_turn_both(chosen):
         assert (abs(before - after).max(axis=-1) > 8).mean() > 0.05
     assert all((one == two).all() for one, two in zip(differences, same, strict=True)), "the run's own"
     camera = f"{LIVE}.camera"
+    page.locator(".proof").scroll_into_view_if_needed()
     box = page.locator(".proof canvas").nth(1).bounding_box()
     before = page.evaluate(camera)
     page.mouse.move(box["x"] + 60, box["y"] + 60)

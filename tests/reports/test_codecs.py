@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from browsing import Opened
+from browsing import Opened, no_fingers, no_paper
 from test_pictures import pick_row
 from test_report import a_run, quality_row
 
@@ -188,6 +188,7 @@ def test_the_list_is_filtered_and_sorted(shown):
     assert found == sorted(found) and found[0] == 0.0756, found
 
 
+@no_fingers
 def test_a_finger_chooses_a_and_b(browser, codecs_page):
     context = browser.new_context(viewport={"width": 390, "height": 844}, has_touch=True, offline=True)
     page = context.new_page()
@@ -202,6 +203,7 @@ def test_a_finger_chooses_a_and_b(browser, codecs_page):
     context.close()
 
 
+@no_paper
 def test_one_action_leads_from_the_answer_to_the_card(browser, codecs_page):
     page = Opened(browser, codecs_page)
     button = page.page.get_by_role("button", name="Everything about A, mine rgba8")
@@ -216,6 +218,7 @@ def test_one_action_leads_from_the_answer_to_the_card(browser, codecs_page):
     page.context.close()
 
 
+@no_paper
 def test_a_folded_section_is_opened_and_landed_on(browser, codecs_page):
     """Before the card is there and after it."""
     context = browser.new_context(viewport={"width": 1280, "height": 900}, offline=True, reduced_motion="reduce")

@@ -7,6 +7,7 @@ from xml.etree import ElementTree
 
 import pytest
 from both_ways import rows_of_tables
+from browsing import no_files
 
 from normalbench.bench.tables.cost.charts import front_chart
 from normalbench.bench.tables.registry import TABLES
@@ -157,6 +158,7 @@ def test_the_wheel_zooms_where_the_focus_is_and_a_button_shows_all(drawn):
     assert drawn.evaluate(scale) == 1
 
 
+@no_files
 def test_a_file_is_what_is_seen_and_stands_alone(drawn):
     drawn.locator(".points[data-codec='e7 rgba8']").click()
     with drawn.expect_download() as download:

@@ -219,10 +219,11 @@ def test_a_name_of_the_pages_own_is_said_and_the_picture_goes_on(laboratory):
     before = laboratory.picture()
     laboratory.choose(right="xy rgba8", shown="error")
     assert apart(laboratory.picture(), before) > 0.2
-    assert laboratory.page.locator("[data-see=right] option", has_text="your encoder").is_disabled()
+    own = laboratory.page.locator("[data-see=right] option", has_text="your encoder")
+    assert own.evaluate("option => option.disabled")
     text.fill(good)
     laboratory.says("[data-own=said]", "16 bits in RGBA8")
-    assert laboratory.page.locator("[data-see=right] option", has_text="your encoder").is_enabled()
+    assert not own.evaluate("option => option.disabled")
 
 
 @pytest.mark.slow
@@ -235,7 +236,9 @@ def test_helpers_named_like_encoders_are_no_encoders(laboratory):
 WRONG = {
     "": "There is no encoder",
     "vec2 a_encode(vec3 n) { return n.xy; }": "There is no decoder of it: vec3 a_decode(vec2 e)",
-    "vec2 a_encode(vec3 n) { discard; return n.xy; } vec3 a_decode(vec2 e) { return vec3(e, 0); }": "No direction",
+    "vec2 a_encode(vec3 n) { discard; return n.xy; } vec3 a_decode(vec2 e) { return vec3(e, 0); }": re.compile(
+        "No direction|no return"
+    ),
     "uniform float q; vec2 a_encode(vec3 n) { return q * n.xy; } vec3 a_decode(vec2 e) { return e.xyx; }": "uniform",
     "/* vec2 a_encode(vec3 n) { return n.xy; } vec3 a_decode(vec2 e) { return vec3(e, 0.); }": "At the end of the text",
     "vec2 a_encode(vec3 n) { return n.xy; } vec3 a_decode(vec3 e) { return e; }": "Where the page calls it",

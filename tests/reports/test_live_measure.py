@@ -8,7 +8,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from browsing import AXE, PHONE, Laboratory
+from browsing import AXE, PHONE, Laboratory, no_files, no_swiftshader
 
 from normalbench.bench.measures.live import checks, normals, programs
 from normalbench.encodings.catalogue import ENCODINGS
@@ -76,6 +76,7 @@ def laboratory(open_laboratory, report):
     assert open_laboratory.asked == [report.as_uri()], "a page that asks for nothing"
 
 
+@no_files
 @pytest.mark.slow
 def test_every_code_of_a_run_is_this_devices_and_saved(laboratory, tmp_path):
     """Of all codecs of the small run at least 99.9 % of the codes are equal, and the angles are the run's."""
@@ -106,6 +107,7 @@ STORED = """checks => live.measuring.codecs = live.data.storages
   .map((codec) => ({ ...codec, checks: checks[codec.storage] }))"""
 
 
+@no_swiftshader
 @pytest.mark.slow
 def test_every_storage_is_read_back_as_the_run_has_it(laboratory):
     """Fixed point, halves, numbers across bytes, packed integers; small floats by SwiftShader, which cuts them off."""
@@ -125,6 +127,7 @@ def test_every_storage_is_read_back_as_the_run_has_it(laboratory):
     assert small["mean_deg"] > 1.5 * small["run_mean_deg"]
 
 
+@no_swiftshader
 @pytest.mark.slow
 def test_a_device_is_known_by_what_it_does(laboratory):
     """SwiftShader rounds fixed point and halves to nearest even, cuts small floats off, and computes in 32 bits."""
@@ -149,6 +152,7 @@ WITHOUT_FLOATS = """{
 }"""
 
 
+@no_swiftshader
 @pytest.mark.slow
 def test_a_device_that_renders_to_no_floats_is_measured(gl_browser, report):
     """Angles come back as bits of integers, which every device renders to."""
@@ -198,6 +202,7 @@ def test_measuring_is_cancelled_and_keeps_what_it_has(laboratory):
     assert laboratory.page.locator("[data-save]").is_visible()
 
 
+@no_swiftshader
 @pytest.mark.slow
 def test_a_lost_context_is_said_and_measuring_goes_on(laboratory):
     laboratory.start()
@@ -210,6 +215,7 @@ def test_a_lost_context_is_said_and_measuring_goes_on(laboratory):
     assert all(row["equal"] == row["normals"] for row in rows), [row["difference"] for row in rows]
 
 
+@no_swiftshader
 @pytest.mark.slow
 def test_times_wait_for_a_page_that_is_seen(laboratory):
     laboratory.only("xyz")

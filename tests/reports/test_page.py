@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from browsing import AXE, DESKTOP, PHONE, VIEWED, Opened
+from browsing import AXE, DESKTOP, PHONE, VIEWED, Opened, no_files, no_paper
 from PIL import Image
 from test_report import HOSTILE, a_run, quality_row
 
@@ -109,6 +109,7 @@ def contrast(one: list[int], other: list[int]) -> float:
     return (high + 0.05) / (low + 0.05)
 
 
+@no_paper
 @pytest.mark.parametrize("theme", THEMES)
 def test_text_and_lines_have_contrast_in_both_themes(browser, report, theme):
     page = Opened(browser, report, theme=theme)
@@ -202,6 +203,7 @@ def test_the_best_of_each_column_is_marked_among_as_many_bits(opened):
     assert rows.first.locator("th").text_content() == "octahedral_precise"
 
 
+@no_files
 def test_a_table_is_copied_as_markdown_and_saved_as_csv_as_it_is_filtered(opened):
     opened.context.grant_permissions(["clipboard-read", "clipboard-write"])
     sheet = opened.page.locator(TABLE)
@@ -226,6 +228,7 @@ def test_a_table_is_copied_as_markdown_and_saved_as_csv_as_it_is_filtered(opened
     assert len(precise[3]) > 6, "all digits"
 
 
+@no_files
 @pytest.mark.slow
 def test_a_chart_is_filtered_by_bits_and_saved_as_png(opened):
     opened.come_to("figure[data-chart]", "figure[data-chart] .plot svg")
@@ -336,6 +339,7 @@ def test_pictures_and_charts_are_painted(seen):
     assert (np.abs(chart - np.median(chart, axis=(0, 1))).max(axis=2) > 60).mean() > 0.01
 
 
+@no_paper
 def test_printing_shows_every_row_on_white(opened):
     opened.page.emulate_media(media="print", color_scheme="dark")
     assert opened.page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
@@ -348,6 +352,7 @@ FORMS = (
 )
 
 
+@no_paper
 @pytest.mark.slow
 def test_a_page_that_was_loaded_anew_is_as_in_a_new_window(browser, report, opened):
     """The tests here share a window: what one does to the page, the next one does not see."""

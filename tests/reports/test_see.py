@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pixel_files
 import pytest
-from browsing import Laboratory
+from browsing import Laboratory, no_files
 from PIL import Image
 
 # The least share of pixels that a step of octahedral 8:8 is to be seen in, and by how much of 255.
@@ -215,12 +215,17 @@ DAMAGED = {
     "half an HDR": (pixel_files.hdr(sky())[:300], "the file ends too early"),
     "a long run": (b"#?RADIANCE\n\n-Y 1 +X 9\n\2\2\0\11" + b"\xff\1" * 40, "a run of it is longer than its row"),
     "a large one": (b"#?RADIANCE\n\n-Y 99999 +X 99999\n", "it has 99999 x 99999 pixels; at most 67108864 are read"),
-    "half of 16 bits": (pixel_files.png16(3e4 + 3e4 * bumps())[:300], "its rows are damaged"),
+    "half of 16 bits": (pixel_files.png16(3e4 + 3e4 * bumps())[:300], "the file ends too early"),
+    "no rows of 16 bits": (pixel_files.png16(np.ones((9, 9, 3))).replace(b"IDAT", b"xDAT"), "its rows are damaged"),
     "interlaced": (
         pixel_files.png16(np.ones((9, 9, 3)), True),
         "its rows of 16 bits are interlaced, which is not read",
     ),
-    "half a PNG": (pixel_files.png(np.zeros((9, 9, 3), np.uint8))[:60], "the browser cannot read this PNG"),
+    "half a PNG": (pixel_files.png(np.zeros((9, 9, 3), np.uint8))[:60], "the file ends too early"),
+    "no rows": (
+        pixel_files.png(np.zeros((9, 9, 3), np.uint8)).replace(b"IDAT", b"xDAT"),
+        "the browser cannot read this PNG",
+    ),
 }
 
 
@@ -238,7 +243,7 @@ def test_a_file_is_dropped_on_the_picture(laboratory):
     laboratory.says("[data-drop=said]", "dropped.exr as normals, as vectors")
 
 
-def test_an_address_gives_everything_back(gl_browser, report, laboratory):
+def test_an_address_gives_everything_back(reader_browser, report, laboratory):
     page = laboratory.page
     page.locator("[data-preset=face]").click()
     laboratory.choose(left="spherical rgba8", right="octahedral rgba8", shown="zebra")
@@ -251,7 +256,7 @@ def test_an_address_gives_everything_back(gl_browser, report, laboratory):
     page.wait_for_selector("[data-share=link]:visible")
     address, _, fragment = page.locator("[data-share=link]").input_value().partition("#")
     assert address == report.as_uri() and len(fragment) < 2000
-    other = Laboratory(gl_browser, report, fragment=f"#{fragment}")
+    other = Laboratory(reader_browser, report, fragment=f"#{fragment}")
     values = "live.share.values()"
     assert other.page.evaluate(values) == page.evaluate(values)
     page.locator("[data-share=link]").evaluate("link => { link.parentNode.hidden = true; }")
@@ -261,7 +266,9 @@ def test_an_address_gives_everything_back(gl_browser, report, laboratory):
         page.evaluate("size => { live.see.size = size; live.see.change(); }", sizes[0])
     other.settle()
     laboratory.settle()
-    assert other.page.evaluate(SMALL) == page.evaluate(SMALL)
+    apart = np.abs(np.subtract(other.page.evaluate(SMALL), page.evaluate(SMALL)))
+    # Two rasterisers do not agree on every pixel of an edge.
+    assert apart.max() == 0 if page.context.browser is reader_browser else (apart > 8).mean() < 0.02, apart.max()
     assert other.asked == [report.as_uri()]
     other.context.close()
 
@@ -296,6 +303,7 @@ def test_what_an_address_cannot_mean_is_said(laboratory, packed, said):
     assert laboratory.page.evaluate("live.share.values()") == before
 
 
+@no_files
 def test_the_picture_is_saved_with_names_and_figures(laboratory):
     canvas = laboratory.picture()
     with laboratory.page.expect_download() as download:
