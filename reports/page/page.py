@@ -7,7 +7,7 @@ import hashlib
 import itertools
 import json
 import math
-from collections.abc import Callable, Container, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from itertools import groupby
@@ -80,6 +80,12 @@ class Table:
     said: Sequence[str] = ()
     aside: Sequence[str] = ()
     keys: Mapping[str, Any] = field(default_factory=dict)
+
+
+def definitions(shown: Iterable[Table]) -> list[tuple[str, str]]:
+    """What the columns of tables say, each once: titles and definitions."""
+    heads = (head for one in shown for head in one.columns)
+    return list(dict.fromkeys((head.title, head.column.definition) for head in heads if head.column.definition))
 
 
 def table(title: str, rows: Sequence[Row], says: Callable[[str], str]) -> Table:
@@ -258,6 +264,7 @@ def template(name: str) -> Any:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.filters["definitions"] = definitions
     return environment.get_template(name)
 
 

@@ -6,8 +6,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from ..charts.drawings import Drawing
-from ..sheets import Column, Role, Row, Section, Sheet, column_called, undefined
+from ..sheets import Column, Row, Section, Sheet, column_called, undefined
 from .data import block
+
+# The conditions that stand next to an answer.
+SAID = ("normals", "scene", "aim")
 
 
 @dataclass(frozen=True)
@@ -52,13 +55,9 @@ class TableSection:
         return block(whole(self.rows), self.columns)
 
     def measured(self) -> list[tuple[str, str]]:
-        """The conditions: what each column says in these rows."""
-        said = []
-        for name in (column.name for column in self.columns if column.role in (Role.KEY, Role.HOW)):
-            values = list(dict.fromkeys(str(row[name]) for row in self.rows if row.get(name) is not None))
-            if values:
-                said.append((name.replace("_", " "), ", ".join(values[:8]) + (" ..." if len(values) > 8 else "")))
-        return said
+        """What the answer says of its conditions: what these columns say in its rows."""
+        said = [(name, dict.fromkeys(str(row[name]) for row in self.rows if row.get(name))) for name in SAID]
+        return [(name, ", ".join(values)) for name, values in said if values]
 
 
 def answered_first(sections: Sequence[TableSection]) -> list[TableSection]:

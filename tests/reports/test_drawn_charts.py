@@ -183,7 +183,7 @@ def test_a_figure_has_its_height_before_it_is_drawn(chart_page):
 
 
 def test_what_nobody_has_come_to_is_there_on_paper(browser, report):
-    """Idle time draws it; what is not drawn when printing begins is drawn then."""
+    """Idle time draws it; what is not drawn when printing begins is drawn then, but for what lies in a closed fold."""
     page = browser.new_page()
     page.add_init_script(
         "window.requestIdleCallback = () => 0; window.IntersectionObserver = class { observe() {} unobserve() {} };"
@@ -191,6 +191,9 @@ def test_what_nobody_has_come_to_is_there_on_paper(browser, report):
     page.goto(report.as_uri())
     page.evaluate("ready()")
     assert page.locator(".plot svg").count() == 0 < page.locator(".plot").count()
+    page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
+    assert page.locator("details:not([open]) .plot svg").count() == 0
+    page.eval_on_selector_all("details", "all => all.forEach((one) => (one.open = true))")
     page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
     assert page.locator(".plot:empty").count() == 0
     page.close()

@@ -263,7 +263,7 @@ def test_the_first_screen_is_painted_soon(browser, report):
     page = Opened(browser, report)
     painted = page.page.evaluate("performance.getEntriesByName('first-contentful-paint')[0].startTime")
     assert painted < 1500
-    page.page.locator(".plot svg").first.wait_for(state="attached")
+    page.come_to("figure[data-chart] .plot", ".plot svg")
     drawn = page.page.evaluate("performance.getEntriesByName('first chart')[0].startTime")
     assert painted < drawn
     page.context.close()
@@ -347,6 +347,7 @@ def test_printing_shows_every_row_on_white(opened):
     assert opened.page.locator(".sheet .scroll").first.evaluate("e => e.scrollHeight <= e.clientHeight + 1")
 
 
+DRAW_ALL = "ready().then(() => window.dispatchEvent(new Event('beforeprint')))"
 FORMS = (
     "Array.from(document.querySelectorAll('input, select, button'), (one) => [one.value, one.checked, one.textContent])"
 )
@@ -357,7 +358,7 @@ FORMS = (
 def test_a_page_that_was_loaded_anew_is_as_in_a_new_window(browser, report, opened):
     """The tests here share a window: what one does to the page, the next one does not see."""
     fresh = Opened(browser, report)
-    fresh.page.wait_for_selector(".plot:empty", state="detached")
+    fresh.page.evaluate(DRAW_ALL)
     expected = (
         fresh.page.evaluate(FORMS),
         fresh.page.evaluate("[document.documentElement.outerHTML, scrollY, innerWidth]"),
@@ -368,7 +369,7 @@ def test_a_page_that_was_loaded_anew_is_as_in_a_new_window(browser, report, open
     opened.page.get_by_label("the largest").check()
     opened.page.emulate_media(media="print", color_scheme="dark")
     opened.load_anew()
-    opened.page.wait_for_selector(".plot:empty", state="detached")
+    opened.page.evaluate(DRAW_ALL)
     found = (
         opened.page.evaluate(FORMS),
         opened.page.evaluate("[document.documentElement.outerHTML, scrollY, innerWidth]"),

@@ -5,7 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+<<<<<<< HEAD
 from browsing import no_files
+=======
+from playwright.sync_api import expect
+>>>>>>> c3ab3beb (reports: Say a column's meaning once, draw what is folded when opened)
 
 STATES = 200
 
@@ -114,6 +118,21 @@ def test_every_row_is_the_file_to_the_byte(opened, results):
         details.locator("summary").first.click()
         opened.page.wait_for_timeout(50)
         assert details.locator("*").count() == 1, "what is closed takes no elements"
+
+
+def test_the_conditions_of_a_table_are_those_of_its_rows(opened, results):
+    """Built when they are opened, and gone when they are closed."""
+    rows = json.loads((results[0] / "quality.json").read_text(encoding="utf-8"))
+    opened.come_to("#quality .method")
+    method = opened.page.locator("#quality .method")
+    method.locator("summary").click()
+    method.locator("dd").first.wait_for()
+    said = dict(zip(*(method.locator(tag).all_text_contents() for tag in ("dt", "dd")), strict=True))
+    for name in ("encoding", "storage", "count"):
+        values = list(dict.fromkeys(str(row[name]) for row in rows))
+        assert said[name] == ", ".join(values[:8]) + (" ..." if len(values) > 8 else "")
+    method.locator("summary").click()
+    expect(method.locator("dt")).to_have_count(0)
 
 
 ODD = [

@@ -24,14 +24,25 @@ function exactText(value) {
   return text.includes(".") ? text : `${text}.0`;
 }
 
-function csvText(column, row) {
+function storedText(column, row) {
   const value = valueIn(column, row);
-  return value === null ? "" : column.kind === "float" ? exactText(value) : safeInSheets(String(value));
+  return value === null ? "" : column.kind === "float" ? exactText(value) : String(value);
 }
+
+const csvText = (column, row) => safeInSheets(storedText(column, row));
 
 function shownText(column, row) {
   const value = valueIn(column, row);
   return value === null ? "" : column.kind === "float" ? textOf(value, true) : String(value);
+}
+
+// Under what conditions rows were measured: what each column that says it has in them.
+const VALUES = 8;
+function conditionsOf(columns) {
+  return columns.filter(({ role }) => role === "key" || role === "how").flatMap((column) => {
+    const values = new Set(column.values.map((_, row) => storedText(column, row)).filter(Boolean)), few = Array.from(values).slice(0, VALUES);
+    return few.length ? [element("dt", {}, column.title), element("dd", {}, few.join(", ") + (values.size > VALUES ? " ..." : ""))] : [];
+  });
 }
 
 // A table of rows that are filtered and sorted as data, and shown a hundred at a time.
@@ -158,6 +169,11 @@ for (const details of document.querySelectorAll("details[data-table]")) {
     const data = await dataOf(details.dataset.table);
     if (details.open && details.children.length === 1) new DataTable(details, data);
   });
+}
+
+for (const details of document.querySelectorAll("details[data-conditions]")) {
+  const list = details.querySelector("dl");
+  details.addEventListener("toggle", async () => list.replaceChildren(...(details.open ? conditionsOf((await dataOf(details.dataset.conditions)).columns) : [])));
 }
 
 const listings = document.querySelector("details[data-listings]");

@@ -82,17 +82,18 @@ for (const figure of document.querySelectorAll("figure[data-chart]")) {
   });
 }
 
-// What nobody has come to is drawn when there is nothing else to do: paper has all charts.
+// What nobody has come to is drawn when there is nothing else to do: paper has all charts, but for those in a closed fold.
 const idle = window.requestIdleCallback ?? setTimeout;
+const isSeen = (figure) => !figure.closest("details:not([open])");
 async function drawRest() {
   for (const figure of charts.waiting) {
-    await drawn(figure);
+    if (isSeen(figure)) await drawn(figure);
     await new Promise(idle);
   }
 }
 window.addEventListener("load", () => idle(drawRest));
 window.addEventListener("beforeprint", () => {
-  for (const figure of charts.specs ? document.querySelectorAll("figure[data-chart]") : []) while (drawNext(figure));
+  for (const figure of charts.specs ? Array.from(document.querySelectorAll("figure[data-chart]")).filter(isSeen) : []) while (drawNext(figure));
 });
 
 // A figure as a file: its panels as they are drawn, with the colours that are seen, its title and its legend.
