@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import islice, zip_longest
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,8 @@ from .looks import as_text
 
 # How finely a rim's cells are parted.
 FINE = 8
+# A page has at most so many maps: each takes 11 kB and two pictures.
+MOST = 64
 
 
 @dataclass(frozen=True)
@@ -47,6 +50,14 @@ def _groups(maps: Sequence[SphereMap]) -> dict[int, list[SphereMap]]:
     for one in maps:
         groups.setdefault(one.bits, []).append(one)
     return dict(sorted(groups.items(), key=lambda item: (-len(item[1]), item[0])))
+
+
+def shown(maps: Sequence[SphereMap], most: int = MOST) -> list[SphereMap]:
+    """Those that a page has: of each number of bits the most exact, the second, and so on."""
+    ranked = [sorted(group, key=lambda one: float(np.nanmean(one.mean_deg))) for group in _groups(maps).values()]
+    turns = (one for turn in zip_longest(*ranked) for one in turn if one is not None)
+    kept = {one.key.label for one in islice(turns, most)}
+    return [one for one in maps if one.key.label in kept]
 
 
 def globes(maps: Sequence[SphereMap]) -> list[Globes]:

@@ -8,7 +8,7 @@ import itertools
 import json
 import math
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from itertools import groupby
 from pathlib import Path
@@ -22,6 +22,7 @@ from ..charts.wire import codecs as drawn_codecs
 from ..sheets import Column, Row, Sheet, View, undefined
 from . import cards, embedded, live
 from .codec_key import CodecKey
+from .data import block
 from .found import Found
 from .packing import packed
 from .sections import TableSection, whole
@@ -38,6 +39,8 @@ WRAPPED = 24
 EXTRAS = {"angles": "Angles", "sphere": "Sphere"}
 # What the navigation calls the views.
 TITLES = {view: view.capitalize() for view in View}
+# A section's tables have at most so many cells in the page; those behind them are packed, and built when opened.
+MOST_CELLS = 1000
 # More remarks than these are folded: the answer is what is read first.
 MOST_REMARKS = 2
 
@@ -70,7 +73,8 @@ class Line:
 
 @dataclass(frozen=True)
 class Table:
-    """A table as the template shows it; `constants` says what is the same in every row."""
+    """A table as the template shows it; `constants` says what is the same in every row, and `data` has its rows packed
+    where the page builds it when it is opened."""
 
     title: str
     columns: Sequence[Heading]
@@ -80,6 +84,7 @@ class Table:
     said: Sequence[str] = ()
     aside: Sequence[str] = ()
     keys: Mapping[str, Any] = field(default_factory=dict)
+    data: str = ""
 
 
 def definitions(shown: Iterable[Table]) -> list[tuple[str, str]]:
@@ -312,7 +317,8 @@ def html(
         agreement=found.extras.get("agreement", ""),
         parts=parts,
         leading=leading,
-        spheres=spheres.globes(maps),
+        spheres=spheres.globes(spheres.shown(maps)),
+        more_maps=max(len(maps) - spheres.MOST, 0),
         directions=maps[0].directions if maps else 0,
         cells=maps[0].mean_deg.shape[-1] if maps else 0,
         strip=spheres.colour_strip(),
@@ -371,9 +377,17 @@ def sources_of(scripts: Sequence[str], is_beside: bool = False) -> str:
     return " ".join([*(f"'sha256-{digest}'" for digest in digests), *(["'self'", "file:"] if is_beside else [])])
 
 
-def part_of(found: Found, section: TableSection, specs: Mapping[str, Spec]) -> Part:
+def part_of(
+    found: Found, section: TableSection, specs: Mapping[str, Spec], most_cells: float = MOST_CELLS
+) -> Part:
     """A section as the template shows it, with those of its charts that are there."""
     encodings = found.encodings
-    shown = [sheet_table(sheet, section.column, encodings) for sheet in section.sheets]
+    sheets = list(section.sheets)
+    shown = [sheet_table(sheet, section.column, encodings) for sheet in sheets]
+    cells = itertools.accumulate(len(one.rows) * len(one.columns) for one in shown)
+    shown = [
+        one if sum_of <= most_cells else replace(one, data=block(sheet.rows, map(section.column, sheet.rows[0])))
+        for one, sheet, sum_of in zip(shown, sheets, cells, strict=True)
+    ]
     charts = [Chart(drawing, specs[drawing.name]) for drawing in section.drawings if drawing.name in specs]
     return Part(section, charts, shown, section.measured())

@@ -55,18 +55,18 @@ class DataTable {
   }
 
   build() {
-    const { table } = this.details.dataset, id = `rows-${table}-filter`;
+    const { table, called } = this.details.dataset, id = `rows-${table}-filter`;
     this.filter = element("input", { type: "search", id, autocomplete: "off", spellcheck: "false", oninput: () => this.refilter() });
     this.count = element("span", { role: "status", "data-count": "" });
     this.said = element("span", { role: "status", "data-copied": "" });
     this.table = element("table", {});
     this.more = element("button", { type: "button", "data-more": "", onclick: () => { this.lines += LINES; this.show(); } });
-    const button = (what, text, act) => element("button", { type: "button", "data-copy": what, onclick: act }, text, element("span", { class: "visually-hidden" }, `: every row of ${table}`));
+    const button = (what, text, act) => element("button", { type: "button", "data-copy": what, onclick: act }, text, element("span", { class: "visually-hidden" }, `: ${called}`));
     const tools = element("p", { class: "tools" }, element("label", { for: id }, "Filter"), this.filter, this.count);
     if (this.part) tools.append(this.chooser());
     tools.append(button("markdown", "Copy as Markdown", () => copy(this.markdown(), this.said)), button("csv", "Save as CSV", () => saveText(`${table}.csv`, this.csv())), this.said);
     this.none = element("p", { class: "missing" }, "No row has all of these words.");
-    const scroll = element("div", { class: "scroll", role: "region", "aria-label": `Every row of ${table}`, tabindex: "0" }, this.table, this.none);
+    const scroll = element("div", { class: "scroll", role: "region", "aria-label": called, tabindex: "0" }, this.table, this.none);
     this.definitions = element("dl", {});
     this.root = element("div", { class: "sheet", "data-rows": table }, tools, scroll, element("p", { class: "tools" }, this.more),
       element("details", { class: "columns" }, element("summary", {}, "What the columns say", element("span", { class: "visually-hidden" }, ` of ${table}`)), this.definitions));
