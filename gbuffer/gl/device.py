@@ -29,6 +29,8 @@ KEPT_PROGRAMS = 64
 # Sets of textures, each of up to a hundred megabytes.
 KEPT_TEXTURES = 4
 SRGB8_ALPHA8 = 0x8C43
+# What pictures may be of, and as what a device is given it.
+PICTURES = {"uint8": "f1", "uint16": "nu2", "float32": "f4"}
 # Factors of what is drawn and of what is there: their sum, their product, and the one over the other by its alpha.
 ADD, MULTIPLY = (moderngl.ONE, moderngl.ONE), (moderngl.DST_COLOR, moderngl.ZERO)
 OVER = (moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA)
@@ -210,18 +212,22 @@ class Device:
         return texture
 
     def picture(self, texels: np.ndarray, is_srgb: bool, repeats: tuple[bool, bool]) -> moderngl.Texture:
-        """uint8 or uint16 of shape (height, width, 4) that shaders sample at every size, each in [0, 1].
+        """uint8 or uint16 of shape (height, width, 4) that shaders sample at every size, each in [0, 1]; or float32,
+        which they take one texel of as it is.
 
         Args:
             is_srgb: whether the first three channels are on the sRGB curve; 8 bits only.
             repeats: along x and y, or its edge goes on.
         """
         height, width, _ = texels.shape
-        data, dtype = np.ascontiguousarray(texels).tobytes(), "nu2" if texels.dtype == np.uint16 else "f1"
+        data, dtype = np.ascontiguousarray(texels).tobytes(), PICTURES[texels.dtype.name]
         internal = {"internal_format": SRGB8_ALPHA8} if is_srgb else {}
         texture = self.context.texture((width, height), 4, data, dtype=dtype, **internal)
-        texture.build_mipmaps()
-        texture.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
+        if texels.dtype == np.float32:
+            texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
+        else:
+            texture.build_mipmaps()
+            texture.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
         texture.repeat_x, texture.repeat_y = repeats
         return texture
 

@@ -27,6 +27,7 @@ class SceneMaker:
         frames: over how many moments a figure is averaged.
         exposure: in stops; None to have it measured, of a scene whose light nobody has set.
         is_metal_rough: whether its materials are metal/rough, which have no specular power.
+        sides: width and height of the picture that it is; None where it can be drawn at any size.
     """
 
     name: str
@@ -35,11 +36,19 @@ class SceneMaker:
     frames: int
     exposure: float | None = 0.0
     is_metal_rough: bool = False
+    sides: tuple[int, int] | None = None
 
     @property
     def tone_mapping(self) -> str:
         """How its light beyond 1 is shown, one of TONE_MAPPINGS."""
         return FILMIC if self.is_metal_rough else "none"
+
+    def within(self, size: tuple[int, int]) -> tuple[int, int]:
+        """The size that it is drawn at where `size` is asked for: of a picture its own shape, in no more pixels."""
+        if self.sides is None:
+            return size
+        share = min(1.0, (size[0] * size[1] / (self.sides[0] * self.sides[1])) ** 0.5)
+        return max(1, round(self.sides[0] * share)), max(1, round(self.sides[1] * share))
 
     def display(self, linear: np.ndarray) -> Display:
         """How its images are shown; an exposure that nobody has set is measured of linear light, (..., 3)."""

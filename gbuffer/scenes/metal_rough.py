@@ -18,8 +18,8 @@ class Map:
     """A picture that is laid on a surface.
 
     Attributes:
-        texels: (height, width, 4), uint8 or uint16; row 0 is at v = 0. A channel that a file does not have is the
-            largest integer. Maps of one picture share the array.
+        texels: (height, width, 4), uint8 or uint16; or float32, which is not filtered; row 0 is at v = 0. A channel
+            that a file does not have is the largest integer. Maps of one picture share the array.
         is_srgb: whether the first three channels are colours on the sRGB curve; 8 bits only.
         wrap: what lies beyond [0, 1] along u and along v.
         uv_set: which of a mesh's two sets of uv it is laid by, 0 or 1.

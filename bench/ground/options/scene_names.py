@@ -1,42 +1,18 @@
-"""Scenes as they are named: those there are, and users' mesh files."""
+"""Specular powers and mesh files as they are named, and what is said of files."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
-from ....encodings.codecs.files import called
-from ....gbuffer.scenes.catalogue import SCENES, SceneMaker
 from ....gbuffer.scenes.files.mesh_file import MeshFile
-from ....gbuffer.scenes.files.read import FRAMES, READERS, file_scene, read_mesh_file
+from ....gbuffer.scenes.files.read import read_mesh_file
 from ....gbuffer.scenes.files.source import MissingPackageError, SceneFileError
-from ..choose import choose_or_read
 from ..output.errors import MissingError, UsageError, tell
 
 T = TypeVar("T")
 MAX_POWER = 2048
-
-
-def scene_makers_named(names: str) -> list[SceneMaker]:
-    """The scenes that comma-separated names stand for: those of the catalogue, or mesh files.
-
-    Raises:
-        UsageError: an unknown name, or a file that cannot be read.
-    """
-    notes: dict[Path, Sequence[str]] = {}
-
-    def scene_of(path: Path) -> SceneMaker:
-        file = mesh_file(path)
-        notes[path] = file.notes
-        name = called(path.name)
-        make = partial(file_scene, file)
-        return SceneMaker(name, f"the meshes of {name}", make, FRAMES, None, file.is_metal_rough)
-
-    made = choose_or_read("scene", names, SCENES, READERS, scene_of)
-    say_notes(notes)
-    return made
 
 
 def powers_named(numbers: str) -> list[float]:

@@ -30,8 +30,8 @@ BACKGROUND = 0.02
 UNIT_WITHIN = 0.05
 # And that is what few normals, at edges, may be beyond.
 OFF_UNIT_SHARE = 0.01
-# What stands for 1 in files of 8 bits.
-EIGHT_BITS = 255
+# Of numbers of 8 bits that stand for [-1, 1].
+EIGHT_BITS = Rounding(127.5)
 # Lengths this near to 1 are rounding of float32: such normals are measured as they are.
 ROUNDING = 1e-6
 ROTATION_WITHIN = 1e-3
@@ -54,8 +54,44 @@ CURVES: Mapping[str, Callable[[np.ndarray], np.ndarray]] = MappingProxyType(
 )
 
 
+@dataclass(frozen=True, eq=False)
+class Captured:
+    """The normals of an image file.
+
+    Attributes:
+        normals: (3, height, width) or (3, count), in the space that they are encoded in; unit where they count, else 0.
+        covered: which of them count.
+        not_finite: how many are NaN or infinite on surface.
+        own_error_deg: the mean angle by which they are off themselves; None where nothing is known of it.
+        turns: how they were turned.
+        notes: what is to be said of them.
+    """
+
+    normals: np.ndarray
+    covered: np.ndarray
+    not_finite: int
+    own_error_deg: float | None
+    turns: Turns
+    notes: list[str]
+
+
 def capture(path: Path, reading: Reading) -> tuple[NormalSet, list[str]]:
-    """The normals of an image file, and what is to be said of them.
+    """The normals of an image file as a set, and what is to be said of them. Raises as `captured` does."""
+    found = captured(path, reading)
+    shape = found.covered.shape if found.covered.ndim == 2 else None
+    n = np.moveaxis(found.normals, 0, -1).astype(np.float32)
+    name = called(path.name)
+    rays = (_rays(n, reading.fov) @ found.turns.of_rays.T).astype(np.float32)
+    made = from_arrays(name, f"normals of {name}", n, rays, found.covered, shape, found.not_finite)
+    space = OBJECT if is_in_object_space(path, reading) else checked(reading).code_space
+    return replace(made, code_space=space, own_error_deg=found.own_error_deg), found.notes
+
+
+def captured(path: Path, reading: Reading, within: np.ndarray | None = None) -> Captured:
+    """The normals of an image file.
+
+    Args:
+        within: where there is surface as far as is known already, of the image's shape.
 
     Raises:
         UsageError: it cannot be read, or does not hold unit normals as `reading` says.
@@ -70,29 +106,28 @@ def capture(path: Path, reading: Reading) -> tuple[NormalSet, list[str]]:
 
     pixels = read_pixels(path, choose)
     surface = _mask(path, reading, pixels.shape)
+    if within is not None:
+        check_size(path, pixels.shape, within.shape)
+        surface = surface & within
     n, covered, of_lengths = _directions_and_remarks(path, pixels, surface, reading)
     not_finite = int((surface & ~np.isfinite(n).all(axis=0)).sum())
     n = np.where(covered, n, 0)
-    is_object = is_in_object_space(path, reading)
     notes += of_lengths
-    if not is_object:
+    if not is_in_object_space(path, reading):
         notes += _which_way(n, covered, turns.to_view, reading, chosen)
-    own = _own_error_deg(n, covered, pixels, reading)
-    if pixels.full is None and own is not None and own >= FINE:
-        notes.append(own_error_note(f"its normals have {bits_text(pixels.roundings)} and", own))
-    if pixels.full == EIGHT_BITS:
-        notes.append(
-            "8 bits a channel, off by about 0.2 degrees themselves: storages of 8 bits look better on them than "
-            "they are; 16 bits or floats do not favour any"
-        )
+    roundings = _roundings(pixels, reading)
+    own = own_error_deg(np.moveaxis(n, 0, -1)[covered], roundings) if roundings else None
+    notes += _of_roundings(roundings, own)
     if not np.array_equal(turns.to_code, np.eye(3)):
         n = np.tensordot(turns.to_code, n, 1)
-    shape = pixels.shape if len(pixels.shape) == 2 else None
-    n = np.moveaxis(n, 0, -1).astype(np.float32)
-    name = called(path.name)
-    rays = (_rays(n, reading.fov) @ turns.of_rays.T).astype(np.float32)
-    made = from_arrays(name, f"normals of {name}", n, rays, covered, shape, not_finite)
-    return replace(made, code_space=OBJECT if is_object else reading.code_space, own_error_deg=own), notes
+    return Captured(n, covered, not_finite, own, turns, notes)
+
+
+def check_size(path: Path, shape: tuple[int, ...], wanted: tuple[int, ...]) -> None:
+    """Raises UsageError where an image has not the (height, width) of another."""
+    if shape != wanted:
+        sides, others = (" x ".join(map(str, one[::-1])) for one in (shape, wanted))
+        raise refused(path, f"it is {sides}, and the depth is {others}", "save all of a frame in one size")
 
 
 def is_in_object_space(path: Path, reading: Reading) -> bool:
@@ -102,11 +137,23 @@ def is_in_object_space(path: Path, reading: Reading) -> bool:
     return path.suffix.lower() in CLOUDS and said == (usual.space, usual.code_space, usual.view_matrix, usual.fov)
 
 
-def _own_error_deg(n: np.ndarray, covered: np.ndarray, pixels: Pixels, reading: Reading) -> float | None:
-    """By how much normals, (3, ...), are off themselves; None where nothing is known of it, as under a curve."""
-    whole = () if pixels.full is None or reading.curve != "linear" else (Rounding(pixels.full / 2),)
-    known = pixels.roundings or whole
-    return own_error_deg(np.moveaxis(n, 0, -1)[covered], known) if known else None
+def _roundings(pixels: Pixels, reading: Reading) -> Sequence[Rounding]:
+    """What normals were rounded to; nothing where that is not known, as under a curve."""
+    if pixels.roundings or pixels.steps is None or reading.curve != "linear":
+        return pixels.roundings
+    return (Rounding(pixels.steps / 2),)
+
+
+def _of_roundings(roundings: Sequence[Rounding], own: float | None) -> list[str]:
+    """What is to be said of normals that their file has in few bits, off by `own` degrees."""
+    if roundings == (EIGHT_BITS,):
+        return [
+            "8 bits a channel, off by about 0.2 degrees themselves: storages of 8 bits look better on them than "
+            "they are; 16 bits or floats do not favour any"
+        ]
+    if own is None or own < FINE:
+        return []
+    return [own_error_note(f"its normals have {bits_text(roundings)} and", own)]
 
 
 def checked(reading: Reading) -> Reading:

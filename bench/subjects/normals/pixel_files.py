@@ -14,6 +14,7 @@ import tempfile
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -49,6 +50,9 @@ FORMATS: Mapping[str, tuple[str, bytes]] = MappingProxyType(
 )
 # The library's names of types of numbers.
 TYPES = ("uint8", "uint16", "half", "float", "double")
+# What stands for 1 of whole numbers of 8 and 10 bits, as targets have them. Floats are told to be shares of it by some
+# of them, of which so many differ.
+STEPS, LOOKED_AT, DIFFERENT = (255, 1023), 2**16, 8
 # What a status of `pixel_process.py` says, and the remedy; any other is a damaged file.
 FAILURES: Mapping[int, tuple[str, str]] = MappingProxyType(
     {
@@ -63,7 +67,7 @@ Choice = Callable[[Sequence[str]], Sequence[str]]
 Check = Callable[[Path, tuple[int, int], int], None]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Pixels:
     """Some channels of a file.
 
@@ -81,6 +85,12 @@ class Pixels:
     def shape(self) -> tuple[int, ...]:
         return self.planes.shape[1:]
 
+    @cached_property
+    def steps(self) -> int | None:
+        """What stands for 1 of the whole numbers that the channels are, or were before they became floats in [0, 1];
+        None for other floats."""
+        return self.full or next((full for full in STEPS if _are_shares(self.planes, full)), None)
+
 
 def read_pixels(path: Path, choose: Choice) -> Pixels:
     """The channels of a file that `choose` picks of their names.
@@ -89,6 +99,15 @@ def read_pixels(path: Path, choose: Choice) -> Pixels:
         UsageError: it is damaged, too large, or of a kind that is not read; and what `choose` raises.
     """
     return {**READERS, **CLOUDS}[path.suffix.lower()](path, choose)
+
+
+def _are_shares(planes: np.ndarray, full: int) -> bool:
+    """Whether all numbers are whole ones over `full`."""
+    flat = planes.reshape(-1)[:: max(1, planes.size // LOOKED_AT)]
+    found = np.unique(flat[np.isfinite(flat)]).astype(np.float64) * full
+    # A float32 is that close to what it stands for.
+    is_near = np.abs(found - np.rint(found)) < full * 1e-7
+    return bool(len(found) >= DIFFERENT and found[0] >= 0 and found[-1] <= full and is_near.all())
 
 
 def has_normals_alone(path: Path) -> bool:

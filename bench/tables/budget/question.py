@@ -11,12 +11,12 @@ from ....gbuffer.scenes.setting import Setting
 from ...ground.choose import choose, choose_one
 from ...ground.machine.devices import require_device
 from ...ground.options.counts import MOST_INSTRUCTIONS, checked_numbers, in_range
-from ...ground.options.scene_names import scene_makers_named
 from ...ground.options.targets import checked_target
 from ...ground.output.errors import UsageError
 from ...measures.metrics.images import require_flip
 from ...subjects.codecs.layout_names import layouts_named
 from ...subjects.environments.scenes_under import scenes_under
+from ...subjects.scenes.scene_names import scene_makers_named
 from .attributes import EMISSION, UP_TO_PIXELS, Attribute
 from .bins import BINS, WEBGPU, WEBGPU_BYTES, Bin
 from .contract import MOTION, PACKED, attributes_held, held_in_stencil, names_held
@@ -161,7 +161,8 @@ def _limits(options: BudgetOptions) -> tuple[bool, int | None]:
 
 def _stages(options: BudgetOptions, size: tuple[int, int]) -> list[Stage]:
     made = [
-        Stage(maker, Setting(), size) for maker in scenes_under(options.environment, scene_makers_named(options.scene))
+        Stage(maker, Setting(), maker.within(size))
+        for maker in scenes_under(options.environment, scene_makers_named(options.scene))
     ]
     for stage in made:
         if not stage.maker.is_metal_rough:

@@ -19,8 +19,9 @@ from ....encodings.vec import Vec2
 from ....gbuffer.codecs.depth.depth_passes import DepthPasses, Rebuilt
 from ....gbuffer.gl.device import device
 from ...shaders.code.twin import NoTwinError
+from ...subjects.depths.depth_images import DepthImage
 from ..unmeasurable import UNMEASURABLE
-from .frames import Frame, seen
+from .frames import seen
 from .points import Points
 from .table import TABLE
 
@@ -75,7 +76,7 @@ class Case:
     distances: tuple[float | None, ...]
     count: int
     seed: int
-    frame: Frame | None = None
+    frame: DepthImage | None = None
 
     @property
     def name(self) -> str:
@@ -227,7 +228,7 @@ def measure(case: Case) -> list[Row]:
     ]
 
 
-def _frame_columns(frame: Frame, camera: Camera) -> Row:
+def _frame_columns(frame: DepthImage, camera: Camera) -> Row:
     """What is said of a frame in place of points that are made."""
     background = seen(frame, camera).background
     return {

@@ -23,13 +23,13 @@ from ...ground.choose import choose, choose_one
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.counts import MAX_REPEATS, in_range
 from ...ground.options.effect_names import effects_named, lacking, pipeline_with
-from ...ground.options.scene_names import scene_makers_named
 from ...ground.options.targets import checked_setting, checked_target, what_is_left
 from ...ground.output.errors import UsageError
 from ...ground.output.writing import check_folder
 from ...measures.metrics.images import require_flip
 from ...subjects.codecs.layout_names import layouts_named
 from ...subjects.codecs.names import codecs_named
+from ...subjects.scenes.scene_names import scene_makers_named
 from ..plans import attempt, with_codecs
 from ..shots import Shot, by_shots
 from ..table import Row, Sheet, Step, Work

@@ -22,11 +22,11 @@ from ...ground.choose import choose
 from ...ground.machine.devices import found_device, require_jax
 from ...ground.options.counts import checked_numbers
 from ...ground.options.light_names import MOST_LIGHT
-from ...ground.options.scene_names import scene_makers_named
 from ...ground.options.targets import TARGETS, checked_setting, checked_target
 from ...ground.output.errors import MissingError, UsageError
 from ...ground.output.writing import check_folder, whole_file
 from ...subjects.codecs.kinds.named import light_codecs_named
+from ...subjects.scenes.scene_names import scene_makers_named
 from ..table import Row, Sheet, Step, Work, each
 from . import measure
 from .charts import charts

@@ -20,13 +20,14 @@ from ...ground.choose import choose, choose_one
 from ...ground.machine.devices import found_device, require_jax
 from ...ground.options.counts import MOST_INSTRUCTIONS, check_seed, checked_count, in_range
 from ...ground.options.effect_names import effects_named, lacking, name_of, pipeline_with
-from ...ground.options.scene_names import powers_named, scene_makers_named
+from ...ground.options.scene_names import powers_named
 from ...ground.options.storage_names import roundings_named, storages_named
 from ...ground.output.errors import UsageError, by_reason, leave_out, tell
 from ...ground.output.writing import check_folder
 from ...subjects.codecs.names import as_declared, check_twin, codecs_named
 from ...subjects.normals.normal_names import lacking_rays, normal_sets_named
 from ...subjects.normals.normal_sets import NormalSet
+from ...subjects.scenes.scene_names import scene_makers_named
 from ..families_named import families_named
 from ..mix.table import USES
 from ..table import COMPILERS, GL, Measured, Row, Sheet, Step, Tick, Work

@@ -20,7 +20,7 @@ from ...ground.choose import choose, choose_one
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.counts import MAX_REPEATS, in_range
 from ...ground.options.effect_names import effects_named, lacking, name_of, pipeline_with
-from ...ground.options.scene_names import powers_named, scene_makers_named
+from ...ground.options.scene_names import powers_named
 from ...ground.options.targets import SHADOWS, TARGETS, check_scale, checked_setting, checked_target, what_is_left
 from ...ground.output.errors import UsageError, tell
 from ...ground.output.writing import check_folder, without
@@ -29,6 +29,7 @@ from ...subjects.codecs.kinds.named import light_codecs_named
 from ...subjects.codecs.layout_names import layouts_named
 from ...subjects.codecs.names import codecs_named
 from ...subjects.environments.scenes_under import scenes_under
+from ...subjects.scenes.scene_names import scene_makers_named
 from ..plans import suited, with_codecs
 from ..shots import Shot, by_shots
 from ..table import Measured, Row, Sheet, Step, Work

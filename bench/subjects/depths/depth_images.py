@@ -1,0 +1,155 @@
+"""Depths of users' images: which channel they are in, what its numbers stand for, and which pixels are surface."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import jax
+import numpy as np
+
+from ....encodings.catalogue import DEPTH_ENCODINGS
+from ....encodings.codecs.files import called
+from ....encodings.shared.position import Camera
+from ...ground.output.errors import UsageError
+from ..normals.pixel_files import READERS, Pixels, read_plane, refused
+
+# View depth as it stands, and not a code of it; codes without a sign.
+VIEW = "view"
+CODES = tuple(name for name, encoding in DEPTH_ENCODINGS.items() if not encoding.signed)
+
+
+@dataclass(frozen=True, kw_only=True)
+class DepthReading:
+    """How an image of depths is read.
+
+    Attributes:
+        channel: by name; None for the one called like depths, or the only one.
+        depths_are: VIEW, or one of CODES.
+        depth_unit: what 1 is of a view depth, in the unit of the planes.
+        fov: vertical, in degrees; None where nobody says.
+    """
+
+    channel: str | None = None
+    depths_are: str = VIEW
+    depth_unit: float = 1.0
+    fov: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class DepthImage:
+    """A frame's depths.
+
+    Attributes:
+        name: the file's.
+        numbers: as the file has them, whole numbers of a code as shares of 1; float64 of shape (height, width).
+        code: what they are: VIEW, or a depth code's name.
+        channel: the one that was asked for.
+        unit: what 1 is of a view depth, in the unit of the planes.
+        fov: vertical, in degrees; None where nobody says.
+        notes: what is to be said of them.
+    """
+
+    name: str
+    numbers: np.ndarray
+    code: str
+    channel: str | None
+    unit: float
+    fov: float | None
+    notes: tuple[str, ...]
+
+    @property
+    def aspect(self) -> float:
+        """Width over height."""
+        height, width = self.numbers.shape
+        return width / height
+
+    def depths(self, camera: Camera) -> np.ndarray:
+        """View depths, float64 of shape (height, width); NaN where the file has that."""
+        if self.code == VIEW:
+            return self.numbers * self.unit
+        encoding = DEPTH_ENCODINGS[self.code]
+        with jax.enable_x64(True):
+            return np.abs(np.asarray(encoding.decode(self.numbers, np.float64(camera.near), np.float64(camera.far))))
+
+    def surface(self, camera: Camera) -> np.ndarray:
+        """Depths where there is surface, 0 elsewhere: float32 of shape (height, width). The far plane is none."""
+        depths = self.depths(camera)
+        with np.errstate(over="ignore"):
+            found = depths.astype(np.float32)
+        return np.where((found >= np.float32(camera.near)) & (found < np.float32(camera.far)), found, np.float32(0))
+
+    @property
+    def not_finite(self) -> int:
+        """How many numbers are NaN."""
+        return int(np.isnan(self.numbers).sum())
+
+
+def read_depths(path: Path, channel: str | None) -> Pixels:
+    """The channel of depths of an image. Raises UsageError."""
+    if path.suffix.lower() not in READERS:
+        raise UsageError(f"{path}: not an image of depths; {', '.join(READERS)} are read")
+    return read_plane(path, lambda names: [_channel(path, names, channel)])
+
+
+def depth_image(path: Path, pixels: Pixels, reading: DepthReading) -> DepthImage:
+    """What the pixels of a file are as `reading` says. Raises UsageError where they are not that."""
+    code = reading.depths_are
+    numbers = pixels.planes[0].astype(np.float64)
+    if code != VIEW:
+        numbers = numbers / (pixels.full or 1)
+        _check_code(path, numbers, code)
+    notes = _notes(numbers, pixels, reading)
+    return DepthImage(called(path.name), numbers, code, reading.channel, reading.depth_unit, reading.fov, tuple(notes))
+
+
+def _check_code(path: Path, numbers: np.ndarray, code: str) -> None:
+    """Raises UsageError where numbers are not those of a code, which are in [0, 1]."""
+    found = numbers[~np.isnan(numbers)]
+    if len(found) and not 0 <= found.min() <= found.max() <= 1:
+        what = f"its numbers are {found.min():.3g} to {found.max():.3g}, and those of {code} 0 to 1"
+        raise refused(path, what, "--depths-are view takes distances")
+
+
+def _channel(path: Path, names: Sequence[str], asked: str | None) -> str:
+    """The channel of depths: the one asked for, the one that is called like depths, or the only one."""
+    shown = ", ".join(names[:40])
+    if asked is not None:
+        if asked not in names:
+            raise refused(path, f"no channel {asked!r}; it has {shown}", "--channel takes one by name")
+        return asked
+    likely = [name for name in names if _is_called_like_depths(name, names)] or list(names)
+    if len(likely) == 1:
+        return likely[0]
+    raise refused(path, f"any of {', '.join(likely[:40])} may be depths", f"--channel {likely[0]} names one")
+
+
+def _is_called_like_depths(name: str, names: Sequence[str]) -> bool:
+    """Z, Depth, ViewLayer.Depth.Z; but not the Z of three axes."""
+    *_, last = words = re.split(r"[._ ]", name.lower())
+    has_axes = f"{name[:-1]}{'X' if name[-1:] == 'Z' else 'x'}" in names
+    return any("depth" in word for word in words) or (last == "z" and not has_axes)
+
+
+def _notes(numbers: np.ndarray, pixels: Pixels, reading: DepthReading) -> list[str]:
+    found = numbers[np.isfinite(numbers)]
+    notes = []
+    if pixels.full is not None:
+        bits = pixels.full.bit_length()
+        notes.append(f"whole numbers of {bits} bits: codes of the same steps look better than they are")
+    elif len(found) and np.array_equal(found, _half_floats(found)):
+        notes.append("all its numbers are those of half floats: r16f looks better than it is")
+    is_as_stored = reading.depths_are == VIEW and pixels.full is None and reading.depth_unit == 1
+    if is_as_stored and len(found) and 0 <= found.min() <= found.max() <= 1:
+        codes = "window, reversed_window or linear"
+        notes.append(f"all its numbers are in [0, 1]: --depths-are {codes} reads a depth buffer's")
+    if reading.fov is None:
+        notes.append("without --fov its points lie on the view axis, and errors are of depth alone")
+    return notes
+
+
+def _half_floats(numbers: np.ndarray) -> np.ndarray:
+    with np.errstate(over="ignore"):
+        return numbers.astype(np.float16).astype(np.float64)

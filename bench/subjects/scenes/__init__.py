@@ -1,0 +1,1 @@
+"""Scenes as they are named, and captured frames as scenes."""

@@ -1,0 +1,254 @@
+"""Captured frames as scenes: what images say of each pixel, read by the readers of normals and of depths."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ....encodings.shared.position import Camera
+from ....gbuffer.scenes.metal_rough import DIELECTRIC
+from ....gbuffer.scenes.pixels import PixelSurfaces, pixel_scene
+from ....gbuffer.scenes.scene import Scene, View
+from ...ground.choose import choose_one
+from ...ground.options.option import Reading
+from ...ground.output.errors import UsageError
+from ..depths.depth_images import CODES, VIEW, DepthImage, DepthReading, depth_image, read_depths
+from ..normals.captures import CURVES, Turns, captured, check_size, turns_of
+from ..normals.pixel_files import READERS, Pixels, read_pixels, read_plane, refused
+from .frame_file import COLOUR, ENTRIES, FrameFile, as_keys
+
+# Pixels of a frame that are drawn; of larger ones every second row and column, every third and so on.
+MOST_PIXELS = 2**18
+# What stands in for a quantity that a frame does not have.
+STAND_INS = {"metalness": 0.0, "specular": DIELECTRIC, "occlusion": 1.0, "emission": 0.0}
+# By how much numbers may be beyond 0 and 1: rounding of floats of 16 bits.
+BEYOND = 1e-3
+MOST_LIGHT = 1e6
+
+
+@dataclass(frozen=True, eq=False)
+class CapturedFrame:
+    """A frame as a scene.
+
+    Attributes:
+        scene: it, under the environment that mesh files have.
+        sides: width and height in pixels of what is drawn.
+        notes: what is to be said of it, a line each.
+    """
+
+    scene: Scene
+    sides: tuple[int, int]
+    notes: Sequence[str]
+
+
+def captured_frame(frame: FrameFile) -> CapturedFrame:
+    """What a description stands for. Raises UsageError, in one line, for images that are not what it says."""
+    found = _Reader(frame)
+    pixels = found.pixels()
+    pixels, every, fov = _fewer(pixels, frame.fov)
+    height, width = pixels.depth.shape
+    notes = [*found.notes]
+    if every > 1:
+        notes.append(f"every {every}th row and column is drawn, {width} x {height} pixels; none is averaged")
+    scene = pixel_scene(pixels, _view(frame, fov, found.to_world))
+    return CapturedFrame(scene, (width, height), notes)
+
+
+def _view(frame: FrameFile, fov: float, to_world: np.ndarray) -> View:
+    """The camera at the origin, turned as in the world where a matrix says how."""
+    (_, up, back) = (tuple(map(float, axis)) for axis in to_world.T)
+    return View((0.0, 0.0, 0.0), (-back[0], -back[1], -back[2]), fov, frame.near, frame.far, (up[0], up[1], up[2]))
+
+
+def _fewer(pixels: PixelSurfaces, fov: float) -> tuple[PixelSurfaces, int, float]:
+    """So many pixels that they can be drawn, every so manyth of them, and the angle of view of what is left."""
+    height, width = pixels.depth.shape
+    every = math.isqrt(max(height * width - 1, 0) // MOST_PIXELS) + 1
+    rows, columns = height // every, width // every
+    first = [(whole - kept * every + every) // 2 for whole, kept in ((height, rows), (width, columns))]
+    some = tuple(slice(at, at + kept * every, every) for at, kept in zip(first, (rows, columns), strict=True))
+    made = PixelSurfaces(**{field.name: getattr(pixels, field.name)[some] for field in fields(pixels)})
+    up = math.tan(math.radians(fov) / 2) * rows * every / height
+    return made, every, 2 * math.degrees(math.atan(up))
+
+
+class _Reader:
+    """What the images of a frame say.
+
+    Attributes:
+        notes: what is to be said of them.
+        to_world: (3, 3), view space to world space for column vectors; the identity where no matrix is known.
+    """
+
+    def __init__(self, frame: FrameFile):
+        self.notes: list[str] = []
+        self._frame = frame
+        self._coarse: dict[int, list[str]] = {}
+        self.to_world = np.eye(3)
+        if frame.view_matrix is not None:
+            reading = Reading(space="world", view_matrix=frame.view_matrix)
+            self.to_world = self._asked("view_matrix", lambda: _to_view(turns_of(reading)[0])).T
+
+    def pixels(self) -> PixelSurfaces:
+        depth = self._depth()
+        normal, covered = self._normals(depth > 0)
+        if not covered.any():
+            raise self._frame.error("depth", "no pixel is surface by both its depth and its normal")
+        depth = np.where(covered, depth, np.float32(0))
+        said = {name: self._quantity(name, covered) for name in ENTRIES if name not in ("depth", "normal")}
+        smooth, rough = said.pop("smoothness"), said.pop("roughness")
+        said = {name: self._stood_in(name, found, depth.shape) for name, found in said.items()}
+        self._say_what_stands_in()
+        reflectance, roughness = said.pop("specular"), 1 - smooth if rough is None else rough
+        return PixelSurfaces(depth=depth, normal=normal, roughness=roughness, reflectance=reflectance, **said)
+
+    def _asked(self, name: str, read: Callable[[], Any]) -> Any:
+        """What is read of an entry. Raises UsageError that names it."""
+        try:
+            return read()
+        except UsageError as error:
+            raise self._frame.error(name, error) from error
+
+    def _note(self, name: str, lines: Sequence[str]) -> None:
+        self.notes += [f"{name}: {as_keys(line)}" for line in lines]
+
+    def _depth(self) -> np.ndarray:
+        said = dict(self._frame.entries["depth"])
+        path = Path(said.pop("file"))
+        image = self._asked("depth", lambda: _depth_image(path, DepthReading(fov=self._frame.fov, **said)))
+        camera = Camera(self._frame.near, self._frame.far, self._frame.fov, image.aspect)
+        found = image.surface(camera)
+        if not found.any():
+            raise self._frame.error("depth", _out_of_reach(path, image, camera))
+        self._note("depth", image.notes)
+        return found
+
+    def _normals(self, within: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        said = dict(self._frame.entries["normal"])
+        path = Path(said.pop("file"))
+        reading = Reading(fov=self._frame.fov, **said)
+        if reading.space == "world":
+            if self._frame.view_matrix is None:
+                raise self._frame.error("normal", "--space world needs --view-matrix, next to --fov")
+            reading = replace(reading, view_matrix=self._frame.view_matrix)
+        found = self._asked("normal", lambda: captured(path, reading, within))
+        self._note("normal", found.notes)
+        return np.moveaxis(found.normals, 0, -1).astype(np.float32), found.covered
+
+    def _quantity(self, name: str, covered: np.ndarray) -> np.ndarray | None:
+        """A quantity of all pixels, 0 on the background; None where the frame has none."""
+        said = self._frame.entries.get(name)
+        if said is None:
+            return None
+        if isinstance(said, dict):
+            found = self._asked(name, lambda: self._image(name, said, covered))
+        else:
+            found = np.multiply.outer(covered, np.asarray(said)).astype(np.float32)
+        self._asked(name, lambda: _check_range(name, found[covered]))
+        return found if name == "emission" else np.clip(found, 0.0, 1.0)
+
+    def _image(self, name: str, said: dict[str, Any], covered: np.ndarray) -> np.ndarray:
+        path = Path(said["file"])
+        pixels = _planes(path, name, said)
+        check_size(path, pixels.shape, covered.shape)
+        _check_finite(path, pixels.planes, covered)
+        if pixels.steps:
+            self._coarse.setdefault(pixels.steps.bit_length(), []).append(name)
+        curve = choose_one("curve", said.get("curve", "linear"), CURVES)
+        if name == "basecolor" and "curve" not in said and pixels.full == READS_AS_COLOUR:
+            self._note(
+                name, ['8 bits without "curve" are read as linear; "curve": "srgb" is what images for screens have']
+            )
+        found = CURVES[curve](np.where(covered, pixels.planes, 0) / np.float32(pixels.full or 1))
+        found = np.moveaxis(found * np.float32(said.get("scale", 1.0)), 0, -1).astype(np.float32)
+        return found if ENTRIES[name] is COLOUR else found[..., 0]
+
+    def _stood_in(self, name: str, found: np.ndarray | None, shape: tuple[int, ...]) -> np.ndarray:
+        if found is not None:
+            return found
+        sides = (*shape, 3) if ENTRIES[name] is COLOUR else shape
+        return np.full(sides, STAND_INS[name], np.float32)
+
+    def _say_what_stands_in(self) -> None:
+        lacking = [f"{name} ({value:g})" for name, value in STAND_INS.items() if name not in self._frame.entries]
+        if lacking:
+            self.notes.append(f"it has no {', '.join(lacking)}: the number in brackets stands in everywhere")
+        for bits, names in self._coarse.items():
+            steps = f"{', '.join(names)}: steps of {bits} bits"
+            self.notes.append(f"{steps}; codes of the same steps look better than they are")
+
+
+# What stands for 1 in images that programs write for screens.
+READS_AS_COLOUR = 255
+
+
+def _to_view(turns: Turns) -> np.ndarray:
+    assert turns.to_view is not None
+    return turns.to_view
+
+
+def _depth_image(path: Path, reading: DepthReading) -> DepthImage:
+    code = choose_one("code of --depths-are", reading.depths_are, (VIEW, *CODES))
+    return depth_image(path, read_depths(path, reading.channel), replace(reading, depths_are=code))
+
+
+def _out_of_reach(path: Path, image: DepthImage, camera: Camera) -> UsageError:
+    found = image.depths(camera)
+    found = found[np.isfinite(found)]
+    reach = f"{found.min():.4g} to {found.max():.4g}" if len(found) else "not finite"
+    return refused(path, f"no depth lies within near and far; they are {reach}", "see --depths-are and --depth-unit")
+
+
+def _planes(path: Path, name: str, said: dict[str, Any]) -> Pixels:
+    """The channels of a quantity. Raises UsageError."""
+    if path.suffix.lower() not in READERS:
+        raise UsageError(f"{path}: not an image; {', '.join(READERS)} are read")
+    if ENTRIES[name] is COLOUR:
+        return read_pixels(path, lambda names: _colours(path, names, said.get("channels")))
+    return read_plane(path, lambda names: [_one(path, names, said.get("channel"))])
+
+
+def _colours(path: Path, names: Sequence[str], asked: str | None) -> list[str]:
+    words = [word.strip() for word in asked.split(",")] if asked else ["R", "G", "B"]
+    if not asked and set("012") <= set(names):
+        return list("012")
+    if len(words) != 3 or not set(words) <= set(names):
+        raise refused(path, f"no channels {','.join(words)}; it has {', '.join(names[:40])}", "--channels names three")
+    return words
+
+
+def _one(path: Path, names: Sequence[str], asked: str | None) -> str:
+    if asked is None and len(names) == 1:
+        return names[0]
+    if asked not in names:
+        what = "no channel is named" if asked is None else f"no channel {asked!r}"
+        raise refused(path, f"{what}; it has {', '.join(names[:40])}", "--channel names one")
+    return asked
+
+
+def _check_finite(path: Path, planes: np.ndarray, covered: np.ndarray) -> None:
+    bad = ~np.isfinite(planes).all(axis=0) & covered
+    if bad.any():
+        row, column = map(int, np.argwhere(bad)[0])
+        what = f"{bad.sum()} of {covered.sum()} pixels are NaN or infinite, the first at row {row}, column {column}"
+        raise refused(path, what, "a mask of the normals leaves them out")
+
+
+def _check_range(name: str, found: np.ndarray) -> None:
+    """Raises UsageError for numbers that a quantity cannot have."""
+    low, high = float(found.min()), float(found.max())
+    if name == "emission":
+        if not 0 <= low <= high <= MOST_LIGHT:
+            raise UsageError(f"its numbers are {low:.3g} to {high:.3g}; light is 0 to {MOST_LIGHT:g}")
+    elif not -BEYOND <= low <= high <= 1 + BEYOND:
+        raise UsageError(f"its numbers are {low:.3g} to {high:.3g}, and it is 0 to 1; --scale multiplies them")
+
+
+def lines_of(frame: FrameFile, found: CapturedFrame) -> Iterator[str]:
+    """What is said of a frame on standard error."""
+    yield from (f"{frame.path}: {note}" for note in found.notes)

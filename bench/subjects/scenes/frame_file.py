@@ -1,0 +1,207 @@
+"""The description of a captured frame: which file and channels hold its depth, its normals and its materials."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+from ....gbuffer.scenes.files.source import SceneFileError, checked_address, file_bytes
+from ...ground.choose import unknown_name
+from ...ground.options.option import KINDS, Reading, fields_of
+from ...ground.output.errors import UsageError
+from ..normals.pixel_files import READERS
+
+ENDING = ".json"
+MOST_BYTES = 2**20
+# What is said of each kind of entry, and of what kind it is. Words that options have mean what these mean.
+OF_NORMALS = ("channels", "unpack", "curve", "normalise", "space", "mask", "nan_share")
+DEPTH: Mapping[str, type] = MappingProxyType({"file": str, "channel": str, "depths_are": str, "depth_unit": float})
+NORMAL: Mapping[str, type] = MappingProxyType(
+    {"file": str} | {name: fields_of(Reading)[name].kind for name in OF_NORMALS}
+)
+COLOUR: Mapping[str, type] = MappingProxyType({"file": str, "channels": str, "curve": str, "scale": float})
+NUMBER: Mapping[str, type] = MappingProxyType({"file": str, "channel": str, "curve": str, "scale": float})
+ENTRIES: Mapping[str, Mapping[str, type]] = MappingProxyType(
+    {
+        "depth": DEPTH,
+        "normal": NORMAL,
+        "basecolor": COLOUR,
+        "roughness": NUMBER,
+        "smoothness": NUMBER,
+        "metalness": NUMBER,
+        "specular": NUMBER,
+        "occlusion": NUMBER,
+        "emission": COLOUR,
+    }
+)
+CAMERA = ("fov", "near", "far")
+# What a script says of the capture is not read.
+KNOWN = (*CAMERA, "view_matrix", *ENTRIES, "capture")
+# Without these there is no image; roughness may be smoothness.
+NEEDED = (*CAMERA, "depth", "normal", "basecolor", "roughness")
+
+
+@dataclass(frozen=True)
+class FrameFile:
+    """A description, checked; of the images nothing is read.
+
+    Attributes:
+        path: where it was read from.
+        fov, near, far: the camera's; vertical, in degrees.
+        view_matrix: world to view space, as --view-matrix takes it; None where nobody says.
+        entries: by name, what is said of each: words with a file, or a number, or three.
+    """
+
+    path: Path
+    fov: float
+    near: float
+    far: float
+    view_matrix: str | None
+    entries: Mapping[str, Any]
+
+    def error(self, name: str, said: object) -> UsageError:
+        """One line about an entry, in which options are the keys that they are here."""
+        return UsageError(f"{self.path}: {name}: {as_keys(str(said))}")
+
+
+def as_keys(text: str) -> str:
+    """What is said of options, of the keys of a description: --no-unpack is "unpack": false."""
+    flags = {name for name in OF_NORMALS if fields_of(Reading)[name].kind is bool}
+
+    def key(match: re.Match[str]) -> str:
+        name = match[2].replace("-", "_")
+        return f'"{name}": {"false" if match[1] else "true"}' if name in flags else f'"{name}"'
+
+    return re.sub(r"--(no-)?([a-z][a-z-]*)", key, text)
+
+
+def read_frame_file(path: Path) -> FrameFile:
+    """A description. Raises UsageError, in one line, for what is missing in it or not known."""
+    found = _document(path)
+    _check_names(path, "", found, KNOWN)
+    said = {name: value for name, value in found.items() if value is not None}
+    if {"roughness", "smoothness"} <= set(said):
+        raise UsageError(f"{path}: roughness and smoothness are one quantity; leave one out")
+    lacking = [name for name in NEEDED if name not in said and not (name == "roughness" and "smoothness" in said)]
+    if lacking:
+        raise UsageError(f"{path}: no {', '.join(lacking)}; {_how(lacking[0])}")
+    fov, near, far = (_number(path, name, said[name]) for name in CAMERA)
+    _check_camera(path, fov, near, far)
+    entries = {name: _entry(path, name, said[name]) for name in ENTRIES if name in said}
+    return FrameFile(path, fov, near, far, _matrix(path, said.get("view_matrix")), entries)
+
+
+def files_of_frame(path: Path) -> list[Path]:
+    """The files that a description names and that are there; none of one that cannot be read."""
+    try:
+        return sorted(set(filter(Path.is_file, _named_files(read_frame_file(path)))))
+    except (UsageError, OSError):
+        return []
+
+
+def _named_files(frame: FrameFile) -> Iterator[Path]:
+    words = [one for one in frame.entries.values() if isinstance(one, dict)]
+    yield from (Path(one[key]) for one in words for key in ("file", "mask") if key in one)
+    if frame.view_matrix:
+        yield Path(frame.view_matrix)
+
+
+def _document(path: Path) -> dict[str, Any]:
+    try:
+        found = json.loads(file_bytes(path, MOST_BYTES))
+    except SceneFileError as error:
+        raise UsageError(str(error)) from error
+    except (ValueError, RecursionError) as error:
+        raise UsageError(f"{path}: not JSON: {error}") from error
+    if not isinstance(found, dict):
+        raise UsageError(f'{path}: it describes no frame; write {{"depth": {{"file": "depth.exr"}}, ...}}')
+    return found
+
+
+def _check_names(path: Path, place: str, found: Mapping[str, Any], known: tuple[str, ...]) -> None:
+    unknown = [name for name in found if name not in known]
+    if unknown:
+        raise UsageError(f"{path}: {place}{unknown_name('key', unknown, known)}")
+
+
+def _how(name: str) -> str:
+    """How somebody writes what is missing."""
+    if name in CAMERA:
+        return f'write "{name}": NUMBER'
+    return f'write "{name}": {{"file": "FILE", "{"channel" if "channel" in ENTRIES[name] else "channels"}": "..."}}'
+
+
+def _number(path: Path, name: str, value: object) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise UsageError(f"{path}: {name} is {value!r}; it must be a number")
+    return float(value)
+
+
+def _check_camera(path: Path, fov: float, near: float, far: float) -> None:
+    if not 1 <= fov <= 175:
+        raise UsageError(f"{path}: fov is {fov:g}; an angle of view is 1 to 175 degrees")
+    if not 0 < near < far < 1e15:
+        raise UsageError(
+            f"{path}: near is {near:g} and far is {far:g}; near is more than 0, far more than near; reversed depth is "
+            '"depths_are": "reversed_window"'
+        )
+
+
+def _matrix(path: Path, value: object) -> str | None:
+    """Numbers as they are typed, or where the file of them lies."""
+    if value is None:
+        return None
+    if isinstance(value, list):
+        flat = [one for row in value for one in (row if isinstance(row, list) else [row])]
+        return ",".join(repr(_number(path, "view_matrix", one)) for one in flat)
+    if not isinstance(value, str):
+        raise UsageError(f"{path}: view_matrix is {value!r}; it must be numbers, or a text file of them")
+    is_file = re.search(r"[^-+0-9.eE,;\s]", value)
+    return str(_beside(path, "view_matrix", value)) if is_file else value
+
+
+def _entry(path: Path, name: str, value: object) -> Any:
+    """What is said of a quantity, with its files where they lie."""
+    kinds = ENTRIES[name]
+    if kinds is NUMBER and not isinstance(value, dict):
+        return _number(path, name, value)
+    if kinds is COLOUR and isinstance(value, list) and len(value) == 3:
+        return [_number(path, name, one) for one in value]
+    if not isinstance(value, dict):
+        raise UsageError(f"{path}: {name} is {value!r}; {_how(name)}")
+    _check_names(path, f"{name}: ", value, tuple(kinds))
+    if value.get("file") is None:
+        raise UsageError(f"{path}: {name}: no file; {_how(name)}")
+    said = {key: _word(path, f"{name}: {key}", one, kinds[key]) for key, one in value.items() if one is not None}
+    for key in ("file", "mask"):
+        if key == "file" or Path(said.get(key, "")).suffix.lower() in READERS:
+            said[key] = str(_beside(path, name, said[key]))
+    return said
+
+
+def _word(path: Path, place: str, value: object, kind: type) -> Any:
+    if kind is float:
+        return _number(path, place, value)
+    if kind is str and isinstance(value, list):
+        value = ",".join(map(str, value))
+    if not isinstance(value, kind):
+        raise UsageError(f"{path}: {place} is {value!r}; it must be {KINDS[kind]}")
+    return value
+
+
+def _beside(path: Path, name: str, address: str) -> Path:
+    """A file next to a description or below it. Raises UsageError where it is elsewhere, or not there."""
+    try:
+        found = checked_address(path, address, name)
+    except SceneFileError as error:
+        raise UsageError(str(error)) from error
+    if found is None or not found.is_file():
+        raise UsageError(f"{path}: {name}: no file {address}; files are named from the folder of {path.name}")
+    return path.parent / os.path.relpath(found, path.parent.resolve())

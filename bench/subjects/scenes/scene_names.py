@@ -1,0 +1,54 @@
+"""Scenes as they are named: those there are, users' mesh files, and captured frames."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+from ....encodings.codecs.files import called
+from ....gbuffer.scenes.catalogue import SCENES, SceneMaker
+from ....gbuffer.scenes.files.read import FRAMES, READERS, file_scene
+from ....gbuffer.scenes.scene import Scene
+from ....gbuffer.scenes.setting import Setting
+from ...ground.choose import choose_or_read
+from ...ground.options.scene_names import mesh_file, say_notes
+from ...ground.output.errors import tell
+from .captured_frame import captured_frame, lines_of
+from .frame_file import ENDING, read_frame_file
+
+ENDINGS = (*READERS, ENDING)
+
+
+def scene_makers_named(names: str) -> list[SceneMaker]:
+    """The scenes that comma-separated names stand for: those of the catalogue, mesh files, or captured frames.
+
+    Raises:
+        UsageError: an unknown name, or a file that cannot be read.
+    """
+    notes: dict[Path, Sequence[str]] = {}
+    lines: list[str] = []
+
+    def scene_of(path: Path) -> SceneMaker:
+        name = called(path.name)
+        if path.suffix.lower() == ENDING:
+            frame = read_frame_file(path)
+            found = captured_frame(frame)
+            lines.extend(lines_of(frame, found))
+            return SceneMaker(
+                name, f"the pixels of {name}", partial(_given, found.scene), FRAMES, None, True, found.sides
+            )
+        file = mesh_file(path)
+        notes[path] = file.notes
+        return SceneMaker(name, f"the meshes of {name}", partial(file_scene, file), FRAMES, None, file.is_metal_rough)
+
+    made = choose_or_read("scene", names, SCENES, ENDINGS, scene_of)
+    say_notes(notes)
+    for line in lines:
+        tell(line)
+    return made
+
+
+def _given(scene: Scene, _: Setting) -> Scene:
+    """A scene that is what it is, whatever is asked for."""
+    return scene

@@ -1,0 +1,101 @@
+"""Pixels as a scene: what a G-buffer says of each lies on a square of its own, which covers it and faces the camera."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..environment.catalogue import ENVIRONMENTS
+from .files.read import AROUND
+from .mesh import Mesh
+from .metal_rough import Map, MetalRough
+from .scene import Part, Scene, View
+
+# A reflectance is a number of a material: materials of so many are made, and more are rounded to as many steps.
+REFLECTANCES = 256
+# Along u, with the bitangent's sign that has a normal map's y up where v goes down.
+TANGENT = (1.0, 0.0, 0.0, -1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class PixelSurfaces:
+    """What the pixels of a picture show, float32, row 0 on top.
+
+    Attributes:
+        depth: (height, width), along the line of sight; 0 where there is no surface.
+        normal: (height, width, 3), unit, in view space.
+        basecolor, emission: (height, width, 3), linear.
+        roughness, metalness, reflectance, occlusion: (height, width).
+    """
+
+    depth: np.ndarray
+    normal: np.ndarray
+    basecolor: np.ndarray
+    roughness: np.ndarray
+    metalness: np.ndarray
+    reflectance: np.ndarray
+    occlusion: np.ndarray
+    emission: np.ndarray
+
+
+def pixel_scene(pixels: PixelSurfaces, view: View) -> Scene:
+    """The pixels as `view` sees them from the origin, without lights of their own.
+
+    Each square looks its texel up at the texel's centre, so nothing is filtered, whatever size it is drawn at.
+    """
+    covered = pixels.depth > 0
+    reflectances, level = _levels(pixels.reflectance, covered)
+    meshes = [_squares(pixels.depth, level == at, view) for at in range(len(reflectances))]
+    to_world, maps, white = np.linalg.inv(view.matrix())[None], _maps(pixels), (1.0, 1.0, 1.0)
+    return Scene(
+        parts=tuple(Part(mesh, to_world, np.array([at]), casts=False) for at, mesh in enumerate(meshes)),
+        materials=tuple(MetalRough(white, 1.0, 1.0, float(one), white, **maps) for one in reflectances),
+        lights=(),
+        ambient=(0.0, 0.0, 0.0),
+        view=view,
+        previous=view,
+        environment=ENVIRONMENTS[AROUND].make(),
+    )
+
+
+def _levels(reflectance: np.ndarray, covered: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The reflectances that materials have, and which of them each pixel has, (height, width); -1 where none is."""
+    values, index = np.unique(reflectance[covered], return_inverse=True)
+    if len(values) > REFLECTANCES:
+        values = np.linspace(values[0], values[-1], REFLECTANCES)
+        steps = np.rint((reflectance[covered] - values[0]) / (values[1] - values[0])).astype(int)
+        values, index = values[np.unique(steps)], np.unique(steps, return_inverse=True)[1]
+    level = np.full(reflectance.shape, -1)
+    level[covered] = index
+    return values, level
+
+
+def _maps(pixels: PixelSurfaces) -> dict[str, Map]:
+    one = np.ones_like(pixels.roughness)
+    planes = {
+        "base_map": pixels.basecolor,
+        "rough_metal_map": np.stack([one, pixels.roughness, pixels.metalness], axis=-1),
+        # Read as 2 c - 1.
+        "normal_map": pixels.normal * 0.5 + 0.5,
+        "occlusion_map": np.stack([pixels.occlusion, one, one], axis=-1),
+        "emission_map": pixels.emission,
+    }
+    clamp = ("clamp", "clamp")
+    return {name: Map(np.dstack([found, one]).astype(np.float32), wrap=clamp) for name, found in planes.items()}
+
+
+def _squares(depth: np.ndarray, chosen: np.ndarray, view: View) -> Mesh:
+    """A square for each chosen pixel, in view space: the pixel's corners at its depth."""
+    height, width = depth.shape
+    row, column = np.nonzero(chosen)
+    across, up, _, _ = view.rays((width, height))
+    right, down = np.array([0, 1, 0, 1]), np.array([0, 0, 1, 1])
+    x = ((column[:, None] + right) / width * 2 - 1) * across
+    y = (1 - (row[:, None] + down) / height * 2) * up
+    places = np.stack([x, y, np.full_like(x, -1.0)], axis=-1) * depth[row, column].astype(np.float64)[:, None, None]
+    count = 4 * len(row)
+    uv = np.repeat(np.stack([(column + 0.5) / width, (row + 0.5) / height], axis=1), 4, axis=0)
+    triangles = (4 * np.arange(len(row))[:, None] + (0, 2, 1, 1, 2, 3)).reshape(-1, 3)
+    towards = np.tile((0.0, 0.0, 1.0), (count, 1))
+    return Mesh(places.reshape(-1, 3), towards, triangles, uv, np.tile(TANGENT, (count, 1)))
