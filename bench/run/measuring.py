@@ -211,6 +211,8 @@ def companions(word: str | Path) -> list[Path]:
     beside = {other for pattern in patterns for other in path.parent.glob(pattern)}
     if path.suffix.lower() == ".gltf":
         beside |= set(_parts_of_gltf(path))
+    if path.suffix.lower() == ".json":
+        beside |= set(_files_of_frame(path))
     if path.suffix.lower() == ".toml":
         beside |= set(_files_of_layout(path))
     if names_an_encoder(str(word)):
@@ -230,6 +232,14 @@ def _parts_of_gltf(path: Path) -> list[Path]:
     except (ValueError, TypeError, AttributeError, KeyError, RecursionError, SceneFileError):
         return []
     return [path.parent / os.path.relpath(one, path.parent.resolve()) for one in named if one and one.is_file()]
+
+
+def _files_of_frame(path: Path) -> list[Path]:
+    """The images that the description of a captured frame names."""
+    # It imports JAX, which start-up does without.
+    from ..subjects.scenes.frame_file import files_of_frame
+
+    return files_of_frame(path)
 
 
 def _files_of_layout(path: Path) -> list[Path]:

@@ -7,7 +7,8 @@ In RenderDoc, open the capture, then Window > Python Shell > Run Scripts. The fo
 with RenderDoc's Python module (Debian: apt-get install python3-renderdoc). EVENT is the number of the draw after which
 targets are read. Without it that is the last draw into the targets that most draws with two or more targets write.
 
-It ends with the commands that measure what it saved. RenderDoc's own EXR files hold half floats; these have 32 bits.
+It ends with the commands that measure what it saved, and `gbuffer.json` says which file holds what: `normalbench budget
+--scene` reads that. RenderDoc's own EXR files hold half floats; these have 32 bits.
 It needs RenderDoc 1.18 or newer, Python 3.6, and nothing else.
 """
 
@@ -26,6 +27,16 @@ COVERED = "covered"
 # A target holds normals where nine tenths of what is covered have such a length.
 LEAST, MOST, SHARE = 0.97, 1.03, 0.9
 FLOATS = {2: "e", 4: "f", 8: "d"}
+# By names of targets, what they hold where they are called after one quantity: and that of a number or a colour.
+NUMBERS = {"roughness": "rough", "smoothness": "smooth|gloss", "metalness": "metal", "occlusion": "occlusion|\\bao\\b"}
+COLOURS = {"basecolor": "base_?colou?r|albedo", "emission": "emissi"}
+# What is left for people to say. Specular is what is reflected head on, which targets of that name seldom hold.
+QUANTITIES = ("depth", "normal", "basecolor", "roughness", "metalness", "specular", "occlusion", "emission")
+NEEDED = ("fov", "near", "far", "depth", "normal", "basecolor", "roughness")
+# Unreal's targets, where there are all three; its specular of 1 reflects 0.08.
+UNREAL = re.compile(r"gbuffer_?([abc])$", re.I)
+# Normals that are looked at for what space they are in, and by how much more of them must face the camera.
+LOOKED_AT, MORE = 4096, 0.02
 
 
 # Numbers of a texture
@@ -181,6 +192,115 @@ def normals_in(found, mask):
     return ""
 
 
+def facing(found, option, mask, width, fov, turn):
+    """The share of normals that face the camera once they are turned to view space, x right, y up, z to the viewer."""
+    height, up = len(mask) // width, math.tan(math.radians(fov) / 2)
+    scale, bias = (2, -1) if option == "--unpack" else (1, 0)
+    inside = [at for at, is_covered in enumerate(mask) if is_covered]
+    inside = inside[:: max(1, len(inside) // LOOKED_AT)]
+    front = 0
+    for at in inside:
+        n = [plane[at] * scale + bias for plane in found[:3]]
+        x, y, z = (sum(a * b for a, b in zip(row, n)) for row in turn)
+        right = (2 * (at % width + 0.5) / width - 1) * up * width / height
+        front += x * right + y * (1 - 2 * (at // width + 0.5) / height) * up < z
+    return front / max(len(inside), 1)
+
+
+def space_of(found, option, mask, width, fov, matrices):
+    """What a description says of the space of normals: the first that nearly as many face the camera in as in any."""
+    same, into = [[1, 0, 0], [0, 1, 0], [0, 0, 1]], [[1, 0, 0], [0, 1, 0], [0, 0, -1]]
+    known = [({"space": "view"}, same), ({"space": "view-left-handed"}, into)]
+    for name in views(matrices)[:1]:
+        turn = [row[:3] for row in matrices[name][:3]]
+        # Where view space has z into the screen.
+        mirrored = [turn[0], turn[1], [-value for value in turn[2]]]
+        matrix = {"view_matrix": file_of_matrix(name)}
+        known = [(dict(said, **other), axes) for (said, axes), other in zip(known, (matrix, {"view_matrix": mirrored}))]
+        known += [(dict(space="world", **matrix), turn), ({"space": "world", "view_matrix": mirrored}, mirrored)]
+    shares = [facing(found, option, mask, width, fov, turn) for _, turn in known]
+    return next(said for (said, _), share in zip(known, shares) if share >= max(shares) - MORE)
+
+
+def views(matrices):
+    """The names of the matrices that turn world space to view space, as far as names say it."""
+    return [
+        name
+        for name, rows in matrices.items()
+        if re.search("view", name, re.I) and not re.search("inv|prev", name, re.I) and is_rotation(rows)
+    ]
+
+
+def camera_of(matrices, is_opengl):
+    """The angle of view and the planes of the first projection; None where there is none."""
+    for rows in matrices.values():
+        ends = planes_of_projection(rows, -1.0 if is_opengl else 0.0)
+        if ends:
+            return math.degrees(2 * math.atan(1 / abs(rows[1][1]))), ends[0], ends[1]
+    return None
+
+
+def guessed(targets):
+    """What targets hold as far as their names say it, by the quantity: a description's words."""
+    letters = {match.group(1).lower(): one for name, one in targets.items() for match in [UNREAL.search(name)] if match}
+    if set("abc") <= set(letters):
+        b, c = letters["b"]["file"], letters["c"]["file"]
+        return {
+            "metalness": {"file": b, "channel": "R"},
+            "specular": {"file": b, "channel": "G", "scale": 0.08},
+            "roughness": {"file": b, "channel": "B"},
+            "basecolor": {"file": c, "channels": "R,G,B", "curve": "srgb"},
+        }
+    kept = {}
+    for name, one in targets.items():
+        words = {**NUMBERS, **COLOURS}
+        called = [quantity for quantity, word in words.items() if re.search(word, name, re.I)]
+        if called and called[0] in NUMBERS and len(called) == 1 == len(one["channels"]):
+            kept.setdefault(called[0], {"file": one["file"], "channel": "R"})
+        elif called and called[0] in COLOURS and len(called) == 1 and len(one["channels"]) >= 3:
+            curve = "srgb" if "SRGB" in one["format"].upper() else "linear"
+            kept.setdefault(called[0], {"file": one["file"], "channels": "R,G,B", "curve": curve})
+    return kept
+
+
+def description(targets, camera, has_depth):
+    """What `normalbench budget --scene` reads: what is known of the frame, and null for what is not."""
+    said = {"fov": None, "near": None, "far": None, "view_matrix": None}
+    said.update((name, None) for name in QUANTITIES)
+    if camera:
+        said["fov"], near, far = camera
+        said["near"], said["far"] = min(near, far), min(max(near, far), FARTHEST)
+    if camera and has_depth:
+        code = "window" if camera[1] < camera[2] else "reversed_window"
+        said["depth"] = {"file": DEPTH, "channel": "Z", "depths_are": code}
+    for one in targets.values():
+        if one["normals"] and not said["normal"]:
+            said["view_matrix"] = one["space"].get("view_matrix")
+            said["normal"] = {"file": one["file"], "channels": "R,G,B", "unpack": one["normals"] == "--unpack"}
+            said["normal"].update({"space": one["space"]["space"], "mask": COVERED})
+    said.update(guessed(targets))
+    if "smoothness" in said:
+        del said["roughness"]
+    return said
+
+
+def say_description(folder, said, targets):
+    """What was guessed, what people have to write, and the command."""
+    where = folder / "gbuffer.json"
+    held = [f"{name} ({one['file']} {one.get('channel') or one['channels']})" for name, one in guessed(targets).items()]
+    if held:
+        print(f"{where}: guessed by the targets' names: {', '.join(held)}")
+    lacks = [name for name in said if said[name] is None and name != "view_matrix"]
+    if lacks:
+        print(
+            f"{where}: null stands for what is not known: {', '.join(lacks)}. "
+            'Write {"file": "FILE.exr", "channel": "R"}, or "channels": "R,G,B" for a colour'
+        )
+    needed = [name for name in NEEDED if name in lacks]
+    command = f"normalbench budget --bytes 12,16 --scene {where}"
+    return f"# once it has {', '.join(needed)}: {command}" if needed else command
+
+
 def planes_of_projection(rows, lowest):
     """The near and the far plane of a projection matrix, by rows; None if it is not a perspective.
 
@@ -204,25 +324,21 @@ def is_rotation(rows):
 
 def measuring(folder, targets, matrices, has_depth, is_opengl):
     """The commands that measure what was saved."""
-    ends = {name: planes_of_projection(rows, -1.0 if is_opengl else 0.0) for name, rows in matrices.items()}
-    camera = next(((matrices[name][1][1], found) for name, found in ends.items() if found), None)
-    fov = f" --fov {math.degrees(2 * math.atan(1 / abs(camera[0]))):.6g}" if camera else ""
+    camera = camera_of(matrices, is_opengl)
+    fov = f" --fov {camera[0]:.6g}" if camera else ""
     lines = []
     for target in targets.values():
         if target["normals"]:
             lines += of_normals(folder, target, matrices, (f" --mask {COVERED}" if has_depth else "") + fov)
-    return lines + ([of_depth(folder, *camera[1], fov)] if has_depth and camera else [])
+    return lines + ([of_depth(folder, camera[1], camera[2], fov)] if has_depth and camera else [])
 
 
 def of_normals(folder, target, matrices, options):
     """The command for a target of normals, and what to add where they are in world space."""
     read = f"--normals {folder / target['file']} {target['normals']}{options}"
     lines = [f"normalbench quality {read} --storage rg8,rgb10a2 --encoding octahedral"]
-    for name, rows in matrices.items():
-        if re.search("view", name, re.I) and not re.search("inv|prev", name, re.I) and is_rotation(rows):
-            lines.append(
-                f"# if they are in world space, add: --space world --view-matrix {folder / file_of_matrix(name)}"
-            )
+    for name in views(matrices):
+        lines.append(f"# if they are in world space, add: --space world --view-matrix {folder / file_of_matrix(name)}")
     return lines
 
 
@@ -312,6 +428,8 @@ class Saving:
         self.is_opengl = controller.GetAPIProperties().pipelineType == rd.GraphicsAPI.OpenGL
         self.textures = {int(one.resourceId): one for one in controller.GetTextures()}
         self.names = {int(one.resourceId): one.name for one in controller.GetResources()}
+        self.found = constants(controller, rd)
+        self.camera = camera_of(self.found, self.is_opengl)
         folder.mkdir(parents=True, exist_ok=True)
 
     def data_of(self, texture):
@@ -353,7 +471,11 @@ class Saving:
         channels = dict(zip("RGBA", found))
         channels[COVERED] = own
         self.write(name, texture, channels, ", unit normals" if normals else "")
-        return {"file": name, "format": texture.format.Name(), "normals": normals}
+        kept = {"file": name, "format": texture.format.Name(), "normals": normals, "channels": "RGBA"[: len(found)]}
+        if normals:
+            fov = self.camera[0] if self.camera else 60.0
+            kept["space"] = space_of(found, normals, own, texture.width, fov, self.found)
+        return kept
 
     def targets(self, mask):
         """Writes all; what is known of each, by its name in the capture."""
@@ -368,12 +490,11 @@ class Saving:
 
     def matrices(self):
         """Writes all matrices of the draw's shaders, which they are by rows."""
-        found = constants(self.controller, self.rd)
-        for name, rows in found.items():
+        for name, rows in self.found.items():
             lines = [" ".join(f"{value:.9g}" for value in row) for row in rows]
             write_text(self.folder / file_of_matrix(name), "\n".join(lines))
             print(f"{file_of_matrix(name)}: {name}, by rows")
-        return found
+        return self.found
 
 
 def save(controller, rd, folder, event=None):
@@ -383,11 +504,12 @@ def save(controller, rd, folder, event=None):
     targets = saving.targets(mask)
     matrices = saving.matrices()
     lines = measuring(folder, targets, matrices, mask is not None, saving.is_opengl)
+    said = description(targets, saving.camera, mask is not None)
     kept = {"event": saving.action.eventId, "targets": targets, "matrices": matrices, "commands": lines}
-    write_text(folder / "gbuffer.json", json.dumps(kept, indent=1))
+    write_text(folder / "gbuffer.json", json.dumps({**said, "capture": kept}, indent=1))
     if not any(one["normals"] for one in targets.values()):
         print("No target holds unit normals. If one holds a code, write what your shader decodes into a float target.")
-    print("\n".join(lines))
+    print("\n".join([*lines, say_description(folder, said, targets)]))
 
 
 def opened(rd, path):

@@ -82,7 +82,8 @@ class _Reader:
 
     Attributes:
         notes: what is to be said of them.
-        to_world: (3, 3), view space to world space for column vectors; the identity where no matrix is known.
+        to_world: (3, 3), view space to world space for column vectors; the identity where no matrix is known. The
+            world is right-handed, and y is up.
     """
 
     def __init__(self, frame: FrameFile):
@@ -92,7 +93,7 @@ class _Reader:
         self.to_world = np.eye(3)
         if frame.view_matrix is not None:
             reading = Reading(space="world", view_matrix=frame.view_matrix)
-            self.to_world = self._asked("view_matrix", lambda: _to_view(turns_of(reading)[0])).T
+            self.to_world = upright(self._asked("view_matrix", lambda: _to_view(turns_of(reading)[0])).T)
 
     def pixels(self) -> PixelSurfaces:
         depth = self._depth()
@@ -190,6 +191,19 @@ READS_AS_COLOUR = 255
 def _to_view(turns: Turns) -> np.ndarray:
     assert turns.to_view is not None
     return turns.to_view
+
+
+def upright(to_world: np.ndarray) -> np.ndarray:
+    """View space to a world that is right-handed with y up, as environments are, and has the axes of another.
+
+    Args:
+        to_world: to that other world, whose axis that is most along the camera's up is taken for its up.
+    """
+    axis = int(np.argmax(abs(to_world[:, 1])))
+    y = np.sign(to_world[axis, 1]) * to_world[axis]
+    x, z = np.delete(to_world, axis, axis=0)
+    turned = np.stack([x, y, z])
+    return turned if np.linalg.det(turned) > 0 else np.stack([x, y, -z])
 
 
 def _depth_image(path: Path, reading: DepthReading) -> DepthImage:

@@ -104,7 +104,8 @@ def cases(options: EffectsOptions, device: Device) -> list[Case]:
             if with_effect := pipeline_with(pipeline, [effect], complaints):
                 one = replace(exact, light_targets=max(pipeline.light_targets, default=1))
                 plans = [(replace(one, layout=layout), depth) for layout, depth in inside]
-                chosen = [Case(effect, with_effect, plan, m, setting, depth) for m in makers for plan, depth in plans]
+                sized = [(m, replace(p, size=m.within(p.size)), depth) for m in makers for p, depth in plans]
+                chosen = [Case(effect, with_effect, plan, m, setting, depth) for m, plan, depth in sized]
                 made += [case for case in chosen if _is_possible(device, case, makers[case.maker], complaints)]
     return what_is_left(made, complaints)
 

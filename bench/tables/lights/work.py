@@ -71,7 +71,8 @@ def shots(options: LightsOptions, gl: Device) -> list[Shot]:
     """The scenes asked for. Raises UsageError."""
     size, _ = checked_target(options.size, max(all_samples(options)), 1, gl)
     setting = checked_setting(options.objects, options.lights, options.seed)
-    return [Shot(maker.name, maker.make(setting), size, options.seed) for maker in scene_makers_named(options.scene)]
+    makers = scene_makers_named(options.scene)
+    return [Shot(maker.name, maker.make(setting), maker.within(size), options.seed) for maker in makers]
 
 
 def given_samples(options: LightsOptions, gl: Device) -> dict[int, list[int]]:

@@ -465,7 +465,7 @@ class Pictures:
         scene, shown = maker.make(case.setting), []
         if scene.is_metal_rough:
             layout = replace(layout, space=engines_space(case.codec.encoding))
-        plan = Plan(SIZE, 1, layout, LIGHT_BUFFERS["rgba32f"], 2, True, 1.0)
+        plan = Plan(maker.within(SIZE), 1, layout, LIGHT_BUFFERS["rgba32f"], 2, True, 1.0)
         with rendering(self._device, case.pipeline, scene, plan) as made:
             for power in case.powers_of(maker):
                 made.draw(scene if power is None else scene.with_power(power), keeps)

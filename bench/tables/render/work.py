@@ -97,8 +97,9 @@ def cases(options: RenderOptions, device: Device) -> list[Case]:
         if why := lacking(effects, maker.name, scene):
             complaints.append(why)
             continue
+        sized = [replace(plan, size=maker.within(plan.size)) for plan in plans]
         for pipeline in filter(None, pipelines):
-            asked = [_as_engines_keep(plan) for plan in plans] if scene.is_metal_rough else plans
+            asked = [_as_engines_keep(plan) for plan in sized] if scene.is_metal_rough else sized
             for plan in suited(device, pipeline, asked, complaints, scene.is_metal_rough):
                 case = Case(pipeline, plan, maker, setting, options.frames or maker.frames, options.samples, **told)
                 made += [replace(case, power=power) for power in ([None] if scene.is_metal_rough else powers)]

@@ -8,6 +8,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+from contextlib import ExitStack
 from pathlib import Path
 
 import captured_program
@@ -16,6 +17,10 @@ import OpenImageIO as oiio  # noqa: N813 # as its own documentation has it
 import pytest
 
 from normalbench.bench.door.in_renderdoc import save_gbuffer as script
+from normalbench.bench.subjects.scenes.scene_names import scene_makers_named
+from normalbench.bench.tables.budget.rates import Exact, Stage
+from normalbench.gbuffer.gl.device import device
+from normalbench.gbuffer.scenes.setting import Setting
 
 TEXT = Path(script.__file__).read_text()
 
@@ -123,6 +128,55 @@ def test_other_matrices_are_no_projections():
     assert not script.is_rotation((captured_program.view() * 2).tolist())
 
 
+def test_normals_are_in_the_space_in_which_they_face_the_camera():
+    """In view space of either hand and in world space, with the camera's matrix of either hand."""
+    rng = np.random.default_rng(3)
+    rays = np.stack(
+        [*(p.ravel() for p in np.meshgrid(np.linspace(-1, 1, 32), np.linspace(1, -1, 32))), np.full(1024, -1)]
+    )
+    n = rng.normal(size=(3, 1024))
+    n *= -np.sign((n * rays).sum(axis=0)) / np.linalg.norm(n, axis=0)
+    turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    mirror = np.diag([1.0, 1.0, -1.0])
+    for to_view, at in ((turn, "world_to_view.txt"), (mirror @ turn, (mirror @ turn).tolist())):
+        rows = np.eye(4)
+        rows[:3, :3] = turn
+        for said, held in (
+            ({"space": "view", "view_matrix": "world_to_view.txt"}, n),
+            ({"space": "view-left-handed", "view_matrix": (mirror @ turn).tolist()}, mirror @ n),
+            ({"space": "world", "view_matrix": at}, to_view.T @ n),
+        ):
+            for option, stored in (("--no-unpack", held), ("--unpack", held / 2 + 0.5)):
+                matrices = {"world to view": rows.tolist()}
+                found = script.space_of(stored.tolist(), option, [1.0] * 1024, 32, 90.0, matrices)
+                assert found["space"] == said["space"] and np.array_equal(found["view_matrix"], said["view_matrix"])
+
+
+def test_what_targets_hold_is_guessed_by_names_that_leave_no_doubt():
+    def target(form="R8G8B8A8_UNORM", channels="RGBA", file="a.exr"):
+        return {"file": file, "format": form, "channels": channels, "normals": ""}
+
+    named = {
+        "SceneAlbedo": target("R8G8B8A8_SRGB"),
+        "gRoughness": target("R8_UNORM", "R", "b.exr"),
+        "MetalRough": target(),
+        "Emissive": target("R11G11B10_FLOAT", "RGB", "c.exr"),
+        "AO": target("R8_UNORM", "R", "d.exr"),
+        "Metallic": target(),
+    }
+    assert script.guessed(named) == {
+        "basecolor": {"file": "a.exr", "channels": "R,G,B", "curve": "srgb"},
+        "roughness": {"file": "b.exr", "channel": "R"},
+        "emission": {"file": "c.exr", "channels": "R,G,B", "curve": "linear"},
+        "occlusion": {"file": "d.exr", "channel": "R"},
+    }
+    unreal = {f"GBuffer{letter}": target(file=f"{letter}.exr") for letter in "ABC"}
+    found = script.guessed(unreal)
+    assert found["specular"] == {"file": "B.exr", "channel": "G", "scale": 0.08} and "occlusion" not in found
+    assert found["basecolor"] == {"file": "C.exr", "channels": "R,G,B", "curve": "srgb"}
+    assert not script.guessed({"GBufferA": target(), "GBufferB": target()})
+
+
 def lacking():
     """Why no capture can be made here; empty where it can."""
     if not Path("/usr/bin/python3").exists() or not shutil.which("Xvfb"):
@@ -160,7 +214,8 @@ def test_a_captured_program_is_measured(display, run, tmp_path, monkeypatch):
     words = ["/usr/bin/python3", "save.py", str(capture)]
     done = subprocess.run(words, env=shown, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    kept = json.loads(Path("gbuffer/gbuffer.json").read_text())
+    frame = json.loads(Path("gbuffer/gbuffer.json").read_text())
+    kept = frame["capture"]
     formats = {name: one["format"] for name, one in kept["targets"].items()}
     assert (
         list(formats.values()) == ["R8G8B8A8_UNORM", "R10G10B10A2_UNORM", "R16_FLOAT"] and "GBuffer normal" in formats
@@ -169,12 +224,29 @@ def test_a_captured_program_is_measured(display, run, tmp_path, monkeypatch):
     assert np.allclose(np.loadtxt("gbuffer/view_matrix.txt"), captured_program.view())
     check_pixels()
     quality, world, depth = kept["commands"]
-    assert "--near 0.1 --far 100 --fov 60" in depth and "--fov 60" in quality and done.stdout.endswith(f"{depth}\n")
+    assert "--near 0.1 --far 100 --fov 60" in depth and "--fov 60" in quality
+    assert done.stdout.splitlines()[-2:] == [depth, "normalbench budget --bytes 12,16 --scene gbuffer/gbuffer.json"]
     (row, *_) = rows_of(run, quality)
     assert row["count"] > 2000 and 45 < row["psnr_db"] < 55
     turned = rows_of(run, quality + world.partition("add:")[2])
     assert turned[0]["psnr_db"] == pytest.approx(row["psnr_db"], abs=1e-3), "the camera does not turn"
     assert all(row["relative_max"] < 1e-3 for row in rows_of(run, depth))
+    guessed = [name for name in ("basecolor", "roughness") if frame[name]]
+    assert len(guessed) == 2 and frame["metalness"] is None and "guessed" in done.stdout and "metalness" in done.stdout
+    check_scene()
+
+
+def check_scene():
+    """The captured sphere as a scene: its roughness, and its normals to a step of RGB10 A2, where the camera sees it."""
+    (maker,) = scene_makers_named("gbuffer/gbuffer.json")
+    assert maker.sides == captured_program.SIZE
+    with ExitStack() as stack:
+        exact = Exact(device(), stack, Stage(maker, Setting(), maker.sides))
+        covered, surfaces = exact.covered, exact.surfaces
+    assert 2000 < covered.sum() < 8000 and set(np.unique(surfaces.roughness[covered])) == {0.375}
+    assert np.allclose(surfaces.basecolor[covered], np.round(np.array([1, 0.5, 0.25]) * 255) / 255, atol=1e-6)
+    middle = surfaces.normal[45, 80]
+    assert np.allclose(middle, (0, 0, 1), atol=0.03)
 
 
 def rows_of(run, command):
