@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -47,10 +47,10 @@ def pixel_scene(pixels: PixelSurfaces, view: View) -> Scene:
     covered = pixels.depth > 0
     reflectances, level = _levels(pixels.reflectance, covered)
     meshes = [_squares(pixels.depth, level == at, view) for at in range(len(reflectances))]
-    to_world, maps, white = np.linalg.inv(view.matrix())[None], _maps(pixels), (1.0, 1.0, 1.0)
+    to_world, surface = np.linalg.inv(view.matrix())[None], _surface(pixels)
     return Scene(
         parts=tuple(Part(mesh, to_world, np.array([at]), casts=False) for at, mesh in enumerate(meshes)),
-        materials=tuple(MetalRough(white, 1.0, 1.0, float(one), white, **maps) for one in reflectances),
+        materials=tuple(replace(surface, reflectance=float(one)) for one in reflectances),
         lights=(),
         ambient=(0.0, 0.0, 0.0),
         view=view,
@@ -71,18 +71,26 @@ def _levels(reflectance: np.ndarray, covered: np.ndarray) -> tuple[np.ndarray, n
     return values, level
 
 
-def _maps(pixels: PixelSurfaces) -> dict[str, Map]:
+def _surface(pixels: PixelSurfaces) -> MetalRough:
+    """A material of one texel for each pixel, that has all but the reflectance."""
     one = np.ones_like(pixels.roughness)
-    planes = {
-        "base_map": pixels.basecolor,
-        "rough_metal_map": np.stack([one, pixels.roughness, pixels.metalness], axis=-1),
+
+    def lying(*planes: np.ndarray) -> Map:
+        return Map(np.dstack([*planes, one]).astype(np.float32), wrap=("clamp", "clamp"))
+
+    white = (1.0, 1.0, 1.0)
+    return MetalRough(
+        base=white,
+        metalness=1.0,
+        roughness=1.0,
+        emission=white,
+        base_map=lying(pixels.basecolor),
+        rough_metal_map=lying(one, pixels.roughness, pixels.metalness),
         # Read as 2 c - 1.
-        "normal_map": pixels.normal * 0.5 + 0.5,
-        "occlusion_map": np.stack([pixels.occlusion, one, one], axis=-1),
-        "emission_map": pixels.emission,
-    }
-    clamp = ("clamp", "clamp")
-    return {name: Map(np.dstack([found, one]).astype(np.float32), wrap=clamp) for name, found in planes.items()}
+        normal_map=lying(pixels.normal * 0.5 + 0.5),
+        occlusion_map=lying(pixels.occlusion, one, one),
+        emission_map=lying(pixels.emission),
+    )
 
 
 def _squares(depth: np.ndarray, chosen: np.ndarray, view: View) -> Mesh:

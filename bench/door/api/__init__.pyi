@@ -71,7 +71,7 @@ def pick(
         encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
         against: Encodings or files of GLSL, HLSL or Slang to compare with the answer, comma-separated, or all; `normalbench list` shows them.
         normals: Normal sets or files, comma-separated, or all; `normalbench list` shows them. Default: those of --domain.
-        scene: Scenes or mesh files, comma-separated, or all; `normalbench list` shows them.
+        scene: Scenes, mesh files or captured frames (gbuffer.json), comma-separated, or all; `normalbench list` shows them.
         power: Specular powers that the scenes are rendered with, comma-separated.
         effects: Effects in the image, all at once, with settings: gtao:size=half,lpv.
         family: GPU families that issue slots are counted for, comma-separated; the dearest counts.
@@ -139,7 +139,7 @@ def budget(
 
     Args:
         bytes: Bytes a pixel without native depth, comma-separated.
-        scene: Metal/rough scenes that judge: ramps, studio, and glTF files; comma-separated.
+        scene: Metal/rough scenes that judge: ramps, studio, glTF files, and captured frames (gbuffer.json); comma-separated.
         environment: What they reflect: studio, sky, strips, lamp, or an .hdr or .exr file.
         hold: What is stored: normal, basecolor, roughness, metalness, specular, occlusion, tangent; motion in a target of its own, or motion:packed; id:BITS, flags:BITS, or either as id:stencil; shadow:BITS, custom:BITS, other:BITS; emission, or emission:light where the light buffer has it.
         speed: Pixels a frame at 1920 x 1080 up to which motion must be within 1/16 pixel, 0 to 500.
@@ -273,7 +273,7 @@ def render(
         rounding: nearest, truncate, truncate_half, dithered; or all. Default: nearest.
         light_buffer: Light buffers or files of yours, comma-separated, or all; `normalbench list` shows them. Any bits are one too: ufloat:6:9, linear/unorm:10:10:10.
         light_targets: 1, 2; comma-separated, or all.
-        scene: Scenes or mesh files, comma-separated, or all; `normalbench list` shows them.
+        scene: Scenes, mesh files or captured frames (gbuffer.json), comma-separated, or all; `normalbench list` shows them.
         power: Specular powers of all materials, comma-separated. Default: each material's own.
         effects: Effects in the image, all at once, with settings: gtao:size=half,lpv.
         shadow: on, off; comma-separated, or all.
@@ -689,7 +689,7 @@ def lights(
         peaks: banding: the light at a lamp's centre.
         samples: resolve: samples per pixel.
         pipeline: Pipelines, comma-separated, or all; `normalbench list` shows them.
-        scene: Scenes or mesh files, comma-separated, or all; `normalbench list` shows them.
+        scene: Scenes, mesh files or captured frames (gbuffer.json), comma-separated, or all; `normalbench list` shows them.
         power: image: specular powers.
         size: WIDTHxHEIGHT of the image.
         objects: Objects in the scene `objects`.

@@ -265,11 +265,13 @@ def guessed(targets):
 
 def description(targets, camera, has_depth):
     """What `normalbench budget --scene` reads: what is known of the frame, and null for what is not."""
-    said = {"fov": None, "near": None, "far": None, "view_matrix": None}
+    said: dict = {"fov": None, "near": None, "far": None, "view_matrix": None}
     said.update((name, None) for name in QUANTITIES)
     if camera:
-        said["fov"], near, far = camera
-        said["near"], said["far"] = min(near, far), min(max(near, far), FARTHEST)
+        fov, near, far = camera
+        planes = {"fov": fov, "near": min(near, far), "far": min(max(near, far), FARTHEST)}
+        # The digits that a matrix of float32 has.
+        said.update((name, float(f"{value:.6g}")) for name, value in planes.items())
     if camera and has_depth:
         code = "window" if camera[1] < camera[2] else "reversed_window"
         said["depth"] = {"file": DEPTH, "channel": "Z", "depths_are": code}

@@ -63,7 +63,9 @@ Count = Annotated[int, Option("--count", "Normals in a uniform set.", in_run=Tru
 Seed = Annotated[int, Option("--seed", "The random seed of uniform sets, points and scenes.", in_run=True)]
 Pipelines = Annotated[str, Option("--pipeline", f"Pipelines, {Names}.", in_run=True)]
 Layouts = Annotated[str | None, Option("--layout", "Layouts: names or TOML files.", files=True, in_run=True)]
-Scenes = Annotated[str, Option("--scene", f"Scenes or mesh files, {Names}.", files=True, in_run=True)]
+Scenes = Annotated[
+    str, Option("--scene", f"Scenes, mesh files or captured frames (gbuffer.json), {Names}.", files=True, in_run=True)
+]
 Powers = Annotated[
     str | None,
     Option("--power", "Specular powers of all materials, comma-separated. Default: each material's own.", in_run=True),

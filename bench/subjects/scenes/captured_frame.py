@@ -54,7 +54,7 @@ def captured_frame(frame: FrameFile) -> CapturedFrame:
     height, width = pixels.depth.shape
     notes = [*found.notes]
     if every > 1:
-        notes.append(f"every {every}th row and column is drawn, {width} x {height} pixels; none is averaged")
+        notes.append(f"one row and one column in {every} is drawn, {width} x {height} pixels; none is averaged")
     scene = pixel_scene(pixels, _view(frame, fov, found.to_world))
     return CapturedFrame(scene, (width, height), notes)
 
@@ -102,10 +102,13 @@ class _Reader:
             raise self._frame.error("depth", "no pixel is surface by both its depth and its normal")
         depth = np.where(covered, depth, np.float32(0))
         said = {name: self._quantity(name, covered) for name in ENTRIES if name not in ("depth", "normal")}
-        smooth, rough = said.pop("smoothness"), said.pop("roughness")
+        smooth, roughness = said.pop("smoothness"), said.pop("roughness")
+        if smooth is not None:
+            roughness = 1 - smooth
+        assert roughness is not None
         said = {name: self._stood_in(name, found, depth.shape) for name, found in said.items()}
         self._say_what_stands_in()
-        reflectance, roughness = said.pop("specular"), 1 - smooth if rough is None else rough
+        reflectance = said.pop("specular")
         return PixelSurfaces(depth=depth, normal=normal, roughness=roughness, reflectance=reflectance, **said)
 
     def _asked(self, name: str, read: Callable[[], Any]) -> Any:
@@ -126,7 +129,8 @@ class _Reader:
         found = image.surface(camera)
         if not found.any():
             raise self._frame.error("depth", _out_of_reach(path, image, camera))
-        self._note("depth", image.notes)
+        missing = image.not_finite
+        self._note("depth", [*image.notes, *[f"{missing} numbers are NaN, which is background"] * bool(missing)])
         return found
 
     def _normals(self, within: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -239,10 +243,10 @@ def _colours(path: Path, names: Sequence[str], asked: str | None) -> list[str]:
 def _one(path: Path, names: Sequence[str], asked: str | None) -> str:
     if asked is None and len(names) == 1:
         return names[0]
-    if asked not in names:
-        what = "no channel is named" if asked is None else f"no channel {asked!r}"
-        raise refused(path, f"{what}; it has {', '.join(names[:40])}", "--channel names one")
-    return asked
+    if asked is not None and asked in names:
+        return asked
+    what = "no channel is named" if asked is None else f"no channel {asked!r}"
+    raise refused(path, f"{what}; it has {', '.join(names[:40])}", "--channel names one")
 
 
 def _check_finite(path: Path, planes: np.ndarray, covered: np.ndarray) -> None:

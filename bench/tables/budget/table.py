@@ -25,7 +25,8 @@ class BudgetOptions:
         str,
         Option(
             "--scene",
-            "Metal/rough scenes that judge: ramps, studio, and glTF files; comma-separated.",
+            "Metal/rough scenes that judge: ramps, studio, glTF files, and captured frames (gbuffer.json); "
+            "comma-separated.",
             files=True,
             in_run=True,
         ),

@@ -237,7 +237,7 @@ def test_a_captured_program_is_measured(display, run, tmp_path, monkeypatch):
 
 
 def check_scene():
-    """The captured sphere as a scene: its roughness, and its normals to a step of RGB10 A2, where the camera sees it."""
+    """The captured sphere as a scene: its roughness, and its normals where the camera sees it."""
     (maker,) = scene_makers_named("gbuffer/gbuffer.json")
     assert maker.sides == captured_program.SIZE
     with ExitStack() as stack:

@@ -16,8 +16,11 @@ from normalbench.bench.subjects.scenes.frame_file import read_frame_file
 from normalbench.bench.subjects.scenes.scene_names import scene_makers_named
 from normalbench.bench.tables.budget.attributes import SEEN
 from normalbench.bench.tables.budget.rates import Exact, Stage
+from normalbench.encodings.storages.rounding import from_srgb
 from normalbench.gbuffer.frame.resources import LINEAR_DEPTH
 from normalbench.gbuffer.scenes.catalogue import SCENES, SceneMaker
+from normalbench.gbuffer.scenes.mesh import rotation
+from normalbench.gbuffer.scenes.pixels import PixelSurfaces, pixel_scene
 from normalbench.gbuffer.scenes.setting import Setting
 
 SIZE = (160, 120)
@@ -68,3 +71,175 @@ def test_a_scene_that_was_read_back_has_the_images_of_the_scene(gl, name, tmp_pa
             for of_class, error in errors.items():
                 if error > 1e-8:
                     assert 10 * abs(np.log10(error / others[of_class])) < 0.1, (attribute, of_class)
+
+
+def frame(folder: Path, **changes) -> Path:
+    """A slope of 24 x 16 pixels that faces the camera, in arrays, described with some entries in place of others."""
+    shape = (16, 24)
+    arrays = {
+        "depth": np.linspace(2.0, 8.0, 16 * 24).reshape(shape),
+        "normal": np.broadcast_to((0.0, 0.6, 0.8), (*shape, 3)),
+        "basecolor": np.linspace(0.0, 1.0, 16 * 24 * 3).reshape(*shape, 3),
+        "roughness": np.linspace(0.1, 0.9, 16 * 24).reshape(shape),
+        "small": np.ones((8, 12)),
+        "holes": np.full(shape, np.nan),
+    }
+    for name, found in arrays.items():
+        np.save(folder / f"{name}.npy", found.astype(np.float32))
+    said = {name: {"file": f"{name}.npy"} for name in ("depth", "normal", "basecolor", "roughness")}
+    said |= {"fov": 60, "near": 1, "far": 10} | changes
+    path = folder / "frame.json"
+    path.write_text(json.dumps({name: one for name, one in said.items() if one != "left out"}))
+    return path
+
+
+def read(path: Path) -> reading.CapturedFrame:
+    return reading.captured_frame(read_frame_file(path))
+
+
+def pixels_of(path: Path) -> PixelSurfaces:
+    return reading._Reader(read_frame_file(path)).pixels()
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"roughnes": 0.5}, ("unknown key 'roughnes'", "did you mean roughness?")),
+        ({"depth": {"file": "depth.npy", "are": "window"}}, ("depth: unknown key 'are'", "depths_are")),
+        ({"normal": "left out"}, ("no normal", '"normal": {"file": "FILE", "channels"')),
+        ({"roughness": None, "near": None}, ("no near, roughness", '"near": NUMBER')),
+        ({"smoothness": 0.5}, ("roughness and smoothness are one quantity",)),
+        ({"basecolor": {"file": "gone.npy"}}, ("basecolor: no file gone.npy", "from the folder of frame.json")),
+        ({"basecolor": {"file": "../away.npy"}}, ("basecolor", "leaves the file's folder")),
+        ({"basecolor": 0.5}, ("basecolor is 0.5", '"channels"')),
+        ({"roughness": {"channel": "R"}}, ("roughness: no file",)),
+        ({"roughness": {"file": "small.npy"}}, ("roughness", "small.npy", "12 x 8", "24 x 16", "one size")),
+        ({"normal": {"file": "small.npy"}}, ("normal", "small.npy")),
+        ({"roughness": {"file": "holes.npy"}}, ("384 of 384 pixels are NaN", "row 0, column 0", "mask")),
+        ({"roughness": {"file": "basecolor.npy"}}, ("no channel is named; it has 0, 1, 2", '"channel" names one')),
+        ({"roughness": {"file": "basecolor.npy", "channel": "A"}}, ("no channel 'A'", "it has 0, 1, 2")),
+        (
+            {"basecolor": {"file": "basecolor.npy", "channels": "R,G,B"}},
+            ("no channels R,G,B", '"channels" names three'),
+        ),
+        ({"roughness": {"file": "depth.npy"}}, ("roughness: its numbers are 2 to 8", "0 to 1", '"scale"')),
+        ({"metalness": -1}, ("metalness: its numbers are -1 to -1",)),
+        ({"emission": [0, 0, -1]}, ("emission: its numbers are -1 to 0", "light")),
+        ({"basecolor": {"file": "basecolor.npy", "curve": "srbg"}}, ("unknown curve 'srbg'", "srgb")),
+        ({"depth": {"file": "depth.npy", "depths_are": "window"}}, ("depth", "2 to 8", '"depths_are" view')),
+        ({"depth": {"file": "depth.npy", "depth_unit": 100}}, ("no depth lies within near and far", "200 to 800")),
+        ({"depth": {"file": "depth.npy", "depth_unit": "m"}}, ("depth_unit is 'm'", "a number")),
+        ({"normal": {"file": "normal.npy", "space": "world"}}, ('"space" world needs "view_matrix"',)),
+        ({"normal": {"file": "normal.npy", "unpack": "yes"}}, ("unpack is 'yes'", "true or false")),
+        ({"normal": {"file": "normal.npy", "unpack": True}}, ("normal", '"unpack": false reads them')),
+        ({"view_matrix": [1, 2, 3]}, ("view_matrix", "3 numbers; 9 or 16")),
+        ({"fov": 0}, ("fov is 0", "1 to 175")),
+        ({"near": 10, "far": 1}, ("near is 10 and far is 1", "reversed_window")),
+        ({"far": "infinite"}, ("far is 'infinite'", "a number")),
+    ],
+)
+def test_what_is_wrong_is_one_line(tmp_path, changes, said):
+    with pytest.raises(UsageError) as refusal:
+        read(frame(tmp_path, **changes))
+    line = str(refusal.value)
+    assert line.startswith(f"{tmp_path}/frame.json: ") and "\n" not in line
+    assert all(part in line for part in said), line
+
+
+@pytest.mark.parametrize("text", ["[]", "{", '"depth"', "\udcff"])
+def test_what_is_no_description_is_one_line(tmp_path, text):
+    path = tmp_path / "a.json"
+    path.write_bytes(text.encode("utf-8", "surrogateescape"))
+    with pytest.raises(UsageError, match=r"a\.json: (not JSON|it describes no frame)"):
+        read(path)
+
+
+def test_numbers_stand_for_quantities_and_smoothness_for_roughness(tmp_path):
+    smooth = {"roughness": None, "smoothness": {"file": "roughness.npy"}, "metalness": 1, "emission": [0, 0.5, 2]}
+    found = pixels_of(frame(tmp_path, **smooth, specular={"file": "roughness.npy", "scale": 0.08}))
+    rough = np.load(tmp_path / "roughness.npy")
+    assert np.allclose(found.roughness, 1 - rough) and np.allclose(found.reflectance, 0.08 * rough)
+    assert (found.metalness == 1).all() and (found.emission == (0, 0.5, 2)).all() and (found.occlusion == 1).all()
+    (line,) = read(frame(tmp_path, **smooth)).notes
+    assert line.startswith("it has no specular (0.04), occlusion (1)")
+
+
+def test_images_of_eight_bits_are_read_by_their_curve_and_named(tmp_path):
+    """A PNG's base colour, and roughness that RenderDoc's script wrote as floats, lie on steps of 8 bits."""
+    rng = np.random.default_rng(5)
+    colours = rng.integers(0, 256, (16, 24, 3), np.uint8)
+    (tmp_path / "a.png").write_bytes(png_bytes(colours))
+    path = frame(tmp_path, basecolor={"file": "a.png", "curve": "srgb"})
+    np.save(tmp_path / "roughness.npy", rng.integers(0, 256, (16, 24)).astype(np.float32) / np.float32(255))
+    assert np.allclose(pixels_of(path).basecolor, from_srgb(colours / 255), atol=1e-6)
+    assert (
+        "basecolor, roughness: steps of 8 bits; codes of the same steps look better than they are" in read(path).notes
+    )
+    path = frame(tmp_path, basecolor={"file": "a.png"})
+    assert np.allclose(pixels_of(path).basecolor, colours / 255, atol=1e-6)
+    assert any('"curve": "srgb"' in line for line in read(path).notes)
+
+
+def test_background_is_what_depth_or_normals_say(tmp_path):
+    """Beyond the far plane, or without a normal: what other images hold there does not matter."""
+    path = frame(tmp_path)
+    depth, normal, rough = (np.load(tmp_path / f"{name}.npy") for name in ("depth", "normal", "roughness"))
+    depth[0], normal[1], rough[:2] = 20.0, 0.0, np.nan
+    for name, found in (("depth", depth), ("normal", normal), ("roughness", rough)):
+        np.save(tmp_path / f"{name}.npy", found)
+    found = pixels_of(path)
+    assert not found.depth[:2].any() and (found.depth[2:] > 0).all()
+    meshes = [part.mesh for part in read(path).scene.parts]
+    assert sum(len(mesh.triangles) for mesh in meshes) == 2 * 14 * 24
+
+
+def test_large_frames_are_drawn_by_some_of_their_pixels(tmp_path, monkeypatch):
+    """Every so manyth row and column, as they are, and the camera sees what is left of the frame."""
+    monkeypatch.setattr(reading, "MOST_PIXELS", 100)
+    path = frame(tmp_path)
+    found = read(path)
+    assert (
+        found.sides == (12, 8)
+        and "one row and one column in 2 is drawn, 12 x 8 pixels; none is averaged" in found.notes
+    )
+    (part,) = found.scene.parts
+    rough = found.scene.materials[0].rough_metal_map
+    assert np.array_equal(rough.texels[..., 1], np.load(tmp_path / "roughness.npy")[1::2, 1::2])
+    assert len(part.mesh.positions) == 4 * 12 * 8 and found.scene.view.fov == pytest.approx(60)
+    monkeypatch.setattr(reading, "MOST_PIXELS", 45)
+    assert read(path).sides == (8, 5)
+
+
+@pytest.mark.parametrize("up", [0, 1, 2])
+@pytest.mark.parametrize("hand", [1.0, -1.0])
+def test_worlds_of_any_axes_have_y_up(up, hand):
+    """A camera that looks down a little in a world of either hand: its axes stay axes, and the picture is the same."""
+    level = np.roll(np.eye(3), up - 1, axis=0) * (1, 1, hand)
+    turn = rotation(0.7, 0.3, 0.1)
+    found = reading.upright(level @ turn)
+    assert np.linalg.det(found) == pytest.approx(1) and found[1, 1] > 0.9
+    moved = found @ np.linalg.inv(level @ turn)
+    assert np.allclose(abs(moved).max(axis=0), 1) and np.allclose(moved @ moved.T, np.eye(3))
+    if (up, hand) == (1, 1.0):
+        assert np.allclose(found, turn)
+
+
+def test_many_reflectances_are_rounded_and_few_are_not(tmp_path):
+    few = pixel_scene(pixels_of(frame(tmp_path, specular=0.05)), SCENES["ramps"].make(Setting()).view)
+    assert [one.reflectance for one in few.materials] == [pytest.approx(0.05)]
+    many = read(frame(tmp_path, specular={"file": "roughness.npy", "scale": 0.1})).scene
+    found = np.array([one.reflectance for one in many.materials])
+    assert 200 < len(found) <= 256 and np.diff(found).min() > 0
+    assert found[[0, -1]] == pytest.approx((0.01, 0.09)) and len(many.parts) == len(found)
+
+
+def test_images_belong_to_what_is_measured(tmp_path):
+    """Another image makes another input, and workers are sent it."""
+    matrix = tmp_path / "view.txt"
+    matrix.write_text("1 0 0 0 1 0 0 0 1")
+    path = frame(tmp_path, view_matrix="view.txt", metalness=0)
+    assert [one.name for one in companions(path)] == [
+        *("basecolor.npy", "depth.npy", "normal.npy", "roughness.npy", "view.txt")
+    ]
+    path.write_text("{")
+    assert companions(path) == []
