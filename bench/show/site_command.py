@@ -130,4 +130,6 @@ def _answer(parts: Sequence[page.Part]) -> str:
 
 def _parts(run: Found, view: View) -> list[page.Part]:
     sections = [section for section in run.sections if section.about.view == view and section.rows]
-    return [page.part_of(run, section, {}, math.inf) for section in sorted(sections, key=lambda one: not one.about.leads)]
+    return [
+        page.part_of(run, section, {}, math.inf) for section in sorted(sections, key=lambda one: not one.about.leads)
+    ]

@@ -41,6 +41,8 @@ EXTRAS = {"angles": "Angles", "sphere": "Sphere"}
 TITLES = {view: view.capitalize() for view in View}
 # A section's tables have at most so many cells in the page; those behind them are packed, and built when opened.
 MOST_CELLS = 1000
+# A legend has at most so many entries.
+MOST_KEYS = 40
 # More remarks than these are folded: the answer is what is read first.
 MOST_REMARKS = 2
 
@@ -270,6 +272,7 @@ def template(name: str) -> Any:
         lstrip_blocks=True,
     )
     environment.filters["definitions"] = definitions
+    environment.globals["most_keys"] = MOST_KEYS
     return environment.get_template(name)
 
 
@@ -377,9 +380,7 @@ def sources_of(scripts: Sequence[str], is_beside: bool = False) -> str:
     return " ".join([*(f"'sha256-{digest}'" for digest in digests), *(["'self'", "file:"] if is_beside else [])])
 
 
-def part_of(
-    found: Found, section: TableSection, specs: Mapping[str, Spec], most_cells: float = MOST_CELLS
-) -> Part:
+def part_of(found: Found, section: TableSection, specs: Mapping[str, Spec], most_cells: float = MOST_CELLS) -> Part:
     """A section as the template shows it, with those of its charts that are there."""
     encodings = found.encodings
     sheets = list(section.sheets)

@@ -153,7 +153,7 @@ def test_the_pages_switch_shows_another_gpu_and_no_names_overlap(run, run_folder
     page = Opened(browser, run_folder / "report.html", size)
     try:
         figure = page.page.locator("figure[data-chart=cost-0]")
-        figure.scroll_into_view_if_needed()
+        page.come_to("figure[data-chart=cost-0]", "figure[data-chart=cost-0] .plot svg >> nth=1")
         choice = figure.get_by_role("combobox", name="GPU")
         choice.wait_for()
         titles = figure.locator(".plot").all_text_contents()

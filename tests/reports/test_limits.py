@@ -47,7 +47,9 @@ def test_a_page_of_everything_has_few_elements(large):
 
 def test_a_long_table_is_packed_and_built_when_it_is_opened(large, folder):
     text = (folder / "report.html").read_text(encoding="utf-8")
-    tables = large.page.eval_on_selector_all("#quality details[data-table]", "all => all.map((one) => one.dataset.table)")
+    tables = large.page.eval_on_selector_all(
+        "#quality details[data-table]", "all => all.map((one) => one.dataset.table)"
+    )
     assert tables and len(text) < 1_000_000
     packed = "".join(packed_text(text, f"data-{name}") for name in tables)
     assert all(name in packed for name in ENCODINGS)

@@ -124,7 +124,7 @@ class Cards {
     const tools = element("p", { class: "tools" }, element("label", { for: "cards-filter" }, "Filter"), element("input", { type: "search", id: "cards-filter", "data-filter": "", autocomplete: "off", spellcheck: "false" }), element("span", { role: "status", "data-count": "" }, count));
     const table = element("table", {}, element("caption", {}, element("span", {}, "Every codec")), element("thead", {}, element("tr", {}, ...heads)), element("tbody", {}, ...names.map(line)));
     const note = this.usual ? `Angles on the set ${this.usual}, unless the row names another. Slots: issue slots to encode and decode once.` : "";
-    return element("div", { class: "sheet", "data-sheet": "" }, tools, element("div", { class: "scroll", role: "region", "aria-label": "Every codec", tabindex: "0" }, table), element("p", { class: "note" }, note));
+    return element("div", { class: "sheet", "data-sheet": "" }, tools, element("div", { class: "scroll", role: "region", "aria-label": "Every codec", tabindex: "0" }, table), element("p", { class: "tools" }, element("button", { type: "button", "data-more": "", value: LINES })), element("p", { class: "note" }, note));
   }
 
   // The card, a part of it in each task, so that the page answers in between.

@@ -1,7 +1,6 @@
 "use strict";
 
 // Every row of a table, and whole disassemblies: packed, and built when they are opened.
-const LINES = 100;
 const blocks = {};
 
 // A table's columns, as data.py packs them.

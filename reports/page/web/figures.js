@@ -82,18 +82,31 @@ for (const figure of document.querySelectorAll("figure[data-chart]")) {
   });
 }
 
-// What nobody has come to is drawn when there is nothing else to do: paper has all charts, but for those in a closed fold.
-const idle = window.requestIdleCallback ?? setTimeout;
-const isSeen = (figure) => !figure.closest("details:not([open])");
+// What nobody has come to is drawn when there is nothing else to do, in the view that is shown. What lies in a closed fold waits.
+const idle = window.requestIdleCallback ?? setTimeout, isFolded = (figure) => figure.closest("details:not([open])");
 async function drawRest() {
+  if (charts.waiting.size) await ready();
   for (const figure of charts.waiting) {
-    if (isSeen(figure)) await drawn(figure);
+    if (!isFolded(figure) && !figure.closest(".view[hidden]")) await drawn(figure);
     await new Promise(idle);
   }
 }
 window.addEventListener("load", () => idle(drawRest));
+
+// The charts of a view that was left take no elements; paper has them all.
+shows.push(({ view }, before) => {
+  if (view === before.view) return;
+  for (const [plot, one] of charts.views) {
+    const isLeft = Boolean(plot.closest(".view[hidden]"));
+    if (isLeft) one.svg.selectAll("*").remove();
+    else if (one.isLeft) one.later();
+    one.isLeft = isLeft;
+  }
+});
 window.addEventListener("beforeprint", () => {
-  for (const figure of charts.specs ? Array.from(document.querySelectorAll("figure[data-chart]")).filter(isSeen) : []) while (drawNext(figure));
+  if (!charts.specs) return;
+  for (const one of charts.views.values()) if (one.isLeft) one.draw();
+  for (const figure of document.querySelectorAll("figure[data-chart]")) while (!isFolded(figure) && drawNext(figure));
 });
 
 // A figure as a file: its panels as they are drawn, with the colours that are seen, its title and its legend.

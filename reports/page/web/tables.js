@@ -49,33 +49,50 @@ function nextOrder(better, order) {
   return order === first ? second : first;
 }
 
+// A table with a button for more keeps all of its rows, and shows a hundred of those that are left, then a hundred more.
+const LINES = 100;
+const moreOf = (table) => table.closest("[data-sheet]").querySelector("[data-more]");
+function allRows(table) {
+  if (!moreOf(table)) return Array.from(table.tBodies[0].rows);
+  return (table.all ??= Array.from(table.tBodies[0].rows));
+}
+
+function showRows(table, rows = allRows(table)) {
+  const more = moreOf(table), left = rows.filter((row) => !row.hidden), lines = Number(more?.value);
+  table.tBodies[0].replaceChildren(...(more ? left.slice(0, lines) : rows));
+  if (!more) return;
+  more.hidden = left.length <= lines;
+  more.textContent = `Show ${Math.min(LINES, left.length - lines)} more of ${left.length}`;
+  for (const button of table.querySelectorAll("[data-name]")) pressed(button);
+  for (const button of table.querySelectorAll("[data-take]")) taken(button);
+}
+
 function sortBy(header) {
-  const table = header.closest("table"), body = table.tBodies[0];
+  const table = header.closest("table");
   const index = cellsOf(header.parentNode).indexOf(header), numeric = header.classList.contains("n");
   const order = nextOrder(header.dataset.better, header.getAttribute("aria-sort"));
   for (const other of cellsOf(header.parentNode)) other.setAttribute("aria-sort", "none");
   header.setAttribute("aria-sort", order);
   const value = (row) => valueOf(row.children[index]);
-  const rows = Array.from(body.rows);
-  rows.sort((a, b) => compared(value(a), value(b), numeric, order === "ascending" ? 1 : -1));
-  body.append(...rows);
+  showRows(table, allRows(table).sort((a, b) => compared(value(a), value(b), numeric, order === "ascending" ? 1 : -1)));
 }
 
 function filter(sheet) {
   const words = sheet.querySelector("[data-filter]").value.toLowerCase().split(/\s+/).filter(Boolean);
-  const rows = Array.from(sheet.querySelector("tbody").rows);
+  const table = sheet.querySelector("table"), rows = allRows(table);
   for (const row of rows) {
     const text = cellsOf(row).map((cell) => cell.textContent.toLowerCase()).join(" ");
     row.hidden = !words.every((word) => text.includes(word));
   }
   const left = rows.filter((row) => !row.hidden).length;
+  showRows(table, rows);
   sheet.querySelector("[data-count]").textContent = `${left} of ${rows.length} rows`;
 }
 
 // What is shown of a table: titles and rows, as filtered and sorted.
 function shownOf(table, read) {
   const isText = (cell) => !cell.matches(".take"), titles = cellsOf(table.tHead.rows[0]).filter(isText).map((cell) => cell.textContent.trim());
-  const rows = Array.from(table.tBodies[0].rows).filter((row) => !row.hidden);
+  const rows = allRows(table).filter((row) => !row.hidden);
   return [titles, ...rows.map((row) => cellsOf(row).filter(isText).map(read))];
 }
 
@@ -155,7 +172,12 @@ function tendSheet(sheet) {
   }
   const field = sheet.querySelector("[data-filter]");
   if (field) field.addEventListener("input", () => filter(sheet));
+  sheet.querySelector("[data-more]")?.addEventListener("click", ({ target }) => {
+    target.value = Number(target.value) + LINES;
+    showRows(sheet.querySelector("table"));
+  });
   addTools(sheet);
+  showRows(sheet.querySelector("table"));
 }
 
 for (const sheet of document.querySelectorAll("[data-sheet]")) tendSheet(sheet);
