@@ -34,7 +34,7 @@ from normalbench.gbuffer.scenes.mesh import sphere
 MOST_LINES = 150
 FENCE = re.compile(r"^```.*?^```$", re.S | re.M)
 # An example is a fenced block under the name of its file.
-NAMED = re.compile(r"^<!-- file (\S+) -->\n```(?:glsl|hlsl|python|toml)\n(.*?)^```$", re.S | re.M)
+NAMED = re.compile(r"^<!-- file (\S+) -->\n```(?:glsl|hlsl|json|python|toml)\n(.*?)^```$", re.S | re.M)
 EXAMPLES = [(path, *found) for path, text in PAGES.items() for found in NAMED.findall(text)]
 FILES = {name: text for _, name, text in EXAMPLES}
 # An indented line is a command, up to its comment.
@@ -56,6 +56,8 @@ def users_files(folder: Path) -> None:
         np.save(folder / name, n)
     (folder / "frame.png").write_bytes(png_bytes(packed(n, np.uint16)))
     (folder / "mask.png").write_bytes(png_bytes(np.full((*n.shape[:2], 1), 255, np.uint8)))
+    for name in ("albedo.png", "material.png"):
+        (folder / name).write_bytes(png_bytes(packed(n, np.uint8)))
     np.savetxt(folder / "view.txt", np.eye(4))
     depths = np.linspace(1, 20, n.shape[0] * n.shape[1], dtype=np.float32).reshape(n.shape[:2])
     write_exr(folder / "frame-depth.exr", {"Z": depths})
@@ -86,7 +88,8 @@ def test_every_indented_line_is_a_known_command():
 
 def test_every_example_is_a_file_and_files_of_one_name_are_the_same():
     for path, text in PAGES.items():
-        assert len(re.findall(r"^```(?:glsl|hlsl|python|toml)$", text, re.M)) == len(NAMED.findall(text)), path.name
+        fences = re.findall(r"^```(?:glsl|hlsl|json|python|toml)$", text, re.M)
+        assert len(fences) == len(NAMED.findall(text)), path.name
     assert all(FILES[name] == text for _, name, text in EXAMPLES)
 
 

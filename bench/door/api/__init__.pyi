@@ -549,7 +549,7 @@ def effects(
         rounding: nearest, truncate, truncate_half, dithered; comma-separated, or all.
         depth: Depth codes as CODE/STORAGE, each in an exact layout, or none. Default: linear/packed16,window/depth24,window/depth32f.
         layout: Layouts: names or TOML files.
-        scene: Scenes or mesh files. Default: what shows the effect.
+        scene: Scenes, mesh or frame files. Default: what shows the effect.
         size: WIDTHxHEIGHT of the image.
         objects: Objects in the scene `objects`.
         lights: Point lights.

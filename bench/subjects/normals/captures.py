@@ -117,7 +117,7 @@ def captured(path: Path, reading: Reading, within: np.ndarray | None = None) -> 
         notes += _which_way(n, covered, turns.to_view, reading, chosen)
     roundings = _roundings(pixels, reading)
     own = own_error_deg(np.moveaxis(n, 0, -1)[covered], roundings) if roundings else None
-    notes += _of_roundings(roundings, own)
+    notes += _of_roundings(roundings, own, is_image=not pixels.roundings)
     if not np.array_equal(turns.to_code, np.eye(3)):
         n = np.tensordot(turns.to_code, n, 1)
     return Captured(n, covered, not_finite, own, turns, notes)
@@ -144,9 +144,9 @@ def _roundings(pixels: Pixels, reading: Reading) -> Sequence[Rounding]:
     return (Rounding(pixels.steps / 2),)
 
 
-def _of_roundings(roundings: Sequence[Rounding], own: float | None) -> list[str]:
+def _of_roundings(roundings: Sequence[Rounding], own: float | None, is_image: bool) -> list[str]:
     """What is to be said of normals that their file has in few bits, off by `own` degrees."""
-    if roundings == (EIGHT_BITS,):
+    if is_image and roundings == (EIGHT_BITS,):
         return [
             "8 bits a channel, off by about 0.2 degrees themselves: storages of 8 bits look better on them than "
             "they are; 16 bits or floats do not favour any"

@@ -54,7 +54,7 @@ class EffectsOptions(SourceOptions):
     layout: Layouts = None
     scene: Annotated[
         str | None,
-        Option("--scene", "Scenes or mesh files. Default: what shows the effect.", files=True, in_run=True),
+        Option("--scene", "Scenes, mesh or frame files. Default: what shows the effect.", files=True, in_run=True),
     ] = None
     size: Size = "320x240"
     objects: Objects = 200
