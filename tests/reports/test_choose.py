@@ -3,7 +3,7 @@
 import json
 
 import numpy as np
-from browsing import Opened
+from browsing import PHONE, Opened
 from test_pictures import answered_run, pick_row
 from test_report import a_run
 
@@ -190,6 +190,9 @@ def test_constraints_change_the_answer_the_count_and_the_address(browser, run, t
     assert (
         page.page.locator(".reply:visible .lead").text_content().endswith("no code qualifies (at most 1 issue slots).")
     )
+    width, height = PHONE
+    page.page.set_viewport_size({"width": width, "height": height})
+    assert page.page.evaluate("document.documentElement.scrollWidth") == width, "nothing is wider than a phone"
     page.page.locator("[data-codes] summary").click()
     assert "more than 1 issue slots" in page.page.locator("[data-codes] details").text_content()
     assert page.said == []
