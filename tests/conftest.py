@@ -180,23 +180,38 @@ SMALL_RUN = ("run", "--tables", "quality", "--encoding", PICTURED, "--storage", 
 
 
 @pytest.fixture(scope="session")
-def results(tmp_path_factory):
+def once(tmp_path_factory):
+    """Does what all workers need once: `once(name, do)`; where it fails the next one tries."""
+    base = tmp_path_factory.getbasetemp()
+    shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+
+    def done_once(name, do):
+        with (shared / f"{name}.lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            if not (said := shared / f"{name}.json").exists():
+                said.write_text(json.dumps(do()))
+        return json.loads(said.read_text())
+
+    return done_once
+
+
+@pytest.fixture(scope="session")
+def results(once, tmp_path_factory):
     """A run of the quality table as the command leaves it: its folder, and what it printed to stdout and stderr.
 
     Workers share it.
     """
-    base = tmp_path_factory.getbasetemp()
-    shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
-    folder, said = shared / "results", shared / "results.json"
-    with (shared / "results.lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        if not said.exists():
-            command = [sys.executable, "-m", "normalbench", *SMALL_RUN, "-o", str(folder)]
-            done = subprocess.run(command, capture_output=True, text=True)
-            assert done.returncode == 0, done.stderr
-            warned = re.sub(r"^normalbench: \d+ s, .*\n", "", done.stderr, flags=re.M)  # how far it was
-            said.write_text(json.dumps([done.stdout, warned]))
-    return folder, *json.loads(said.read_text())
+
+    def made():
+        folder = tmp_path_factory.mktemp("made") / "results"
+        command = [sys.executable, "-m", "normalbench", *SMALL_RUN, "-o", str(folder)]
+        done = subprocess.run(command, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        warned = re.sub(r"^normalbench: \d+ s, .*\n", "", done.stderr, flags=re.M)  # how far it was
+        return str(folder), done.stdout, warned
+
+    folder, *said = once("results", made)
+    return Path(folder), *said
 
 
 @pytest.fixture(scope="session")

@@ -12,7 +12,6 @@ import subprocess
 import sys
 import tomllib
 import zipfile
-from contextlib import contextmanager
 from pathlib import Path
 
 from manual import ROOT
@@ -23,7 +22,6 @@ NEEDED = ("wine", "x86_64-w64-mingw32-gcc", "x86_64-w64-mingw32-objdump", "Xvfb"
 # Besides what the package asks for. Rich asks for colorama on Windows alone, which pip would look for on Linux.
 MORE = ("wgpu", "pytest", "pyarrow", "colorama")
 BUILTIN = Path("/usr/lib/x86_64-linux-gnu/wine/x86_64-windows/ucrtbase.dll")
-DISPLAY = ":87"
 # Without .NET, a browser and a debugger, which would wait for somebody.
 QUIET = "mscoree,mshtml,winedbg.exe="
 START = "from normalbench.bench.door.cli.start import program; program()"
@@ -58,14 +56,6 @@ def prepare():
         _complete_wine()
         (HOME / "ready").touch()
     _install_the_program()
-
-
-@contextmanager
-def screen():
-    """A screen, which OpenGL of Windows needs."""
-    with subprocess.Popen(["Xvfb", DISPLAY, "-screen", "0", "640x480x24"], stderr=subprocess.DEVNULL) as server:
-        yield
-        server.terminate()
 
 
 def _pip(*words):
@@ -148,8 +138,8 @@ def _complex_functions():
     return "\n".join(lines) + "\n"
 
 
-def _environment():
-    ours = {"WINEPREFIX": str(HOME / "prefix"), "WINEARCH": "win64", "WINEDEBUG": "-all", "DISPLAY": DISPLAY}
+def _environment(display):
+    ours = {"WINEPREFIX": str(HOME / "prefix"), "WINEARCH": "win64", "WINEDEBUG": "-all", "DISPLAY": display}
     # Where JAX looks for other devices as well, Wine's heap is damaged in most processes.
     ours["JAX_PLATFORMS"] = "cpu"
     native = {"WINEDLLOVERRIDES": f"{QUIET};ucrtbase=n;ucrtwine=n"}
@@ -157,18 +147,29 @@ def _environment():
     return kept | {"WINEDLLOVERRIDES": QUIET} | ours | (native if (HOME / "complete.c").exists() else {})
 
 
-def _wine(*words, folder=HOME):
+def _wine(*words, folder=HOME, display=""):
     # Wine's Python cannot start where a standard stream is closed, or is Linux's /dev/null.
     return subprocess.run(
-        ["wine", *words], input="", capture_output=True, encoding="cp1252", env=_environment(), cwd=folder, timeout=900
+        ["wine", *words],
+        input="",
+        capture_output=True,
+        encoding="cp1252",
+        env=_environment(display),
+        cwd=folder,
+        timeout=900,
     )
 
 
-def command(folder, *words):
-    """What the command line does on Windows, in a folder."""
-    return _wine(str(HOME / "python" / "python.exe"), "-c", START, *words, folder=folder)
+class Windows:
+    """Windows with a screen, which its OpenGL needs."""
 
+    def __init__(self, display):
+        self._display = display
 
-def python(folder, *words):
-    """What Python does on Windows, in a folder."""
-    return _wine(str(HOME / "python" / "python.exe"), *words, folder=folder)
+    def command(self, folder, *words):
+        """What the command line does in a folder."""
+        return self.python(folder, "-c", START, *words)
+
+    def python(self, folder, *words):
+        """What Python does in a folder."""
+        return _wine(str(HOME / "python" / "python.exe"), *words, folder=folder, display=self._display)

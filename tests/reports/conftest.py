@@ -1,11 +1,14 @@
 """A browser, and the page of the small run in it."""
 
+import os
 import shutil
+from contextlib import ExitStack, contextmanager
 
 import both_ways
 import pytest
 from browsing import ARGUMENTS, GL_ARGUMENTS, PREFERENCES, Laboratory, Opened
 from playwright.sync_api import sync_playwright
+from screens import screen
 
 
 @pytest.fixture(scope="session")
@@ -14,28 +17,31 @@ def play():
         yield playing
 
 
+@contextmanager
 def _launched(play, path, arguments):
-    """Chromium, or with --firefox Firefox: one that is there, by its own protocol."""
-    if path.endswith("chromium"):
-        return play.chromium.launch(executable_path=path, args=arguments)
-    return play.firefox.launch(
-        channel="moz-firefox", executable_path=path, headless=False, firefox_user_prefs=PREFERENCES
-    )
+    """Chromium, or with --firefox Firefox: one that is there, by its own protocol, on a screen."""
+    with ExitStack() as stack:
+        if path.endswith("chromium"):
+            opened = play.chromium.launch(executable_path=path, args=arguments)
+        else:
+            shown = {**os.environ, "DISPLAY": stack.enter_context(screen())}
+            asked = {"channel": "moz-firefox", "headless": False, "firefox_user_prefs": PREFERENCES}
+            opened = play.firefox.launch(executable_path=path, env=shown, **asked)
+        yield opened
+        opened.close()
 
 
 @pytest.fixture(scope="session")
 def browser(play, browser_path):
-    opened = _launched(play, browser_path, ARGUMENTS)
-    yield opened
-    opened.close()
+    with _launched(play, browser_path, ARGUMENTS) as opened:
+        yield opened
 
 
 @pytest.fixture(scope="session")
 def gl_browser(play, browser_path):
     """A browser with WebGL2, by software."""
-    opened = _launched(play, browser_path, GL_ARGUMENTS)
-    yield opened
-    opened.close()
+    with _launched(play, browser_path, GL_ARGUMENTS) as opened:
+        yield opened
 
 
 @pytest.fixture(scope="session")
@@ -44,9 +50,8 @@ def reader_browser(play, gl_browser):
     if gl_browser.browser_type.name == "chromium":
         yield gl_browser
         return
-    opened = _launched(play, shutil.which("chromium"), GL_ARGUMENTS)
-    yield opened
-    opened.close()
+    with _launched(play, shutil.which("chromium"), GL_ARGUMENTS) as opened:
+        yield opened
 
 
 @pytest.fixture(scope="session")

@@ -5,11 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-<<<<<<< HEAD
 from browsing import no_files
-=======
 from playwright.sync_api import expect
->>>>>>> c3ab3beb (reports: Say a column's meaning once, draw what is folded when opened)
 
 STATES = 200
 

@@ -15,6 +15,7 @@ import captured_program
 import numpy as np
 import OpenImageIO as oiio  # noqa: N813 # as its own documentation has it
 import pytest
+from screens import screen
 
 from normalbench.bench.door.in_renderdoc import save_gbuffer as script
 from normalbench.bench.subjects.scenes.scene_names import scene_makers_named
@@ -190,14 +191,8 @@ def display():
     """A display of an X server of its own, which RenderDoc replays OpenGL on."""
     if why := lacking():
         pytest.skip(why)
-    read, write = os.pipe()
-    command = ["Xvfb", "-displayfd", str(write), "-screen", "0", "640x480x24"]
-    with subprocess.Popen(command, pass_fds=[write], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as server:
-        os.close(write)
-        with os.fdopen(read) as said:
-            number = said.readline().strip()
-        yield f":{number}"
-        server.terminate()
+    with screen() as name:
+        yield name
 
 
 @pytest.mark.slow
