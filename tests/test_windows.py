@@ -94,8 +94,7 @@ def test_a_run_is_whole_and_another_system_reads_it(windows, tmp_path):
 
 
 @WINDOWS
-@pytest.mark.usefixtures("windows")
-def test_the_pytest_plugin_measures(tmp_path):
+def test_the_pytest_plugin_measures(windows, tmp_path):
     write_examples(tmp_path)
     (tmp_path / "test_mine.py").write_text(
         "def test_it(normalbench):\n"
