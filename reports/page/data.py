@@ -14,10 +14,13 @@ from .packing import packed
 # What a browser's numbers hold without a loss.
 LARGEST_EXACT = 2**53
 FLOAT, WHOLE, TEXT = "float", "whole", "text"
+# Floats of tables of more rows are kept with so many digits: all of them make most of the page.
+MANY_ROWS, DIGITS = 10_000, 5
 
 
 def block(rows: Sequence[Row], columns: Iterable[Column]) -> str:
-    """Every row of a table, as base64 of packed JSON that data.js reads; it gives the table's CSV file to the byte.
+    """Every row of a table, as base64 of packed JSON that data.js reads; it gives the table's CSV file to the byte, or
+    of MANY_ROWS and more its DIGITS.
 
     Args:
         rows: all with the same columns.
@@ -25,8 +28,12 @@ def block(rows: Sequence[Row], columns: Iterable[Column]) -> str:
     """
     known = tuple(columns)
     names = list(rows[0]) if rows else []
-    made = [{**_about(column_called(name, known) or undefined(name), name), **_values(name, rows)} for name in names]
-    return packed(json.dumps({"count": len(rows), "columns": made}, allow_nan=False, separators=(",", ":")))
+    digits = DIGITS if len(rows) > MANY_ROWS else None
+    made = [
+        {**_about(column_called(name, known) or undefined(name), name), **_values(name, rows, digits)} for name in names
+    ]
+    said = {"count": len(rows), **({"digits": digits} if digits else {}), "columns": made}
+    return packed(json.dumps(said, allow_nan=False, separators=(",", ":")))
 
 
 def _about(column: Column, name: str) -> dict[str, Any]:
@@ -36,12 +43,12 @@ def _about(column: Column, name: str) -> dict[str, Any]:
     return {"name": name, "title": title_of(name), **{key: value for key, value in said.items() if value}}
 
 
-def _values(name: str, rows: Sequence[Row]) -> dict[str, Any]:
+def _values(name: str, rows: Sequence[Row], digits: int | None) -> dict[str, Any]:
     """Its values: numbers as they are, and all else as the texts that a CSV file has, each once, and their places."""
     values = [row.get(name) for row in rows]
     known = [value for value in values if value is not None]
     if known and all(type(value) is float for value in known):
-        return {"kind": FLOAT, "values": list(map(_number, values))}
+        return {"kind": FLOAT, "values": [_number(value, digits) for value in values]}
     if known and all(type(value) is int and abs(value) < LARGEST_EXACT for value in known):
         return {"kind": WHOLE, "values": values}
     words: dict[str, int] = {}
@@ -53,8 +60,10 @@ def _is_nothing(value: Any) -> bool:
     return value is None or (isinstance(value, float) and math.isnan(value))
 
 
-def _number(value: float | None) -> float | str | None:
-    """A float as JSON can hold it."""
+def _number(value: float | None, digits: int | None) -> float | str | None:
+    """A float as JSON can hold it, with all its digits or some."""
     if value is None or _is_nothing(value):
         return None
-    return value if math.isfinite(value) else str(value)
+    if not math.isfinite(value):
+        return str(value)
+    return value if digits is None else float(f"{value:.{digits}g}")
