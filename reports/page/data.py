@@ -15,7 +15,7 @@ from .packing import packed
 LARGEST_EXACT = 2**53
 FLOAT, WHOLE, TEXT = "float", "whole", "text"
 # Floats of tables of more rows are kept with so many digits: all of them make most of the page.
-MANY_ROWS, DIGITS = 10_000, 5
+MANY_ROWS, DIGITS = 2_000, 5
 
 
 def block(rows: Sequence[Row], columns: Iterable[Column]) -> str:

@@ -39,8 +39,9 @@ WRAPPED = 24
 EXTRAS = {"angles": "Angles", "sphere": "Sphere"}
 # What the navigation calls the views.
 TITLES = {view: view.capitalize() for view in View}
-# A section's tables have at most so many cells in the page; those behind them are packed, and built when opened.
-MOST_CELLS = 1000
+# A section's tables have at most so many cells in the page; those behind them are packed, and built when opened. In a
+# page of more codecs than MANY_CODECS the lists of A and B take the room of the larger tables.
+MOST_CELLS, CELLS_BESIDE_MANY, MANY_CODECS = 1000, 400, 150
 # A legend has at most so many entries.
 MOST_KEYS = 40
 # More remarks than these are folded: the answer is what is read first.
@@ -304,8 +305,10 @@ def html(
         home: what it says as the first page of a site, where it begins with the laboratory; None for a page alone.
     """
     laboratory = live.script() if found.live else ""
-    parts = [part_of(found, section, specs) for section in found.sections]
-    names, leading = codecs(found, specs), [part for part in parts if part.section.about.leads and part.is_there]
+    names = codecs(found, specs)
+    most_cells = CELLS_BESIDE_MANY if len(names) > MANY_CODECS else MOST_CELLS
+    parts = [part_of(found, section, specs, most_cells) for section in found.sections]
+    leading = [part for part in parts if part.section.about.leads and part.is_there]
     maps, begins, choices = (
         found.extras.get("maps", ()),
         beginning(parts, names, _own(found, names), bool(home and found.live)),
@@ -380,7 +383,7 @@ def sources_of(scripts: Sequence[str], is_beside: bool = False) -> str:
     return " ".join([*(f"'sha256-{digest}'" for digest in digests), *(["'self'", "file:"] if is_beside else [])])
 
 
-def part_of(found: Found, section: TableSection, specs: Mapping[str, Spec], most_cells: float = MOST_CELLS) -> Part:
+def part_of(found: Found, section: TableSection, specs: Mapping[str, Spec], most_cells: float) -> Part:
     """A section as the template shows it, with those of its charts that are there."""
     encodings = found.encodings
     sheets = list(section.sheets)

@@ -12,6 +12,8 @@ from .frames import NONE
 
 # What FLIP cannot be below, so that it has a place on an axis of logarithms.
 LEAST = 1e-4
+# How many codes have points on their lines: those of more hide each other.
+MOST_WITH_POINTS = 40
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
@@ -56,7 +58,7 @@ def roughness_chart(rows: Sequence[Row], thresholds: Sequence[float]) -> Chart:
         marks=(
             Mark(kind=Kind.LINES, rows=lines, by=("line",), colour=MUTED, dash="dotted"),
             Mark(kind=Kind.LINES, by=("codec",), colour="codec", tips=tips),
-            Mark(kind=Kind.POINTS, colour="codec", tips=tips),
+            *((Mark(kind=Kind.POINTS, colour="codec", tips=tips),) if len(codecs) <= MOST_WITH_POINTS else ()),
             Mark(kind=Kind.ENDS, rows=lines, by=("line",), colour=MUTED, text="line"),
             Mark(kind=Kind.ENDS, by=("codec",), colour="codec", text="codec"),
         ),
