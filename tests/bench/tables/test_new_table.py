@@ -59,5 +59,5 @@ def test_compare_names_its_rows_and_the_page_shows_it(copy):
     page = (copy / "before/report.html").read_text()
     assert '<section id="echo"' in page and 'data-to="more"' in page and "What words cost" in page
     assert "How many letters it has. Unit: letters." in packed_text(page, "data-echo")
-    assert "a parrot" in page, "the conditions"
+    assert "a parrot" in packed_text(page, "data-echo"), "the conditions, which are listed when they are opened"
     assert "bb is the longest, with 2 letters" in page and (copy / "before/charts/echo.svg").exists()
