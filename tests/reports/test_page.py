@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from browsing import AXE, DESKTOP, PHONE, VIEWED, Opened, no_files, no_paper
 from PIL import Image
+from playwright.sync_api import expect
 from test_report import HOSTILE, a_run, quality_row
 
 THEMES = ("light", "dark")
@@ -142,9 +143,9 @@ def test_tables_sort_by_number_in_both_directions_by_keyboard(opened):
     headers.nth(at).locator("button").focus()
     for direction, reverse in (("descending", True), ("ascending", False)):
         opened.page.keyboard.press("Enter")
+        expect(headers.nth(at)).to_have_attribute("aria-sort", direction)
         figures = [float(text) for text in column(opened, at)]
         assert figures == sorted(figures, reverse=reverse) and figures[0] != figures[-1]
-        assert headers.nth(at).get_attribute("aria-sort") == direction
     assert column(opened, 0)[-1] == "xyz" and sorted(column(opened, 0)) == sorted(before)
     angles = headers.nth(names.index("mean"))
     angles.locator("button").click()
