@@ -15,7 +15,9 @@ from ...ground.output.errors import UsageError
 from .items import blank, defined_in
 from .words import ENDINGS, TRANSLATED, files_of, functions_of, is_file, settings_of
 
-# One that has no end goes to the end of the text, so that every letter is looked at once. A long one takes no memory.
+# Lines that go on in the next one, also behind spaces: some compilers join those.
+_JOINED, _JOIN = re.compile(r"^(?:[^\n]*\\[^\S\n]*(?:\n|\Z))+(?:[^\n]*)", re.M), re.compile(r"\\[^\S\n]*(?:\n|\Z)")
+# A comment without an end goes to the end of the text: each letter is looked at once. A long one takes no memory.
 _COMMENT = re.compile(r'"[^"\n]*"|//(?:[^\\\n]++|\\\n?)*+|/\*.*?(?:\*/|\Z)', re.S)
 # Some engines have no marks around the name; in place of one, a macro is a name of no file.
 _INCLUDE = re.compile(r'[ \t]*#[ \t]*include[ \t]*(?:"([^"]+)"|<([^>]+)>|(?<=[ \t])([\w./\\-]+))[ \t]*')
@@ -28,7 +30,6 @@ _MACRO = re.compile(r"[ \t]*#[ \t]*define[ \t]+(\w+)")
 MOST_INCLUDES, MOST_LINES = 2000, 1 << 19
 # How many folders above a file's are searched for what it includes.
 MOST_ABOVE = 8
-# Directives with lines that go on joined, and comments gone.
 _ANY_INCLUDE = re.compile(r"^[ \t]*#[ \t]*include\b", re.M)
 
 
@@ -39,6 +40,11 @@ class Line(NamedTuple):
     path: Path
     number: int
     wrong: str = ""
+
+
+def joined(text: str) -> str:
+    """Return a text in which no line goes on in the next one. Empty lines follow, so that others keep their number."""
+    return _JOINED.sub(lambda match: _JOIN.sub("", match[0]) + "\n" * match[0].count("\n"), text)
 
 
 def without_comments(text: str) -> str:
@@ -90,10 +96,13 @@ def _option_for(name: str) -> str:
 _PRAGMA, _NATURE = (-1,), (-2,)
 
 
-def _read(path: Path) -> _Text:
+def _read(path: Path, language: str) -> _Text:
     """A file. Raises UsageError."""
+    is_wgsl = (language or TRANSLATED.get(path.suffix.lower())) == "WGSL"
     try:
-        bare = without_comments(file_text(path))
+        text = file_text(path)
+        # WGSL ends a comment at the end of its line, whatever stands there.
+        bare = without_comments(text if is_wgsl else joined(text))
     except (OSError, ValueError) as error:
         raise UsageError(f"{path}: {error}") from error
     if "/*" in bare:
@@ -101,9 +110,9 @@ def _read(path: Path) -> _Text:
         raise UsageError(f"{path}:{line}: a comment that begins with /* is not closed")
     lines = bare.split("\n")
     found = {at: match[match.lastindex or 0] for at, line in enumerate(lines) if (match := _INCLUDE.fullmatch(line))}
-    if len(_ANY_INCLUDE.findall(bare.replace("\\\n", ""))) != len(found):
+    if len(_ANY_INCLUDE.findall(bare)) != len(found):
         raise UsageError(f'{path}: an #include is written as #include "FILE", in one line')
-    if TRANSLATED.get(path.suffix.lower()) == "WGSL":
+    if is_wgsl:
         return _Text(lines, found, _NATURE)
     return _Text(lines, found, _PRAGMA if any(map(_ONCE.fullmatch, lines)) else _guard(lines))
 
@@ -272,7 +281,7 @@ class Source:
     def _text_of(self, own: Path, path: Path) -> _Text:
         if own not in self._texts:
             self.files[own] = path
-            self._texts[own] = _read(path)
+            self._texts[own] = _read(path, self.settings.language)
         return self._texts[own]
 
     def _included(self, path: Path, number: int, name: str) -> Iterator[Line]:

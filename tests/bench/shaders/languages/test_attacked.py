@@ -1,8 +1,11 @@
 """What a file may not do, and what stands in the way of a pair: found by those who tried."""
 
+import itertools
+
 import pytest
 
 from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.shaders.languages import child
 from normalbench.bench.shaders.languages.items import heads, items
 from normalbench.bench.shaders.languages.translated import translated
 
@@ -10,6 +13,8 @@ pytestmark = pytest.mark.usefixtures("slang")
 ENCODE = "float2 PackDir(float3 n) { return CODE; }\n"
 DECODE = "float3 UnpackDir(float2 e) { return float3(e, sqrt(saturate(1.0 - dot(e, e)))); }\n"
 ROUGH = "float4 PackDir(float3 n, float r) { return float4(n, r); }\nfloat3 UnpackDir(float4 t) { return t.xyz; }\n"
+WGSL = "fn f_encode(n: vec3f) -> vec2f { return n.xy * two(); }\n"
+WGSL += "fn f_decode(e: vec2f) -> vec3f { return vec3f(e, 0.0); }\n"
 PLAIN = ENCODE.replace("CODE", "n.xy") + DECODE
 
 
@@ -35,6 +40,48 @@ def test_a_file_writes_no_program_and_reads_no_other_file(tmp_path, text, ending
     path.write_text(text + PLAIN)
     with pytest.raises(UsageError, match=r"mine\.\w+: \w+ is not read"):
         translated(path)
+
+
+# What hides an include from whoever looks at lines one by one. JOIN is a line's end that is none.
+DISGUISES = [
+    '#line JOIN#incJOINlude "NOTE"',
+    '#pragma JOIN#incJOINlude "NOTE"',
+    '#version JOIN#include "NOTE"',
+    '#extension JOIN#include "NOTE"',
+    '#line JOIN#pragma JOIN#include "NOTE"',
+    '#line 1 JOIN/* JOIN*/ #includeJOIN "NOTE"',
+    '#line JOIN  #  include JOIN"NOTE"',
+    '#define include include\n#include "NOTE"',
+    '#define I include\n#I "NOTE"\n# I "NOTE"',
+    '#define H "NOTE"\n#include H',
+    '%:include "NOTE"',
+    '??=include "NOTE"',
+    '// JOIN\n#line JOIN#include "NOTE"',
+    '/JOIN/ JOIN\n/JOIN* JOIN*JOIN/ #incJOINlude "NOTE"',
+    '#embed "NOTE"',
+    '#import "NOTE"',
+    '#include_next "NOTE"',
+]
+JOINS = {"plain": "\\\n", "crlf": "\\\r\n", "spaces": "\\ \t\n", "feed": "\\\f\n", "twice": "\\\n\\\n"}
+
+
+@pytest.mark.parametrize("ending", ["hlsl", "slang", "frag", "wgsl"])
+@pytest.mark.parametrize("by", ["file", "include", "prelude"])
+def test_no_disguise_of_an_include_reads_a_file_elsewhere(tmp_path, ending, by):
+    """The encoder calls a function of a file that may not be read: whoever compiles it has read that file."""
+    folders = [tmp_path / name for name in ("elsewhere", "own", "work")]
+    for folder in folders:
+        folder.mkdir()
+    note, path, part = folders[0] / "note.txt", folders[1] / f"mine.{ending}", folders[1] / f"part.{ending}"
+    note.write_text("fn two() -> f32 { return 2.0; }" if ending == "wgsl" else "float two() { return 2.0; }\n")
+    code = WGSL if ending == "wgsl" else ENCODE.replace("CODE", "n.xy * two()") + DECODE
+    word = f"{path}:prelude={part}" if by == "prelude" else path
+    for text, join in itertools.product(DISGUISES, JOINS.values()):
+        attack = text.replace("NOTE", str(note)).replace("JOIN", join) + "\n"
+        path.write_text({"file": attack, "include": f'#include "{part.name}"\n', "prelude": ""}[by] + code)
+        part.write_text(attack)
+        answer = child.answer(word, folders[2])
+        assert answer.get("error", "").startswith(str(folders[1])), (attack, answer)
 
 
 @pytest.mark.parametrize(

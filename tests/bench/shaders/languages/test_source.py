@@ -106,10 +106,23 @@ def test_a_macro_in_place_of_a_file_is_none(tmp_path):
     assert source.text == "#define FILE <part.hlsli>\n#error not read\nint part;\n"
 
 
-@pytest.mark.parametrize("text", ['#inc\\\nlude "part.hlsli"', '#/**/include "a" "b"'])
-def test_an_include_in_disguise_is_refused(tmp_path, text):
+def test_an_include_in_disguise_is_refused(tmp_path):
     with pytest.raises(UsageError, match="in one line"):
-        Source(written(tmp_path, text))
+        Source(written(tmp_path, '#/**/include "a" "b"'))
+
+
+@pytest.mark.parametrize(
+    ("text", "lines"),
+    [
+        ('#inc\\\nlude "part.hlsli"\nx', ["int part;", "", "x"]),
+        ("#line \\ \t\n#include \\\n", ["#line #include", "", ""]),
+        ("// gone \\\ngone\nint x; \\", ["", "", "int x;"]),
+    ],
+)
+def test_a_line_that_goes_on_is_read_as_one(tmp_path, text, lines):
+    """As compilers read it, also behind spaces; the lines behind it keep their numbers."""
+    written(tmp_path, "int part;", "part.hlsli")
+    assert Source(written(tmp_path, text)).text.splitlines() == lines
 
 
 def test_comments_leave_every_column_where_it_is():
