@@ -44,6 +44,10 @@ if sys.platform == "win32":
         """Whether a file or folder is this user's, and nobody else may write it; see `is_own`."""
         return True
 
+    def is_guarded(_: Path) -> bool:
+        """Whether nobody else can put another file at a path; see `is_own`."""
+        return True
+
     def forbids_execution(_: Path) -> bool:
         """Whether nothing is executed from the file system of a folder."""
         return False
@@ -53,6 +57,10 @@ if sys.platform == "win32":
         return Path(os.environ.get("LOCALAPPDATA") or Path("~/AppData/Local").expanduser())
 
 else:
+    import functools
+    import grp
+    import pwd
+
     # What names the folder of this user, and folders of temporary files.
     HOME, TEMPORARY = "HOME", ("TMPDIR",)
 
@@ -75,6 +83,37 @@ else:
     def is_closed(found: os.stat_result) -> bool:
         """Whether a file or folder is this user's, and nobody else may write it."""
         return is_own(found) and not found.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+
+    def is_guarded(path: Path) -> bool:
+        """Whether nobody but this user and root can put another file at a path that has no links: all that there is of
+        it is owned by either, and others may write into none of its folders, unless that is sticky, as /tmp is. Raises
+        OSError.
+
+        That a group may write counts, but for this user's own group with nobody else in it, which some systems give
+        each user together with folders that it may write. Lists of access by which the user let others in do not.
+        """
+        return all(_is_kept_by_its_owner(place.lstat()) for place in (path, *path.parents) if os.path.lexists(place))
+
+    def _is_kept_by_its_owner(found: os.stat_result) -> bool:
+        if found.st_uid not in (0, os.geteuid()) or stat.S_ISLNK(found.st_mode):
+            return False
+        if stat.S_ISDIR(found.st_mode) and found.st_mode & stat.S_ISVTX:
+            return True
+        is_closed_to_groups = not found.st_mode & stat.S_IWGRP or _is_of_this_user_alone(found.st_gid)
+        return is_closed_to_groups and not found.st_mode & stat.S_IWOTH
+
+    @functools.cache
+    def _is_of_this_user_alone(group: int) -> bool:
+        """Whether a group has this user's name, is the first one of this user and of nobody else, and lists no other
+        member."""
+        try:
+            person, found = pwd.getpwuid(os.geteuid()), grp.getgrgid(group)
+        except KeyError:
+            return False
+        if person.pw_gid != group or found.gr_name != person.pw_name:
+            return False
+        members = {other.pw_name for other in pwd.getpwall() if other.pw_gid == group} | {*found.gr_mem}
+        return members <= {person.pw_name}
 
     def forbids_execution(folder: Path) -> bool:
         """Whether nothing is executed from the file system of a folder. Raises OSError."""

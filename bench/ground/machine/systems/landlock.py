@@ -1,0 +1,120 @@
+"""A wall around a process, which it cannot take down: Landlock of Linux. Imports nothing heavy.
+
+    python -I -S landlock.py r/usr/lib w/tmp/made x/usr/bin/cc -- /usr/bin/cc main.c
+
+walls itself in and becomes the command: see `command`. https://docs.kernel.org/userspace-api/landlock.html
+
+Denied, but for what is named: to read files and list folders, to write, make, remove, rename and truncate files, and to
+execute; further all TCP (from ABI 4 on), what is special to devices (ABI 5), signals to processes and abstract sockets
+outside (ABI 6), and to trace processes outside. Even in a folder to write nothing moves to another folder, and nothing
+but files and folders is made: no link, pipe, socket or device waits there for whoever reads it.
+
+Not denied: to learn that a path exists, its status and what a link holds; to change the mode, owner, times and
+attributes of the user's files; UDP; sockets in folders, such as those of a desktop; what open descriptors lead to.
+EXECUTE is of `execve` alone: the loader and `memfd_create` run other bytes as well, behind the same wall.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import stat
+import struct
+import sys
+from contextlib import suppress
+
+# Below ABI 3 (Linux 6.2) a process could empty files outside: that is no wall.
+LEAST = 3
+# What a walled command keeps of the variables: others may hold secrets. The first folder to write is its TMPDIR.
+VARIABLES = ("PATH", "LANG", "LC_ALL", "LD_LIBRARY_PATH", "LIBRARY_PATH", "CPATH", "C_INCLUDE_PATH", "COMPILER_PATH")
+
+# linux/landlock.h, the same on all processors.
+CREATE_RULESET, ADD_RULE, RESTRICT_SELF, VERSION, PATH_BENEATH = 444, 445, 446, 1, 1
+EXECUTE, WRITE_FILE, READ_FILE, READ_DIR, REMOVE_DIR, REMOVE_FILE = (1 << bit for bit in range(6))
+MAKE_DIR, MAKE_REG, TRUNCATE, IOCTL_DEV = 1 << 7, 1 << 8, 1 << 14, 1 << 15
+OF_FILES = EXECUTE | WRITE_FILE | READ_FILE | TRUNCATE | IOCTL_DEV
+READS = READ_FILE | READ_DIR
+WRITES = READS | WRITE_FILE | TRUNCATE | MAKE_REG | MAKE_DIR | REMOVE_FILE | REMOVE_DIR
+RIGHTS = {"r": READS, "w": WRITES, "x": READ_FILE | EXECUTE}
+TCP, OUTSIDE, NO_NEW_PRIVILEGES = 0b11, 0b11, 38
+
+
+def abi() -> int:
+    """The version of Landlock here; 0 where there is none, or what runs this process refuses it."""
+    return max(0, _called(CREATE_RULESET, None, 0, VERSION)) if sys.platform == "linux" else 0
+
+
+def is_available() -> bool:
+    """Whether `restrict` and `command` work here."""
+    return abi() >= LEAST
+
+
+def restrict(reads: list[str], writes: list[str], executes: list[str]) -> None:
+    """Wall in this process and all that it starts from here on, for good.
+
+    It binds the calling thread. So a process that runs others is refused: they would stay outside.
+
+    Args:
+        reads: files, and folders with all that is in them. A path that does not exist is left out, here and below.
+        writes: folders to read and write in, and files such as /dev/null.
+        executes: programs, and the loaders of libraries that they name, which the kernel executes too.
+
+    Raises:
+        RuntimeError: there are further threads.
+        OSError: the kernel refuses; nothing is to be run then.
+    """
+    # A folder has two links and one for each folder in it; behind a wall it could not be listed.
+    if os.stat("/proc/self/task").st_nlink > 3:
+        raise RuntimeError("a wall binds one thread, and this process has more")
+    known = abi()
+    handled = (1 << 16) - 1 if known >= 5 else (1 << 15) - 1
+    asked = struct.pack("QQQ", handled, TCP if known >= 4 else 0, OUTSIDE if known >= 6 else 0)
+    _checked(ctypes.CDLL(None, use_errno=True).prctl(NO_NEW_PRIVILEGES, *map(ctypes.c_ulong, (1, 0, 0, 0))))
+    rules = _checked(_called(CREATE_RULESET, asked, len(asked), 0))
+    for kind, paths in {"r": reads, "w": writes, "x": executes}.items():
+        for path in paths:
+            _allow(rules, path, RIGHTS[kind] & handled)
+    _checked(_called(RESTRICT_SELF, rules, 0))
+    os.close(rules)
+
+
+def command(words: list[str], reads: list[str], writes: list[str], executes: list[str]) -> list[str]:
+    """A command that walls itself in and becomes another one, whose first word is a path that `executes` has too. See
+    `restrict`; of the variables it keeps VARIABLES. Its status is 126 where it cannot be run."""
+    rules = [kind + path for kind, paths in (("r", reads), ("w", writes), ("x", executes)) for path in paths]
+    return [sys.executable, "-I", "-S", __file__, *rules, "--", *words]
+
+
+def _allow(rules: int, path: str, rights: int) -> None:
+    with suppress(OSError):
+        place = os.open(path, getattr(os, "O_PATH", 0))
+        try:
+            is_folder = stat.S_ISDIR(os.fstat(place).st_mode)
+            rule = struct.pack("=Qi", rights if is_folder else rights & OF_FILES, place)
+            _checked(_called(ADD_RULE, rules, PATH_BENEATH, rule, 0))
+        finally:
+            os.close(place)
+
+
+def _called(number: int, *arguments: bytes | int | None) -> int:
+    given = [value if isinstance(value, bytes) else ctypes.c_void_p(value) for value in arguments]
+    return ctypes.CDLL(None, use_errno=True).syscall(ctypes.c_long(number), *given)
+
+
+def _checked(result: int) -> int:
+    if result < 0:
+        raise OSError(number := ctypes.get_errno(), os.strerror(number))
+    return result
+
+
+if __name__ == "__main__":
+    end = sys.argv.index("--")
+    given = {kind: [word[1:] for word in sys.argv[1:end] if word[0] == kind] for kind in RIGHTS}
+    kept = {name: os.environ[name] for name in VARIABLES if name in os.environ}
+    folder = next(filter(os.path.isdir, given["w"]), "/nowhere")
+    try:
+        restrict(given["r"], given["w"], given["x"])
+        os.execve(sys.argv[end + 1], sys.argv[end + 1 :], kept | {"TMPDIR": folder})
+    except OSError as error:
+        print(f"{sys.argv[end + 1]}: {error.strerror}", file=sys.stderr)
+        sys.exit(126)
