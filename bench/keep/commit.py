@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 from pathlib import Path
 
@@ -26,14 +27,25 @@ def commit_of(named: str | None, folder: Path) -> Row:
     name, time, subject = (*said.split("\n", 2), "")[:3]
     # Of a clone that is not deep, the rank is the same for all.
     rank = _git(folder, "rev-list", "--count", f"--max-age={time}", "HEAD") or "0"
-    changed = bool(_git(folder, "status", "--porcelain", "--untracked-files=no"))
-    return {"name": name, "time": int(time), "rank": int(rank), "subject": subject.strip(), "changed": changed}
+    about = {"name": name, "time": int(time), "rank": int(rank), "subject": subject.strip()}
+    # Filters of a repository are programs, which git runs to compare files: one from a stranger is not asked.
+    if _has_filters(folder):
+        return about | {"changed": False}
+    return about | {"changed": bool(_git(folder, "status", "--porcelain", "--untracked-files=no"))}
+
+
+def _has_filters(folder: Path) -> bool:
+    """Whether the repository itself, and not the user's own settings, names programs that convert files."""
+    lines = _git(folder, "config", "--show-scope", "--get-regexp", r"^filter\.").splitlines()
+    return any(line.startswith(("local", "worktree")) for line in lines)
 
 
 def _git(folder: Path, *words: str) -> str:
     """What git says of a repository; empty where there is no git, no repository or no commit."""
     try:
-        done = subprocess.run(["git", *words], cwd=folder, capture_output=True, timeout=SECONDS)
+        # What a repository's settings name as programs: those that watch its files, and hooks.
+        safe = ("-c", "core.fsmonitor=false", "-c", f"core.hooksPath={os.devnull}", "--no-optional-locks", "--no-pager")
+        done = subprocess.run(["git", *safe, *words], cwd=folder, capture_output=True, timeout=SECONDS)
     except (OSError, subprocess.TimeoutExpired):
         return ""
     return done.stdout.decode(errors="replace").strip() if done.returncode == 0 else ""

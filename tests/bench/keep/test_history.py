@@ -1,6 +1,7 @@
 """`normalbench history`: the commit, the row and the figure of each step, and no noise of times."""
 
 import json
+import os
 import re
 import subprocess
 from pathlib import Path
@@ -214,6 +215,24 @@ def test_a_run_knows_its_commit(repository):
     (repository / "mine.glsl").write_text("// two\n")
     assert commit_of(None, repository) == one | {"changed": True}
     assert commit_of("4711", repository) == {"name": "4711"}
+
+
+@pytest.mark.parametrize("setting", ["core.fsmonitor", "core.hooksPath", "filter.odd.clean", "filter.odd.process"])
+def test_no_program_that_a_repository_names_is_run(repository, setting):
+    """The folder may be a stranger's: what watches its files, its hooks, and what converts files for git."""
+    started, hooks = repository / "started", repository / "hooks"
+    hooks.mkdir()
+    for name in ("program", "post-index-change"):
+        (hooks / name).write_text(f"#!/bin/sh\necho started > {started}\ncat\n")
+        (hooks / name).chmod(0o755)
+    git(repository, "config", setting, str(hooks if setting == "core.hooksPath" else hooks / "program"))
+    (repository / ".gitattributes").write_text("* filter=odd\n")
+    os.utime(repository / "mine.glsl", (1, 1))
+    assert commit_of(None, repository)["subject"] == "Begin"
+    assert not started.exists()
+    # git itself starts each of them.
+    subprocess.run(["git", "status"], cwd=repository, capture_output=True)
+    assert started.exists()
 
 
 def test_commits_of_one_second_are_in_their_order(repository):
