@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 import textwrap
 
+from ..translator.tokens import in_a_comment
+
 # Columns.
 WIDTH = 99
 INDENT = 4
@@ -25,7 +27,8 @@ def _folded_line(line: str, mark: str) -> list[str]:
         return [line]
     if plain.startswith((f"{mark} ", QUOTES)):
         again = f"{indent}{mark} " if plain.startswith(mark) else indent
-        return textwrap.wrap(plain, WIDTH, initial_indent=indent, subsequent_indent=again, break_on_hyphens=False)
+        parts = textwrap.wrap(plain, WIDTH, initial_indent=indent, subsequent_indent=again, break_on_hyphens=False)
+        return [*map(in_a_comment, parts)] if plain.startswith(mark) else parts
     if plain.startswith("#") or f"  {mark} " in plain:
         return [line]
     return list(_broken_lines(line, indent + " " * INDENT, least=mark == "#"))

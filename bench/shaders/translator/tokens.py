@@ -43,9 +43,15 @@ END = Token("end", "the end of the file", Place(0, 0))
 def said(comment: str) -> list[str]:
     """A comment's lines without its marks."""
     if comment.startswith("//"):
-        return [comment.removeprefix("//").strip()]
+        return [in_a_comment(comment.removeprefix("//").strip())]
     lines = (line.strip().removeprefix("*").strip() for line in comment[2:-2].splitlines())
-    return [line for line in lines if line]
+    return [in_a_comment(line) for line in lines if line]
+
+
+def in_a_comment(text: str) -> str:
+    """Return a text as a line of a comment in any language: no letter ends the line, and nothing joins the next one."""
+    line = "".join(letter if letter.isprintable() else " " for letter in text)
+    return re.sub(r"(\\|\?\?/)\s*$", r"\1.", line)
 
 
 def tokens(text: str, first: int = 1) -> list[Token]:

@@ -5,6 +5,8 @@ import sys
 
 import pytest
 
+from normalbench.bench.shaders.code.emit import LANGUAGES
+from normalbench.bench.shaders.code.files import commented
 from normalbench.bench.shaders.isa.nvidia.cuda_writer import CudaWriter
 from normalbench.bench.shaders.translator.c_writer import CWriter
 from normalbench.bench.shaders.translator.glsl_parser import read_glsl
@@ -12,6 +14,7 @@ from normalbench.bench.shaders.translator.glsl_writer import GlslWriter
 from normalbench.bench.shaders.translator.hlsl_writer import HlslWriter
 from normalbench.bench.shaders.translator.msl_writer import MslWriter
 from normalbench.bench.shaders.translator.reduce import reduced
+from normalbench.bench.shaders.translator.tokens import in_a_comment
 from normalbench.bench.shaders.translator.tree import TranslationError, one_error_type
 from normalbench.bench.shaders.translator.wgsl_parser import read_wgsl
 from normalbench.bench.shaders.translator.wgsl_writer import WgslWriter
@@ -51,6 +54,18 @@ def test_a_program_keeps_what_its_roots_need_under_one_prefix():
     text = written(GlslWriter)
     assert re.findall(r"^\w+ (\w+)\(", text, re.MULTILINE) == ["p_unit1", "p_unit2", "p_encode", "p_decode"]
     assert "view" not in text and "unused" not in text
+
+
+@pytest.mark.parametrize(
+    "text", ["a\nb", "a\r\nb", "a\u2028b", "a\x85b", "a\fb", "a \\", "a ??/ ", "  a\nb", "a\\ " * 90]
+)
+def test_no_comment_ends_or_goes_on_where_it_should_not(text):
+    """In no language, whatever a name or a title holds."""
+    line = in_a_comment(text)
+    assert line.isprintable() and not line.endswith(("\\", "/"))
+    for language in LANGUAGES:
+        lines = commented("body", language, "guard", [text]).splitlines()
+        assert all(said.startswith(LANGUAGES[language].mark) for said in lines[: lines.index("")]), lines
 
 
 def test_comments_stay_where_they_were():
