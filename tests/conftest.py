@@ -24,6 +24,7 @@ import kept_runs
 import pytest
 
 from normalbench.bench.door.cli import app as cli
+from normalbench.bench.ground.compilers import tools as compilers
 from normalbench.bench.ground.machine.memory import (
     give_back_what_a_table_needed,
     give_back_what_is_freed,
@@ -100,7 +101,7 @@ def _resident_bytes() -> int:
 def spirv_is_kept():
     """SPIR-V is compiled once, as XLA's programs are: an empty cache of the program's own needs it again and again."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(spirv, "_run", kept_runs.kept(spirv._run, CACHE / "spirv"))
+        patch.setattr(compilers, "_piped", kept_runs.kept(compilers._piped, CACHE / "spirv"))
         yield
 
 

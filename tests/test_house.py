@@ -97,6 +97,67 @@ def test_only_the_renderers_of_charts_know_matplotlib_and_d3():
     assert naming == {charts / "wire.py"}
 
 
+# What compilers are called, and the modules that may say so: one of them has names of packages.
+COMPILERS = {"cc", "c++", "g++", "gcc", "clang", "clang++", "slangc", "glslangValidator", "spirv-cross", "spirv-opt"}
+NAMING = {f"bench/ground/{name}.py" for name in ("compilers/tools", "compilers/slang", "machine/systems/people")}
+# Who else starts processes, and which.
+STARTING = {
+    "bench/ground/machine/children.py": "whatever it is asked to",
+    "bench/ground/machine/systems/forks.py": "this program",
+    "bench/ground/machine/systems/linux_forks.py": "this program",
+    "bench/ground/machine/systems/processes.py": "whatever it is asked to",
+    "bench/ground/machine/systems/walls.py": "a compiler, which is asked where its parts lie",
+    "bench/keep/commit.py": "git",
+    "bench/run/piped.py": "this program",
+    "bench/shaders/code/run/essl.py": "this program",
+    "bench/shaders/code/run/sources.py": "what was made of a file",
+    "bench/shaders/code/run/wgsl.py": "this program",
+    "bench/shaders/isa/nvidia/listing.py": "a disassembler",
+    "bench/shaders/isa/nvidia/tools.py": "a disassembler, which is asked for its version",
+    "bench/shaders/isa/process.py": "this program",
+    "bench/shaders/languages/second.py": "this program",
+    "bench/shaders/languages/translated.py": "this program",
+    "bench/subjects/codecs/kinds/named.py": "this program",
+    "bench/subjects/codecs/user_encodings.py": "this program",
+    "bench/subjects/normals/pixel_files.py": "this program",
+}
+STARTS = re.compile(
+    r"(?:children\.|forks\.|processes\.|subprocess\.)?(?:finished|started|Popen)"
+    r"|subprocess\.(?:run|call|check_\w+)|os\.(?:system|exec\w*|spawn\w*)"
+)
+# What makes a text that compilers may be given, or hands one to a compiler as a library.
+MAKES = re.compile(r"(?:\w+\.)*(?:create_shader_module|Text|spCompile)|(?:slang|library)\.Compiled")
+
+
+def calls_and_strings(path: Path) -> tuple[set[str], set[str]]:
+    """Every function that a file calls, as it stands there; and its strings, but for what it says how to install."""
+    nodes = [*ast.walk(ast.parse(path.read_text()))]
+    called = [node for node in nodes if isinstance(node, ast.Call)]
+    left_out = {id(word) for node in called if ast.unparse(node.func) == "how_to_install" for word in node.args}
+    found = (node.value for node in nodes if isinstance(node, ast.Constant) and id(node) not in left_out)
+    return {ast.unparse(node.func) for node in called}, {value for value in found if isinstance(value, str)}
+
+
+def test_one_folder_hands_text_to_compilers():
+    """It alone names them, starts them, and makes what they may be given; others start what is listed."""
+    naming, starting, making = set(), set(), set()
+    named = "|".join(map(re.escape, COMPILERS))
+    words = re.compile(
+        rf'"(?:{named})"|\b(?:finished|started|Popen|subprocess\.\w+|exec\w*|spawn\w*|system|Text)\('
+        r"|create_shader_module|spCompile|\.Compiled\("
+    )
+    for path in (path for path in SOURCES if words.search(path.read_text())):
+        name, (calls, strings) = str(path.relative_to(ROOT)), calls_and_strings(path)
+        naming |= {name} if strings & COMPILERS else set()
+        if path.parent != ROOT / "bench" / "ground" / "compilers":
+            starting |= {name} if any(map(STARTS.fullmatch, calls)) else set()
+            making |= {f"{name}: {call}" for call in calls if MAKES.fullmatch(call)}
+    assert naming == NAMING
+    # The wall becomes the command that it is given.
+    assert starting - {"bench/ground/machine/systems/landlock.py"} == set(STARTING)
+    assert making == set()
+
+
 def test_a_folder_of_the_renderer_is_read_at_a_glance():
     """A pass beside its shaders counts as one thing; no folder holds more than thirteen."""
     for folder in (path for path in (ROOT / "gbuffer").rglob("*") if path.is_dir() and path.name != "__pycache__"):

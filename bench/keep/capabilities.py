@@ -7,13 +7,14 @@ from importlib.util import find_spec
 from types import MappingProxyType
 
 from ...reports import tables
+from ..ground.compilers import tools
 from ..ground.machine.devices import require_device, require_jax
+from ..ground.machine.systems import walls
 from ..ground.output import cache
 from ..ground.output.errors import MissingError
 from ..measures.metrics.images import require_flip
 from ..measures.metrics.visibility import require_rays
 from ..shaders.code.run import c, msl, wgsl
-from ..shaders.languages import tools
 from ..shaders.languages.language import require_language
 from ..subjects.codecs.half.compute import half_device
 from .machine import require_intel, require_mobile, require_nvidia, require_radeons, require_terascale
@@ -45,6 +46,7 @@ CAPABILITIES: Mapping[str, Callable[[], object]] = MappingProxyType(
         "quality --arithmetic half by GLSL": half_device,
         "quality by WGSL (wgpu and a Vulkan driver)": wgsl.device,
         "code in C, and fast rows of 2^26 normals and more (cc)": c.compiler,
+        "code in C of your files (Landlock)": walls.require,
         "code in Metal (clang++)": msl.compiler,
         "code in Slang (slangc)": lambda: tools.path_of(tools.SLANG),
         "rays (method_rms of effects)": require_rays,

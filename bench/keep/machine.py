@@ -11,12 +11,12 @@ import jax
 from ...encodings.storages.storage import STORAGES
 from ...gbuffer.codecs.loops import MANY, loop_limit
 from ...gbuffer.gl.device import NoDeviceError, device
+from ..ground.compilers import tools
 from ..ground.machine.settings import settings
 from ..ground.machine.systems.system_files import processor_lines
 from ..ground.options.gpu_families import ANV, HASVK, MOBILE, NVRTC, R600, RADV
 from ..ground.output.errors import MissingError
 from ..shaders.isa import isa, spirv
-from ..shaders.languages import tools
 
 ROUNDS = {
     "nearest": "nearest",

@@ -1,4 +1,5 @@
-"""The few calls of OpenGL that moderngl does not have: depth with stencil, two-sided stencil, masks of the moment."""
+"""The few calls of OpenGL that moderngl does not have: depth with stencil, two-sided stencil, masks of the moment,
+programs of SPIR-V."""
 
 from __future__ import annotations
 
@@ -17,6 +18,7 @@ STENCIL_TEST, DEPTH_CLAMP = 0x0B90, 0x864F
 COLOR, COLOR_ATTACHMENT = 0x1800, 0x8CE0
 FRONT, BACK, FRONT_AND_BACK = 0x0404, 0x0405, 0x0408
 ALWAYS, NOTEQUAL = 0x0207, 0x0205
+COMPUTE, SPIRV, LINKED, ALL_BARRIERS = 0x91B9, 0x9551, 0x8B82, 0xFFFFFFFF
 KEEP, ZERO, REPLACE, INCR_WRAP, DECR_WRAP = 0x1E00, 0, 0x1E01, 0x8507, 0x8508
 
 _SIGNATURES = {
@@ -38,6 +40,17 @@ _SIGNATURES = {
     "glColorMask": "bbbb",
     "glStencilFunc": "uiu",
     "glStencilOpSeparate": "uuuu",
+    "glCreateShader": "u",
+    "glShaderBinary": "ipupi",
+    "glSpecializeShader": "upupp",
+    "glCreateProgram": "",
+    "glAttachShader": "uu",
+    "glLinkProgram": "u",
+    "glGetProgramiv": "uup",
+    "glGetProgramInfoLog": "uipp",
+    "glUseProgram": "u",
+    "glDispatchCompute": "uuu",
+    "glMemoryBarrier": "u",
 }
 _TYPES = {"i": ctypes.c_int, "u": ctypes.c_uint, "f": ctypes.c_float, "b": ctypes.c_ubyte, "p": ctypes.c_void_p}
 
@@ -209,3 +222,28 @@ def clear_stencil() -> None:
 def blend_by(alpha: float) -> None:
     """What `device.BY_ALPHA` blends by in the draws that follow."""
     function("glBlendColor")(alpha, alpha, alpha, alpha)
+
+
+def compute_program(code: bytes, entry: str) -> int:
+    """Make a compute program of a module of SPIR-V, which the device must know (GL_ARB_gl_spirv); its GL number.
+
+    Raises moderngl.Error where the driver refuses it.
+    """
+    shader, program = ctypes.c_uint(function("glCreateShader")(COMPUTE)), function("glCreateProgram")()
+    function("glShaderBinary")(1, ctypes.byref(shader), SPIRV, code, len(code))
+    function("glSpecializeShader")(shader, entry.encode(), 0, None, None)
+    function("glAttachShader")(program, shader)
+    function("glLinkProgram")(program)
+    is_linked, log = ctypes.c_int(), ctypes.create_string_buffer(1024)
+    function("glGetProgramiv")(program, LINKED, ctypes.byref(is_linked))
+    if not is_linked.value:
+        function("glGetProgramInfoLog")(program, len(log), None, log)
+        raise moderngl.Error(log.value.decode(errors="replace") or "the driver does not link the SPIR-V")
+    return program
+
+
+def dispatch(program: int, groups: int) -> None:
+    """Run groups of a compute program; what it writes is there for all that follows."""
+    function("glUseProgram")(program)
+    function("glDispatchCompute")(groups, 1, 1)
+    function("glMemoryBarrier")(ALL_BARRIERS)

@@ -19,7 +19,7 @@ Run = Callable[..., subprocess.CompletedProcess[bytes]]
 
 
 def kept(run: Run, folder: Path) -> Run:
-    """`spirv._run`, which takes a command, its input and a file that the command may write by its descriptor."""
+    """`tools._piped`, which takes a command, its input and a file that the command may write by its descriptor."""
 
     def kept_run(command: list[str], given: bytes, *files: int) -> subprocess.CompletedProcess[bytes]:
         tool = shutil.which(command[0])

@@ -81,8 +81,7 @@ def c_function(name: str, function: Callable[..., Any], *arguments: Any) -> str:
     given += [f"{_type(aval)} *r{at}" for at, aval in enumerate(traced.out_avals)]
     stores = [f"*r{at} = {result};" for at, result in enumerate(results)]
     lines = "".join(f"    {line}\n" for line in (*writer.lines, *stores))
-    # Inlined into whatever calls it: by itself the compiler does so up to a size, and loops with calls are slow.
-    return f"__attribute__((always_inline)) static inline void {name}({', '.join(given)}) {{\n{lines}}}\n"
+    return f"INLINED void {name}({', '.join(given)}) {{\n{lines}}}\n"
 
 
 def _type(aval: Any) -> str:

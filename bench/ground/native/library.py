@@ -6,7 +6,6 @@ import contextlib
 import ctypes
 import hashlib
 import shutil
-import subprocess
 import tempfile
 from collections.abc import Sequence
 from functools import cache
@@ -14,28 +13,22 @@ from pathlib import Path
 
 import numpy as np
 
-from ..machine.children import finished
+from ..compilers import tools
+from ..compilers.text import Text, judged, own
 from ..machine.devices import processor_kind
-from ..machine.systems.people import how_to_install
 from ..output import cache as kept
+from ..output.errors import MissingError
 
 # Sums keep their order, and NaN and -0 are what they are. Integers wrap around, as JAX's do.
 FLAGS = ("-O3", "-march=native", "-funroll-loops", "-fno-math-errno", "-fno-trapping-math", "-fwrapv")
 FLAGS += ("-fPIC", "-shared", "-w")
-# GCC would follow a number that is limited from above and below on each of its ways, and what is computed of it twice.
-# Clang has no such option, and passes over the line.
-STRAIGHT = '#pragma GCC optimize ("no-thread-jumps")'
-HEADERS = ("stddef.h", "stdint.h", "string.h", "tgmath.h")
-# The bits of a number as a number of another type.
-VIEWED = """#define VIEWED(source, target, value) \\
-    ({ source from_ = (value); target to_; memcpy(&to_, &from_, sizeof to_); to_; })
-"""
+HEAD = Path(__file__).with_suffix(".h")
 COMPILING_S = 30
 # From so many normals on the C compiler's code fills sets and measures them. It rounds a few products otherwise than
 # XLA, which shows in the printed digits of 32 of 430 codecs, so smaller sets, which take seconds by either, have one
 # arithmetic. What one compiler fills the other one reads more slowly, so both begin at the same size.
 LARGE = 2**26
-NONE = f"no C compiler: install one that is called cc ({how_to_install('gcc')})"
+NONE = tools.MISSING[tools.C]
 DIGEST = hashlib.sha256().digest_size
 
 
@@ -43,19 +36,16 @@ class NoCompilerError(Exception):
     """There is no C compiler, or it cannot compile."""
 
 
-@cache
 def compiler() -> str:
-    """What the C compiler calls itself; empty where there is none."""
-    if not shutil.which("cc"):
-        return ""
+    """Return what the C compiler calls itself; empty where there is none."""
     try:
-        return (_said("--version").splitlines() or [""])[0]
-    except NoCompilerError:
+        return (tools.version_text(tools.C).splitlines() or [""])[0]
+    except MissingError:
         return ""
 
 
-def source(file: Path, function: str, given: Sequence[str], **numbers: int) -> str:
-    """A file as C source that `library` can compile.
+def source(file: Path, function: str, given: Sequence[str], **numbers: int) -> Text:
+    """Return a file as C that `library` can compile.
 
     Args:
         file: its C, below what this adds.
@@ -63,17 +53,12 @@ def source(file: Path, function: str, given: Sequence[str], **numbers: int) -> s
         given: the types of what the function takes of the array `given`.
         numbers: further macros.
     """
-    known = {name.upper(): str(number) for name, number in numbers.items()}
-    known["GIVEN"] = "".join(f", ({kind})given[{at}]" for at, kind in enumerate(given))
-    lines = [
-        STRAIGHT,
-        *(f"#include <{header}>" for header in HEADERS),
-        *(f"#define {name} {what}" for name, what in known.items()),
-    ]
-    return "\n".join((*lines, VIEWED, function, file.read_text(encoding="utf-8")))
+    taken = "".join(f", ({kind})given[{at}]" for at, kind in enumerate(given))
+    called = judged(f"#define GIVEN{taken and ' '}{taken}\n{function}", "c")
+    return own(HEAD, **{name.upper(): number for name, number in numbers.items()}) + called + own(file)
 
 
-def library(text: str, *functions: str) -> ctypes.CDLL:
+def library(text: Text, *functions: str) -> ctypes.CDLL:
     """C source, compiled.
 
     Args:
@@ -90,18 +75,18 @@ def library(text: str, *functions: str) -> ctypes.CDLL:
 
 
 @cache
-def _made(text: str, functions: tuple[str, ...]) -> ctypes.CDLL | str:
+def _made(text: Text, functions: tuple[str, ...]) -> ctypes.CDLL | str:
     """A library, or why there is none: what failed is not tried again."""
     if not compiler():
         return NONE
-    path = kept.folder() / "native" / f"{kept.key_of(text, *FLAGS, compiler(), *processor_kind())}.so"
+    path = kept.folder() / "native" / f"{kept.key_of(text.content, *FLAGS, compiler(), *processor_kind())}.so"
     try:
-        if not kept.is_off() and _is_whole(path):
-            return _loaded(path, functions)
+        if not kept.is_off() and (own := _whole(path)):
+            return _loaded(own, functions)
         with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
             made = _compiled(text, Path(folder))
             found = _loaded(made, functions)
-            if not kept.is_off():
+            if not kept.is_off() and kept.keeps_code():
                 # A folder that cannot be written is no error.
                 with contextlib.suppress(OSError):
                     kept.put(path, made.read_bytes())
@@ -110,26 +95,25 @@ def _made(text: str, functions: tuple[str, ...]) -> ctypes.CDLL | str:
         return str(error)
 
 
-def _compiled(text: str, folder: Path) -> Path:
+def _compiled(text: Text, folder: Path) -> Path:
     """The library, followed by the digest of its bytes: linkers pass over what follows."""
-    written, path = folder / "library.c", folder / "library.so"
-    written.write_text(text, encoding="utf-8", newline="\n")
-    _said(*FLAGS, str(written), "-o", str(path), "-lm")
+    _compile(text, folder)
+    path = folder / "library.so"
     data = path.read_bytes()
     path.write_bytes(data + hashlib.sha256(data).digest())
     return path
 
 
-def _is_whole(path: Path) -> bool:
-    """Whether a library is there as this user wrote it. A damaged one would end the process that loads it, and one of
-    another user would do as it likes."""
-    if not kept.is_private(path):
-        return False
+def _whole(path: Path) -> Path | None:
+    """A library as this user wrote it, without links; None where there is none. A damaged one would end the process
+    that loads it, and one of another user would do as it likes."""
+    if not (own := kept.loadable(path)):
+        return None
     try:
-        data = path.read_bytes()
+        data = own.read_bytes()
     except OSError:
-        return False
-    return hashlib.sha256(data[:-DIGEST]).digest() == data[-DIGEST:]
+        return None
+    return own if hashlib.sha256(data[:-DIGEST]).digest() == data[-DIGEST:] else None
 
 
 def _loaded(path: Path, functions: Sequence[str]) -> ctypes.CDLL:
@@ -153,7 +137,7 @@ def _loaded_elsewhere(path: Path) -> ctypes.CDLL:
         try:
             return ctypes.CDLL(shutil.copy(path, folder))
         except OSError:
-            if kept.is_off():
+            if kept.is_off() or not kept.keeps_code():
                 raise
     kept.make_folder(kept.folder())
     with tempfile.TemporaryDirectory(dir=kept.folder(), ignore_cleanup_errors=True) as folder:
@@ -164,21 +148,21 @@ def _loaded_elsewhere(path: Path) -> ctypes.CDLL:
 _hangs: list[str] = []
 
 
-def _said(*arguments: str) -> str:
-    """What the C compiler prints. Raises NoCompilerError where it fails, and from then on where it did not end."""
+def _compile(text: Text, folder: Path) -> None:
+    """Raises NoCompilerError where the compiler fails, and from then on where it did not end."""
     if _hangs:
         raise NoCompilerError(_hangs[0])
+    words = [*FLAGS, "library.c", "-o", "library.so", "-lm"]
     try:
-        done = finished(["cc", *arguments], COMPILING_S)
-    except subprocess.TimeoutExpired as error:
-        _hangs.append(f"cc did not end within {COMPILING_S} s")
+        done = tools.run(tools.C, words, folder, {"library.c": text}, COMPILING_S)
+    except tools.ToolError as error:
+        _hangs.append(str(error))
         raise NoCompilerError(_hangs[0]) from error
-    except OSError as error:
-        raise NoCompilerError(f"cc: {error}") from error
-    if done.returncode:
-        said = [*done.stderr.splitlines(), f"exit status {done.returncode}"]
+    except MissingError as error:
+        raise NoCompilerError(str(error)) from error
+    if done.status:
+        said = [*done.err.splitlines(), f"exit status {done.status}"]
         raise NoCompilerError(f"cc: {next((line for line in said if 'error' in line), said[-1])}")
-    return done.stdout
 
 
 def address(array: np.ndarray) -> ctypes.c_void_p:

@@ -20,7 +20,7 @@ from errno import EACCES
 from pathlib import Path
 from typing import Any
 
-from ..machine.systems.files import cache_home, forbids_execution, is_closed, is_own, moved_over
+from ..machine.systems.files import cache_home, forbids_execution, is_closed, is_guarded, is_own, moved_over
 from .errors import MissingError
 
 # The cache is for its user alone.
@@ -102,6 +102,27 @@ def is_private(path: Path) -> bool:
         return False
 
 
+def loadable(path: Path) -> Path | None:
+    """A file to load as code, without links; None where anybody but this user and root can have written it, or can put
+    another one in its place: see `is_private` and `is_guarded`, which looks at all folders above the cache too."""
+    try:
+        whole = path.resolve()
+        return whole if is_private(path) and is_guarded(whole) else None
+    except OSError:
+        return None
+
+
+def keeps_code() -> bool:
+    """Whether code that is to be loaded can lie in the cache: nobody else can put another folder in its place.
+
+    The cache itself is closed to others when something is put into it.
+    """
+    try:
+        return is_guarded(folder().resolve().parent)
+    except OSError:
+        return False
+
+
 @functools.cache
 def folder_of_this_process() -> Path:
     """For what the cache cannot take; it goes with the process."""
@@ -111,13 +132,14 @@ def folder_of_this_process() -> Path:
 
 
 def folder_to_execute_from() -> Path:
-    """The cache, or a folder of this process where the cache lies on a file system that nothing is executed from.
+    """The cache, or a folder of this process where the cache lies on a file system that nothing is executed from, or
+    in a folder that others can write into.
 
     Raises:
         OSError: the cache cannot be made, or it is another user's.
     """
     make_folder(folder())
-    return folder_of_this_process() if forbids_execution(folder()) else folder()
+    return folder_of_this_process() if forbids_execution(folder()) or not keeps_code() else folder()
 
 
 def key_of(*parts: str | bytes) -> str:

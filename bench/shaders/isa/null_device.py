@@ -6,18 +6,19 @@ A library's name there says what it was built of and what it holds: another sour
 from __future__ import annotations
 
 import platform
-import shutil
-import subprocess
 import tempfile
 from pathlib import Path
 
+from ...ground.compilers import tools
+from ...ground.compilers.text import own
 from ...ground.machine.systems.people import how_to_install
 from ...ground.machine.systems.preload import preloaded
 from ...ground.output import cache as kept
+from ...ground.output.errors import MissingError
 
 SOURCE = Path(__file__).with_name("null_i915.c")
 SHARED = SOURCE.with_name("null_drm.h")
-COMPILER = "cc"
+COMPILER = tools.C
 NO_COMPILER = (
     f"no C compiler: these counts need {COMPILER}; install it ({how_to_install('gcc libc6-dev', counts=True)})"
 )
@@ -47,7 +48,8 @@ def _kept_library(folder: Path, stem: str) -> Path | None:
         paths = sorted(folder.glob(f"{stem}-*.so"))
     except OSError:
         return None
-    return next((path for path in paths if path.name == _library_name(stem, path)), None)
+    named = (path for path in paths if path.name == _library_name(stem, path))
+    return next((path.resolve() for path in named if folder != kept.folder() or kept.loadable(path)), None)
 
 
 def _library_folder() -> Path:
@@ -74,8 +76,6 @@ def _library_name(stem: str, path: Path) -> str:
 
 
 def _built_library(folder: Path, stem: str, source: Path) -> Path:
-    if not shutil.which(COMPILER):
-        raise NullDeviceError(NO_COMPILER, is_missing=True)
     try:
         kept.make_folder(folder)
         # Others see a whole file or none: it is moved there once it is complete.
@@ -84,21 +84,24 @@ def _built_library(folder: Path, stem: str, source: Path) -> Path:
             _compile(whole, source)
             path = folder / _library_name(stem, whole)
             whole.replace(path)
-            return path
+            return path.resolve()
     except OSError as error:
         said = f"the null device cannot be written into the cache folder {folder}: {error.strerror or error}"
         raise NullDeviceError(f"{said}; XDG_CACHE_HOME names another one") from error
 
 
 def _compile(path: Path, source: Path) -> None:
-    command = [COMPILER, "-O1", "-shared", "-fPIC", "-o", str(path), str(source)]
+    files = {source.name: own(source), SHARED.name: own(SHARED)}
+    words = ["-O1", "-shared", "-fPIC", "-o", path.name, source.name]
     try:
-        done = subprocess.run(command, capture_output=True, encoding="utf-8", errors="replace", timeout=SECONDS)
-    except subprocess.TimeoutExpired as error:
-        raise NullDeviceError(f"{COMPILER} took longer than {SECONDS:g} s for {source.name}") from error
-    if done.returncode or not path.exists():
-        last = [line.strip() for line in done.stderr.splitlines() if line.strip()][-1:]
-        said = f"{COMPILER} does not compile {source.name}: {last[0][:200] if last else f'status {done.returncode}'}"
+        done = tools.run(COMPILER, words, path.parent, files, SECONDS)
+    except MissingError as error:
+        raise NullDeviceError(NO_COMPILER, is_missing=True) from error
+    except tools.ToolError as error:
+        raise NullDeviceError(f"{error} for {source.name}") from error
+    if done.status or not path.exists():
+        last = [line.strip() for line in done.err.splitlines() if line.strip()][-1:]
+        said = f"{COMPILER} does not compile {source.name}: {last[0][:200] if last else f'status {done.status}'}"
         raise NullDeviceError(
             f"{said}; the headers of libc may be missing ({how_to_install('gcc libc6-dev', counts=True)})"
         )

@@ -3,25 +3,21 @@
 from __future__ import annotations
 
 import base64
-import shutil
 import struct
-import subprocess
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 from ....gbuffer.gl.shader import ShaderError, Source
-from ...ground.machine.systems.people import how_to_install
-from ...ground.machine.systems.processes import file_of_child
+from ...ground.compilers import tools
+from ...ground.compilers.lines import bare, with_known_directives
+from ...ground.compilers.text import RULES, RefusedError, Text, judged
 from ...ground.output import cache as kept
 from ...ground.output.errors import MissingError
 
-COMPILER, OPTIMISER = "glslangValidator", "spirv-opt"
-NO_COMPILER = f"no GLSL compiler: {COMPILER} is not on the path; install it ({how_to_install('glslang-tools')})"
-NO_OPTIMISER = f"no SPIR-V counts: {OPTIMISER} is not on the path; install it ({how_to_install('spirv-tools')})"
-SECONDS = 20
+COMPILER, OPTIMISER = tools.GLSLANG, tools.SPIRV_OPT
+NO_COMPILER, NO_OPTIMISER = tools.MISSING[COMPILER], tools.MISSING[OPTIMISER]
 MAGIC = struct.pack("<I", 0x07230203)
 HEADER, FUNCTION, FUNCTION_END, LOOP_MERGE = 5, 54, 56, 246
 UNROLL, DONT_UNROLL = 1, 2
@@ -38,18 +34,12 @@ class Module:
     instructions: int | None
 
 
-@cache
 def version(tool: str) -> str | None:
     """All that a tool says of its version; None where it is not there."""
-    if not shutil.which(tool):
-        return None
     try:
-        done = subprocess.run(
-            [tool, "--version"], capture_output=True, encoding="utf-8", errors="replace", timeout=SECONDS
-        )
-    except (OSError, subprocess.TimeoutExpired):
+        return tools.version_text(tool) or "of no version"
+    except MissingError:
         return None
-    return f"{done.stdout}{done.stderr}".strip() or "of no version"
 
 
 def compiler() -> str:
@@ -118,35 +108,35 @@ def _is_spirv(binary: bytes) -> bool:
 
 
 def _glslang_binary(source: Source, stage: str) -> bytes:
-    with file_of_child() as out:
-        options = ["--stdin", "-S", stage, "-V", "--auto-map-bindings", "-o", out.path]
-        done = _run([COMPILER, *options], source.text.encode(), *out.descriptors)
-        binary = out.content()
-    if done.returncode == 0 and _is_spirv(binary):
+    try:
+        done, binary = tools.module_of(_judged(source), ["-S", stage, "-V", "--auto-map-bindings"])
+    except tools.ToolError as error:
+        raise ToolError(str(error)) from error
+    if done.status == 0 and _is_spirv(binary):
         return binary
-    said = done.stdout.decode(errors="replace").splitlines()
-    errors = [line.removeprefix("ERROR: ") for line in said if line.startswith("ERROR: ")]
+    errors = [line.removeprefix("ERROR: ") for line in done.out.splitlines() if line.startswith("ERROR: ")]
     if not errors:
-        raise ToolError(f"{COMPILER} ended with status {done.returncode} and said nothing")
+        raise ToolError(f"{COMPILER} ended with status {done.status} and said nothing")
     raise ShaderError(source.explain(errors[0]))
+
+
+def _judged(source: Source) -> Text:
+    """The text as the compiler is given it. Raises ShaderError."""
+    text = with_known_directives(bare(source.text), RULES["glsl"].heads)
+    try:
+        return judged(text, "glsl")
+    except RefusedError as error:
+        raise ShaderError(source.explain(f"0:{error.line}: {error.why}")) from error
 
 
 def _optimised(binary: bytes) -> bytes | None:
     """The module with loops of a known length unrolled, so that a polynomial counts as long as it is; None where the
     optimiser fails, for the compilers do without it."""
     try:
-        done = _run([OPTIMISER, "-O", "-", "-o", "-"], _asking_to_unroll(binary))
-    except ToolError:
+        module = tools.optimised(_asking_to_unroll(binary))
+    except tools.ToolError:
         return None
-    return done.stdout if done.returncode == 0 and _is_spirv(done.stdout) else None
-
-
-def _run(command: list[str], given: bytes, *files: int) -> subprocess.CompletedProcess[bytes]:
-    """A tool over its standard input. Raises ToolError where it does not end."""
-    try:
-        return subprocess.run(command, input=given, capture_output=True, timeout=SECONDS, pass_fds=files)
-    except subprocess.TimeoutExpired as error:
-        raise ToolError(f"{command[0]} took longer than {SECONDS} s") from error
+    return module if _is_spirv(module) else None
 
 
 def _module_words(binary: bytes) -> list[int]:

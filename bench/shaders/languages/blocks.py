@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import re
 
-from .items import blank
+from ...ground.compilers.lines import blank
 from .source import Source
 
 _BLOCK = re.compile(r"^[ \t]*(?:HLSL|CG)(PROGRAM|INCLUDE)[ \t]*$(.*?)^[ \t]*END(?:HLSL|CG)[ \t]*$", re.M | re.S)

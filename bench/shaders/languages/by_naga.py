@@ -14,6 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from ...ground.compilers import tools
+from ...ground.compilers.text import judged
 from ...ground.machine.webgpu import NO_DRIVER, adapters
 from ...ground.output.errors import MissingError
 
@@ -30,7 +32,8 @@ def main(folder: Path) -> None:
     given = np.fromfile(folder / "given.bin", "<f4")
     count = len(given) // 12
     gpu = found[0].request_device_sync()
-    module = gpu.create_shader_module(code=(folder / "given.wgsl").read_text(encoding="utf-8"))
+    text = judged((folder / "given.wgsl").read_text(encoding="utf-8"), "wgsl")
+    module = tools.webgpu_module(gpu, text)
     program = gpu.create_compute_pipeline(layout="auto", compute={"module": module, "entry_point": ENTRY})
     storage = wgpu.BufferUsage.STORAGE | wgpu.BufferUsage.COPY_SRC
     source = gpu.create_buffer_with_data(data=given, usage=storage)

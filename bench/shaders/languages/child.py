@@ -13,6 +13,7 @@ from __future__ import annotations
 import json
 import re
 import sys
+import tempfile
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -20,9 +21,13 @@ from pathlib import Path
 from typing import Any
 
 from ....encodings.codecs.files import called
+from ...ground.compilers import tools
+from ...ground.compilers.tools import ToolError
 from ...ground.machine import children
+from ...ground.machine.systems import landlock, walls
+from ...ground.machine.systems.walls import Wall
 from ...ground.output.errors import MissingError, UsageError
-from . import programs, slang
+from . import hlsl, programs, slang
 from .blocks import programs_of
 from .items import functions_in, reached, words_of
 from .language import BY_NAME, GLSLANG, Language, language_of, name_of
@@ -43,7 +48,6 @@ from .plain import NotPlainError, plain
 from .programs import Read, TranslationError
 from .shaped import shaped_pair
 from .source import Source
-from .tools import ToolError
 from .wiring import Wiring, candidates, wired, wiring_of
 from .words import file_of, functions_of
 
@@ -57,11 +61,19 @@ HAS_PARAMETERS = "they have their parameters alone"
 MOST_NAMED, MOST_OTHERS = 12, 4
 
 
-def answer(word: str | Path, folder: Path, by: str = "", kind: str = "") -> dict[str, Any]:
-    """What there is to say of a file; see above."""
+def answer(
+    word: str | Path,
+    folder: Path,
+    by: str = "",
+    kind: str = "",
+    once_read: Callable[[Source], None] = lambda _: None,
+) -> dict[str, Any]:
+    """Return what there is to say of a file; see above. `once_read` is called before any compiler is."""
     path = file_of(word)
     try:
-        return _facts_of_a_program(word, folder, by, kind)
+        source = Source(word)
+        once_read(source)
+        return _facts_of_a_program(source, folder, by, kind)
     except (UsageError, TranslationError) as error:
         return {"error": f"{error}{BY_MACRO}" if _UNKNOWN.search(str(error)) else str(error)}
     except SeveralPairsError as error:
@@ -74,14 +86,27 @@ def answer(word: str | Path, folder: Path, by: str = "", kind: str = "") -> dict
         return {"missing": f"{path}: {error}"}
 
 
-def _facts_of_a_program(word: str | Path, folder: Path, by: str, kind: str) -> dict[str, Any]:
+def _wall_in(source: Source, folder: Path) -> None:
+    """Leave this process, and what it starts, the compilers, a folder to write, and the files that it has read."""
+    if not landlock.is_available():
+        return
+    # Temporary files lie there from here on.
+    tempfile.tempdir = str(folder)
+    wall = walls.of_python() | Wall(tuple(map(str, source.files)), (str(folder),))
+    for tool in (*hlsl.TOOLS, tools.SLANG_LIBRARY):
+        with suppress(MissingError):
+            wall |= walls.of_tool(tools.path_of(tool))
+    wall.restrict()
+
+
+def _facts_of_a_program(whole: Source, folder: Path, by: str, kind: str) -> dict[str, Any]:
     """Of the first program of a file that has an encoder and its decoder. Raises what is said of the others."""
     errors: list[Exception] = []
-    for source in programs_of(Source(word)):
+    for source in programs_of(whole):
         try:
             if kind:
-                return _shaped_facts(source, functions_of(word), folder, by, kind)
-            return _translation_facts(source, functions_of(word), folder, by)
+                return _shaped_facts(source, functions_of(whole.word), folder, by, kind)
+            return _translation_facts(source, functions_of(whole.word), folder, by)
         except (TranslationError, NoPairError) as error:
             errors.append(error)
     # What is wrong with a pair says more than that there is none.
@@ -324,4 +349,4 @@ def _function_texts(source: Source, language: Language, pair: Pair, prefix: str,
 if __name__ == "__main__":
     children.limit_this_process()
     work, word, language, kind = sys.argv[1:]
-    print(json.dumps(answer(word, Path(work), language, kind)))
+    print(json.dumps(answer(word, Path(work), language, kind, lambda source: _wall_in(source, Path(work)))))

@@ -5,9 +5,11 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from . import tools
+from ...ground.compilers import tools
+from ...ground.compilers.text import RefusedError, judged
 from .pairs import Function
 from .programs import ENTRY, TranslationError, macros, program
+from .slang import refusal
 from .source import Source
 
 TOOLS = (tools.GLSLANG, tools.SPIRV_CROSS)
@@ -26,18 +28,21 @@ def shader(source: Source, function: Function, folder: Path) -> str:
         ToolError: a tool crashes or does not end.
         MissingError: a tool is not there.
     """
-    (folder / GIVEN).write_text(program(source, function), encoding="utf-8", newline="\n")
+    try:
+        text = judged(program(source, function), "hlsl")
+    except RefusedError as error:
+        raise TranslationError(refusal(source, error)) from None
     # Without names (-g0) no identifier of the user's can be one of GLSL's or of this program's. Not optimised (-Od), a
     # function with an early return stays one, and does not become a loop of one turn.
     options = ["-D", "-e", ENTRY, "-S", "frag", "-V", "--target-env", "vulkan1.1", "-g0", "-Od", "-o", MADE]
-    status, said = tools.run(tools.GLSLANG, [*options, *_define_options(source), GIVEN], folder)
-    _check(source, status, said)
-    status, said = tools.run(
-        tools.SPIRV_CROSS, ["--version", VERSION, "--no-es", "--remove-unused-variables", MADE], folder
-    )
+    words = [*options, *_define_options(source), GIVEN]
+    status, out, err = tools.run(tools.GLSLANG, words, folder, {GIVEN: text})
+    _check(source, status, out + err)
+    words = ["--version", VERSION, "--no-es", "--remove-unused-variables", MADE]
+    status, out, err = tools.run(tools.SPIRV_CROSS, words, folder, {})
     if status:
-        raise TranslationError(f"{source.path}: {tools.SPIRV_CROSS}: {' '.join(said.split())[:300]}")
-    return said
+        raise TranslationError(f"{source.path}: {tools.SPIRV_CROSS}: {' '.join((out + err).split())[:300]}")
+    return out
 
 
 def _define_options(source: Source) -> list[str]:

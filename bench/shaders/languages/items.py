@@ -10,20 +10,17 @@ import re
 from collections.abc import Collection, Iterable, Iterator
 from typing import NamedTuple
 
+from ...ground.compilers.lines import blank
+
 # What is in quotes may have braces.
 _QUOTED = re.compile(r"\"[^\"\n]*\"|'[^'\n]*'")
 # What belongs to a function that stands behind it.
 _ATTRIBUTE = re.compile(r"[\]>]\s*$")
-_DIRECTIVE = re.compile(r"^[ \t]*#(?:.*\\\n)*.*$", re.M)
+_DIRECTIVE = re.compile(r"^[ \t]*#.*$", re.M)
 # NAME(...) at the end of what stands before a body, with a semantic or not; `cbuffer NAME : register(b0)` is none.
 _NAME = re.compile(r"\b(?!register\b)([A-Za-z_]\w*)\s*\((?:[^()]|\([^()]*\))*\)\s*(?::\s*\w+\s*|->\s*\w+\s*)?$")
 _SPACE, _STRUCTURE = re.compile(r"\bnamespace\s+([\w:]+)\s*$"), re.compile(r"\bstruct\s+(\w+)\s*\{(.*)\}[^{}]*$", re.S)
 _WORD, _PASTED = re.compile(r"\w+"), re.compile(r"(\w*)\s*##\s*(\w*)")
-
-
-def blank(text: str) -> str:
-    """Blanks in place of a text, in as many lines."""
-    return "\n".join(" " * len(line) for line in text.split("\n"))
 
 
 class Item(NamedTuple):

@@ -9,11 +9,13 @@ from pathlib import Path
 from types import MappingProxyType
 
 from ....encodings.codecs.files import file_text
-from . import hlsl, slang, tools, wgsl, wiring
+from ...ground.compilers import tools
+from ...ground.compilers.lines import without_comments
+from . import hlsl, slang, wgsl, wiring
 from .pairs import Function
 from .programs import Read
 from .shaped import Adapter
-from .source import Source, without_comments
+from .source import Source
 from .words import TRANSLATED, file_of, settings_of
 
 GLSL_NAME = "GLSL"

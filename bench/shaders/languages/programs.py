@@ -9,6 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple
 
+from ...ground.compilers.lines import bare
 from .pairs import Function
 from .shaped import ShapedPair
 from .source import Source
@@ -118,7 +119,8 @@ def program(source: Source, function: Function) -> str:
     # What is no float is the same for all of a triangle.
     given = f"nointerpolation {function.given_type}" if function.takes else function.given_type
     words = {"VIEW": view, "RESULT": function.result_type, "GIVEN": given}
-    return source.text + template("entry.hlsl", FUNCTION=function.name, ARGUMENTS=arguments, **words)
+    entry = template("entry.hlsl", FUNCTION=function.name, ARGUMENTS=arguments, **words)
+    return source.text + bare(entry)
 
 
 def macros(source: Source, types: Mapping[str, str] = ENGINE_TYPES) -> list[str]:

@@ -1,12 +1,11 @@
 """A second way to run a translated encoder, which shares neither reader nor writer with the first where two exist.
 
-HLSL and Slang go through Slang's compiler to C++, WGSL through naga to Vulkan. What they give is compared with what is
-measured, by OpenGL: a translation that compiles can still be wrong.
+HLSL, Slang and GLSL go through Slang's compiler to SPIR-V, WGSL through naga to Vulkan. What they give is compared with
+what is measured, by OpenGL from GLSL: a translation that compiles can still be wrong. Files run as shaders alone.
 """
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 from collections.abc import Callable
 from dataclasses import replace
@@ -14,22 +13,26 @@ from pathlib import Path
 
 import numpy as np
 
+from ...ground.compilers import tools
+from ...ground.compilers.lines import bare
+from ...ground.compilers.slang import GIVEN as TEXT
+from ...ground.compilers.text import RefusedError, judged
+from ...ground.compilers.tools import ToolError
 from ...ground.machine import children
-from ...ground.machine.systems.people import how_to_install
-from ...ground.machine.systems.processes import DIVIDED_BY_ZERO, signal_name
+from ...ground.machine.systems.processes import signal_name
 from ...ground.output.errors import MissingError
-from . import slang, tools
+from . import by_spirv, slang
 from .language import GLSL_NAME, name_of
 from .programs import LARGEST, TranslationError, macros, template
 from .source import Source
-from .tools import ToolError
 from .translated import Translated
 
 # Of one step: compiling, or running.
 SECONDS = 30.0
 MISSING = "WGSL needs"
-GIVEN, MADE, PROGRAM = "given.bin", "made.bin", "program"
-ENTRY, MAIN = "normalbench_second", Path(__file__).with_suffix(".cpp")
+GIVEN, MADE = "given.bin", "made.bin"
+# Slang's own writer of SPIR-V alone: above -O0 it asks for spirv-opt. Nothing is fused that the file does not fuse.
+SPIRV = ("-target", "spirv", "-entry", "normalbench_second", "-stage", "compute", "-O0", "-fp-mode", "precise")
 # Normals and codes of shape (count, 3) and a view of three numbers to codes and normals, (count, 3).
 Way = Callable[[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
@@ -60,7 +63,7 @@ def second_way(path: Path, encoder: Translated, folder: Path) -> Way:
     Raises:
         NoSecondWayError: a compiler is missing or refuses the file.
     """
-    make = _naga_runner if name_of(path) == "WGSL" else _cpp_runner
+    make = _naga_runner if name_of(path) == "WGSL" else _spirv_runner
     run = make(Source(path), encoder, folder)
 
     def way(n: np.ndarray, codes: np.ndarray, view: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -100,28 +103,24 @@ def _of_halves(encoder: Translated) -> str:
     return template("packed.hlsl", **words) + _program_text("second.hlsl", plain)
 
 
-def _cpp_runner(source: Source, encoder: Translated, folder: Path) -> Callable[[int], None]:
-    """Slang's C++ as a program."""
-    compiler = shutil.which("c++") or shutil.which("clang++")
-    if not compiler:
-        raise NoSecondWayError(f"no compiler of C++ is on the path ({how_to_install('g++')})")
-    (folder / slang.GIVEN).write_text(
-        encoder.text + _program_text("second.hlsl", encoder), encoding="utf-8", newline="\n"
-    )
+def _spirv_runner(source: Source, encoder: Translated, folder: Path) -> Callable[[int], None]:
+    """Slang's SPIR-V by OpenGL, in a process that the driver may end."""
     of_language = list(slang.GLSL) if name_of(source.word) == GLSL_NAME else []
     used = macros(source.with_text(encoder.text), slang.TYPES)
     defined = [*of_language, *(word for macro in used for word in ("-D", macro))]
     defined.append("-enable-machine-readable-diagnostics")
-    options = ["-target", "cpp", "-entry", ENTRY, "-stage", "compute", "-line-directive-mode", "none"]
     try:
-        status, out, err = tools.run_apart(tools.SLANG, [*defined, *options, slang.GIVEN], folder)
+        text = tools.slang_text(encoder.text + bare(_program_text("second.hlsl", encoder)), defined, folder)
+        words, wall = [*defined, *SPIRV, "-o", "made.spv", TEXT], tools.wall_around(tools.SLANG, folder)
+        done = tools.run(tools.SLANG, words, folder, {TEXT: text}, wall=wall)
     except (MissingError, ToolError) as error:
         raise NoSecondWayError(str(error)) from error
-    if status:
-        raise NoSecondWayError(_refusal_text(source, err), is_of_the_file=True)
-    (folder / "made.cpp").write_text(out + MAIN.read_text(encoding="utf-8"), encoding="utf-8", newline="\n")
-    _run([compiler, "-std=c++17", "-O0", "-w", "-ffp-contract=off", "made.cpp", "-o", PROGRAM], folder)
-    return lambda count: _run([str(folder / PROGRAM), str(count)], folder)
+    except RefusedError as error:
+        raise NoSecondWayError(slang.refusal(source, error), is_of_the_file=True) from error
+    if done.status:
+        raise NoSecondWayError(_refusal_text(source, done.err), is_of_the_file=True)
+    words = children.python("normalbench.bench.shaders.languages.by_spirv", str(folder))
+    return lambda _: _run(words, folder)
 
 
 def _refusal_text(source: Source, said: str) -> str:
@@ -132,27 +131,27 @@ def _refusal_text(source: Source, said: str) -> str:
     return f"{tools.SLANG} does not read it"
 
 
-def _naga_runner(_: Source, encoder: Translated, folder: Path) -> Callable[[int], None]:
+def _naga_runner(source: Source, encoder: Translated, folder: Path) -> Callable[[int], None]:
     """The text itself on a Vulkan device, in a process that naga may end."""
-    (folder / "given.wgsl").write_text(
-        encoder.text + _program_text("second.wgsl", encoder), encoding="utf-8", newline="\n"
-    )
+    try:
+        text = judged(bare(encoder.text + _program_text("second.wgsl", encoder), is_wgsl=True), "wgsl")
+    except RefusedError as error:
+        raise NoSecondWayError(slang.refusal(source, error), is_of_the_file=True) from error
+    tools.put(folder / "given.wgsl", text)
     words = children.python("normalbench.bench.shaders.languages.by_naga", str(folder))
-    return lambda _: _run(words, folder, is_of_the_file=True)
+    return lambda _: _run(words, folder)
 
 
-def _run(command: list[str], folder: Path, is_of_the_file: bool = False) -> None:
+def _run(command: list[str], folder: Path) -> None:
     """A command that ends well. Raises NoSecondWayError, UndefinedError."""
     try:
         done = children.finished(command, SECONDS, folder)
     except subprocess.TimeoutExpired as error:
-        raise NoSecondWayError(f"{Path(command[0]).name} did not end within {SECONDS:g} s") from error
-    except OSError as error:
-        raise NoSecondWayError(f"{Path(command[0]).name} cannot be run: {error.strerror}") from error
-    if done.returncode == DIVIDED_BY_ZERO:
+        raise NoSecondWayError(f"it did not end within {SECONDS:g} s") from error
+    if done.returncode == by_spirv.UNDEFINED:
         raise UndefinedError("it divides a whole number by 0, of some normal")
     if done.returncode:
         lines = [line.strip() for line in (done.stdout + done.stderr).splitlines() if line.strip()]
         ended = signal_name(done.returncode) or f"status {done.returncode}"
         why = lines[-1][:200] if lines else f"it ended with {ended}"
-        raise NoSecondWayError(why, is_of_the_file and MISSING not in why)
+        raise NoSecondWayError(why, done.returncode != by_spirv.NO_DEVICE and MISSING not in why)

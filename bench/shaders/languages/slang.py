@@ -10,35 +10,31 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
+from ...ground.compilers import slang as library
+from ...ground.compilers.lines import blank, with_known_directives
+from ...ground.compilers.text import OTHER_FILES, RefusedError
 from ..translator.builtins import LIKE_GIVEN, OF_FLOATS
-from .items import Item, blank, blanked, defined_in, functions_in, heads, items, without
+from .items import Item, blanked, defined_in, functions_in, heads, items, without
 from .pairs import Function
 from .programs import ENGINE_TYPES, ENTRY, HALVES, Read, TranslationError, macros, program, template
-from .slang_library import Compiled
+from .reflection import functions_of
 from .source import Source
 
 COMPILER = "Slang's compiler"
-GIVEN = "given.slang"
 # Tab-separated: number, severity, file, line, column, its end, and what is wrong. The span says more than the error.
-_LINE = rf"\t[^\t]*{re.escape(GIVEN)}\t(\d+)\t(\d+)\t\d+\t\d+\t(.*)$"
+_LINE = rf"\t[^\t]*{re.escape(library.GIVEN)}\t(\d+)\t(\d+)\t\d+\t\d+\t(.*)$"
 _ERROR, _SPAN = re.compile(rf"^\w+\t(?:error|fatal)[^\t]*{_LINE}", re.M), re.compile(rf"^\w+\tspan{_LINE}", re.M)
 _MIX, MIX = re.compile(r"\bmix(?=\()"), "normalbench_mix_0"
-# Words of Slang's that read other files, and that write what stands in a string into the program that is made.
-OTHER_FILES = ("import", "__import", "__include", "implementing", "__exported")
-OTHER_TEXT = (
-    *("__intrinsic_asm", "__target_switch", "__target_intrinsic", "__requirePrelude", "spirv_asm", "__intrinsic_type"),
-    *("__specialized_for_target", "__glsl_extension", "__builtin", "__magic_type", "__intrinsic_op", "__stage_switch"),
-)
 TYPES: Mapping[str, str] = {**ENGINE_TYPES, **dict.fromkeys(HALVES, "float")}
 # Functions of its own.
 OWN_FUNCTIONS = (
     LIKE_GIVEN | OF_FLOATS | {"select", "saturate", "lerp", "frac", "rsqrt", "mul", "fmod", "mod", "rcp", "any", "all"}
 )
 # A directive that begins or ends a branch.
-_CONDITIONAL = re.compile(r"^[ \t]*#[ \t]*(?:if|ifdef|ifndef|else|elif|endif)\b(?:.*\\\n)*.*$", re.M)
+_CONDITIONAL = re.compile(r"^[ \t]*#[ \t]*(?:if|ifdef|ifndef|else|elif|endif)\b.*$", re.M)
 PART = "normalbench_part_"
 TARGET = (
     *("-target", "glsl", "-entry", ENTRY, "-stage", "fragment"),
@@ -48,44 +44,23 @@ TARGET = (
 NO_ENTRY = f"\nfloat4 {ENTRY}() : SV_Target {{ return 0; }}\n"
 # NAME(, but for what says where a resource is bound.
 _CALLED = re.compile(r"\b(?!register\b|packoffset\b|layout\b)([A-Za-z_]\w*)\s*\(")
-# Directives of GLSL that are its compiler's own, and what a stage is given and gives.
-_OWN = re.compile(r"^[ \t]*#[ \t]*(?:version[ \t]+(\d+)|extension|pragma|line)\b.*$", re.M)
+# The version of GLSL, and what a stage is given and gives.
+_VERSION = re.compile(r"^[ \t]*#[ \t]*version[ \t]+(\d+).*$", re.M)
 _OF_A_STAGE = re.compile(
     r"^(?:layout\s*\([^)]*\)\s*)?(?:(?:flat|smooth|noperspective|centroid|highp|mediump|lowp)\s+)*"
     r"(?:in|out|varying|attribute)\b"
 )
-_LINES = re.compile(r"^[ \t]*#[ \t]*line\b.*$", re.M)
 # What GLSL fills as no other language does: a matrix of one number is a diagonal.
 _DIAGONAL = re.compile(r"\bmat[234](?:x[234])?\s*\(")
 
 
 def read(source: Source, folder: Path) -> Read:
     """What can be read of a source in HLSL or Slang. Raises TranslationError and MissingError."""
-    _check_words(source)
-    return _readable_part(source, _text_without_lines, folder, ())
-
-
-def _check_words(source: Source) -> None:
-    """Raises TranslationError for a source that may read other files, or write the text of another language.
-
-    What is there after macros is what is there before, or what they paste together.
-    """
-    text = source.text.replace("\\\n", "")
-    words = set(re.findall(r"\w+", text))
-    for word in (*OTHER_FILES, *OTHER_TEXT):
-        if word in words or ("##" in text and _is_pasted(word, words)):
-            why = "; #include a file next to it" if word in OTHER_FILES else ""
-            raise TranslationError(f"{source.path}: {word} is not read{why}")
-
-
-def _is_pasted(word: str, parts: Collection[str]) -> bool:
-    """Whether a word is some parts one after another."""
-    return not word or any(_is_pasted(word[len(part) :], parts) for part in parts if word.startswith(part))
+    return _readable_part(source, with_known_directives, folder, ())
 
 
 def read_glsl(source: Source, folder: Path) -> Read:
     """What can be read of a source in GLSL, which Slang's compiler knows. Raises TranslationError and MissingError."""
-    _check_words(source)
     return _readable_part(source, _text_of_no_stage, folder, GLSL)
 
 
@@ -105,15 +80,11 @@ def _diagonals(text: str) -> Iterator[int]:
 
 def _text_of_no_stage(text: str) -> str:
     """GLSL without what is its own compiler's, and without what a stage is given and gives."""
-    text = _OWN.sub(lambda match: f"#define __VERSION__ {match[1]}" if match[1] else "", text)
+    text = with_known_directives(_VERSION.sub(r"#define __VERSION__ \1", text))
     return without(text, [item for item in items(text) if _OF_A_STAGE.match(text[item.start : item.end].lstrip())])
 
 
 GLSL = ("-allow-glsl",)
-
-
-def _text_without_lines(text: str) -> str:
-    return _LINES.sub("", text)
 
 
 def _readable_part(source: Source, first: Callable[[str], str], folder: Path, options: tuple[str, ...]) -> Read:
@@ -137,7 +108,7 @@ def _readable_part(source: Source, first: Callable[[str], str], folder: Path, op
         source = left
     # The library ends the process where it is asked for a function of its own; nobody's encoder is called so.
     names = [name for name in functions_in(source.text) if name not in OWN_FUNCTIONS]
-    return Read(source, made.functions(names), refused, lost)
+    return Read(source, functions_of(made, names), refused, lost)
 
 
 def _live_part(source: Source, folder: Path, options: tuple[str, ...]) -> Source:
@@ -196,13 +167,24 @@ def shader_of_glsl(source: Source, function: Function, folder: Path) -> str:
     return shader(source, function, folder, GLSL)
 
 
-def _compiled(source: Source, text: str, options: tuple[str, ...], folder: Path) -> Compiled:
-    given = folder / GIVEN
-    given.write_text(text, encoding="utf-8", newline="\n")
+def _compiled(source: Source, text: str, options: tuple[str, ...], folder: Path) -> library.Compiled:
+    """What the compiler makes of a part of a source with what stands behind it. Raises TranslationError."""
     defined = [word for macro in macros(source, TYPES) for word in ("-D", macro)]
     # A text without an entry point is checked, and nothing is written of it.
     target = () if "-target" in options else ("-target", "glsl")
-    return Compiled([str(given), "-enable-machine-readable-diagnostics", *defined, *options, *target])
+    try:
+        return library.compiled(text, [*defined, *options, *target], folder)
+    except RefusedError as error:
+        # Lines that mark the parts of a text are none of the user's; before each but the first stands an empty one.
+        marks = sum(line.startswith(f"#warning {PART}") for line in text.split("\n")[: error.line])
+        error.line -= max(2 * marks - 1, 0)
+        raise TranslationError(refusal(source, error)) from None
+
+
+def refusal(source: Source, error: RefusedError) -> str:
+    """Return why a text of a source is refused, with the user's file and line."""
+    why = error.why + ("; #include a file next to it" if error.word in OTHER_FILES else "")
+    return source.explained(error.line, why) if error.line else f"{source.path}: {why}"
 
 
 def check(source: Source, said: str, status: int) -> None:

@@ -11,14 +11,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ....encodings.codecs.files import MOST_TEXT, file_text
+from ...ground.compilers.lines import bare
 from ...ground.output.errors import UsageError
-from .items import blank, defined_in
+from .items import defined_in
 from .words import ENDINGS, TRANSLATED, files_of, functions_of, is_file, settings_of
 
-# Lines that go on in the next one, also behind spaces: some compilers join those.
-_JOINED, _JOIN = re.compile(r"^(?:[^\n]*\\[^\S\n]*(?:\n|\Z))+(?:[^\n]*)", re.M), re.compile(r"\\[^\S\n]*(?:\n|\Z)")
-# A comment without an end goes to the end of the text: each letter is looked at once. A long one takes no memory.
-_COMMENT = re.compile(r'"[^"\n]*"|//(?:[^\\\n]++|\\\n?)*+|/\*.*?(?:\*/|\Z)', re.S)
 # Some engines have no marks around the name; in place of one, a macro is a name of no file.
 _INCLUDE = re.compile(r'[ \t]*#[ \t]*include[ \t]*(?:"([^"]+)"|<([^>]+)>|(?<=[ \t])([\w./\\-]+))[ \t]*')
 _CONDITION = re.compile(r"[ \t]*#[ \t]*(if|elif|else|endif)(?:n?def)?\b")
@@ -40,24 +37,6 @@ class Line(NamedTuple):
     path: Path
     number: int
     wrong: str = ""
-
-
-def joined(text: str) -> str:
-    """Return a text in which no line goes on in the next one. Empty lines follow, so that others keep their number."""
-    return _JOINED.sub(lambda match: _JOIN.sub("", match[0]) + "\n" * match[0].count("\n"), text)
-
-
-def without_comments(text: str) -> str:
-    """A text with blanks for its comments; every line and every column stays where it is.
-
-    A comment without an end stays as it is.
-    """
-    return _COMMENT.sub(_blank, text)
-
-
-def _blank(match: re.Match[str]) -> str:
-    is_whole = match[0].startswith("//") or (len(match[0]) > 3 and match[0].endswith("*/"))
-    return blank(match[0]) if is_whole else match[0]
 
 
 def _homes() -> Iterator[Path]:
@@ -96,21 +75,19 @@ def _option_for(name: str) -> str:
 _PRAGMA, _NATURE = (-1,), (-2,)
 
 
-def _read(path: Path, language: str) -> _Text:
-    """A file. Raises UsageError."""
+def _read(own: Path, path: Path, language: str) -> _Text:
+    """A file, which the user knows by another path. Raises UsageError."""
     is_wgsl = (language or TRANSLATED.get(path.suffix.lower())) == "WGSL"
     try:
-        text = file_text(path)
-        # WGSL ends a comment at the end of its line, whatever stands there.
-        bare = without_comments(text if is_wgsl else joined(text))
+        text = bare(file_text(own), is_wgsl)
     except (OSError, ValueError) as error:
         raise UsageError(f"{path}: {error}") from error
-    if "/*" in bare:
-        line = bare.count("\n", 0, bare.index("/*")) + 1
+    if "/*" in text:
+        line = text.count("\n", 0, text.index("/*")) + 1
         raise UsageError(f"{path}:{line}: a comment that begins with /* is not closed")
-    lines = bare.split("\n")
+    lines = text.split("\n")
     found = {at: match[match.lastindex or 0] for at, line in enumerate(lines) if (match := _INCLUDE.fullmatch(line))}
-    if len(_ANY_INCLUDE.findall(bare)) != len(found):
+    if len(_ANY_INCLUDE.findall(text)) != len(found):
         raise UsageError(f'{path}: an #include is written as #include "FILE", in one line')
     if is_wgsl:
         return _Text(lines, found, _NATURE)
@@ -281,12 +258,12 @@ class Source:
     def _text_of(self, own: Path, path: Path) -> _Text:
         if own not in self._texts:
             self.files[own] = path
-            self._texts[own] = _read(path, self.settings.language)
+            self._texts[own] = _read(own, path, self.settings.language)
         return self._texts[own]
 
     def _included(self, path: Path, number: int, name: str) -> Iterator[Line]:
         there = [target for target in self._targets(path, name) if is_file(Path(), str(target))]
-        target = next((one for one in there if self._may_read(_resolved(one))), None)
+        target = next((one for one in there if self.may_read(_resolved(one))), None)
         if target is None:
             where = f"lies outside the folder of {self._main.name}" if there else f"is not next to {path.name}"
             yield Line("#error not read", path, number, f"{name} {where}; name its folder by {_option_for(name)}")
@@ -336,7 +313,7 @@ class Source:
         """What is wrong with the lines that include what is not there, with their places."""
         return [f"{line.path}:{line.number}: {line.wrong}" for line in self.lines if line.wrong]
 
-    def _may_read(self, target: Path) -> bool:
+    def may_read(self, target: Path) -> bool:
         """Whether a file, whose links are resolved, lies where includes are searched and ends as a shader does."""
         return any(map(target.is_relative_to, self._tops)) and target.suffix.lower() in ENDINGS
 

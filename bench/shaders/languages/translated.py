@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import tempfile
 from dataclasses import dataclass
@@ -10,11 +11,11 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from ...ground.compilers import tools
 from ...ground.machine import children
 from ...ground.output import cache as kept
 from ...ground.output.errors import MissingError, UsageError
 from ..translator import tree
-from . import tools
 from .language import language_of
 from .source import Source
 from .words import file_of
@@ -124,12 +125,19 @@ def own() -> str:
     return kept.key_of(*(file.read_bytes() for file in files))
 
 
-def _translated_or_none(value: dict[str, Any] | None) -> Translated | None:
-    """What was kept or said; None where it is anything else."""
+def _translated_or_none(value: Any) -> Translated | None:
+    """What was kept or said; None where it is anything else: a file could have misled the process that says it."""
     try:
-        return Translated(**(value or {}))
+        found = Translated(**(value or {}))
     except TypeError:
         return None
+    is_sound = all(isinstance(getattr(found, name), kind) for name, kind in _KINDS.items())
+    is_sound = is_sound and len(found.texts) == len(TEXTS) and all(isinstance(text, str) for text in found.texts)
+    return found if is_sound and re.fullmatch(r"\w+", found.prefix) else None
+
+
+_KINDS = dict.fromkeys(("name", "prefix", "packed", "text", "read_by", "named"), str)
+_KINDS |= {"components": int, "notes": list, "texts": list, "functions": list, "shaped": dict}
 
 
 def _by_child(word: str | Path, by: str, kind: str) -> dict[str, Any]:
@@ -143,16 +151,22 @@ def _by_child(word: str | Path, by: str, kind: str) -> dict[str, Any]:
             raise UsageError(f"{path}: its translation did not end within {TIME_LIMIT:g} s") from error
     try:
         found = json.loads(done.stdout)
-    except ValueError:
+    except (ValueError, RecursionError):
         raise UsageError(f"{path}: its translation {children.how_it_ended(done)}") from None
+    if not isinstance(found, dict):
+        return {}
     if "missing" in found:
-        raise MissingError(found["missing"])
-    if "pairs" in found:
-        raise SeveralEncodersError(found["error"], found["pairs"])
+        raise MissingError(_one_line(found["missing"]))
+    if isinstance(pairs := found.get("pairs"), list):
+        raise SeveralEncodersError(_one_line(found.get("error")), [*map(_one_line, pairs)])
     if "error" in found:
         one = _translated_or_none(found.get("alone"))
-        raise AloneError(found["error"], one) if one else UsageError(found["error"])
+        raise AloneError(_one_line(found["error"]), one) if one else UsageError(_one_line(found["error"]))
     return found
+
+
+def _one_line(said: Any) -> str:
+    return "".join(letter if letter.isprintable() else " " for letter in str(said))
 
 
 def glsl_file(name: str, text: str, mark: str = "") -> Path:

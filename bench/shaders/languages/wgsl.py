@@ -7,11 +7,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from ...ground.compilers.lines import blank
 from ..translator import tree
 from ..translator.glsl_writer import GlslWriter
 from ..translator.reduce import numbered, reduced
 from ..translator.wgsl_parser import read_wgsl
-from .items import blank
 from .pairs import Function, Parameter, Place
 from .programs import Read, TranslationError, template
 from .source import Source

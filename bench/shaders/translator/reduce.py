@@ -23,6 +23,7 @@ from .tree import (
     Program,
     Struct,
     Table,
+    TranslationError,
     inside,
     plain_name,
     size_of,
@@ -59,6 +60,8 @@ def reduced(
         TranslationError: one of these functions could not be read.
     """
     keys = {plain_name(f): f.name for f in program.functions}
+    if unread := next((name for name in roots if name not in keys), ""):
+        raise TranslationError(f"{unread} is not read")
     kept = _reached_names(program, [keys[name] for name in roots])
     functions = [f for f in program.functions if f.name in kept]
     _keep_changes_inside(functions)

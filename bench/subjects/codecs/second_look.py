@@ -14,9 +14,9 @@ import numpy as np
 from ....encodings.codecs.encoding import Encoding
 from ....gbuffer.codecs.codec_passes import exact_values
 from ....gbuffer.gl.device import Device
+from ...ground.compilers import tools
 from ...ground.output import cache as kept
 from ...ground.output.errors import MissingError, UsageError
-from ...shaders.languages import tools
 from ...shaders.languages.language import GLSLANG, language_of, name_of
 from ...shaders.languages.second import NoSecondWayError, UndefinedError, Way, second_way
 from ...shaders.languages.source import Source
@@ -35,7 +35,7 @@ MANY, LOOKED_AT = 0.05, 2048
 # What glslang reads otherwise than HLSL defines it: remainders of negative numbers, and products of matrices.
 MISREAD = re.compile(r"\bfmod\s*\(|%|\b(?:float|half|min16float|real)[234]x[234]\b|\bmatrix\b")
 # What the two ways of a language are called.
-SLANG_S, OF_WGSL = ("Slang's GLSL", "its C++"), ("this program", "naga")
+SLANG_S, OF_WGSL = ("Slang's GLSL", "its SPIR-V"), ("this program", "naga")
 # Values of shape (count, 3) to what a function makes of them.
 Function = Callable[[np.ndarray], np.ndarray]
 

@@ -20,7 +20,10 @@ from ....encodings.storages.storage import BITS_32
 from ....encodings.vec import Vec2, Vec3
 from ....gbuffer.codecs.harness import takes_view
 from ....gbuffer.gl.shader import ShaderError, read_shader
+from ....gbuffer.gl.shader import Source as Shader
 from ...ground.choose import choose
+from ...ground.compilers.lines import bare
+from ...ground.compilers.text import is_own_file
 from ...ground.machine import children
 from ...ground.machine.cores import on_all_cores
 from ...ground.machine.systems import forks
@@ -293,6 +296,7 @@ def _text(path: Path, is_unit: bool, by: str) -> _Text:
         name, components, _ = encode_of(path, read_shader(path))
     except ShaderError as error:
         raise UsageError(str(error)) from error
+    _check_includes(path)
     whole = _with_includes(path)
     check_given(path, whole)
     # Not resolved: the twin lies next to the path that was given.
@@ -313,11 +317,22 @@ def _of_unit_text(path: Path, name: str, components: int) -> _Text:
     return _Text(name, components, glsl_file(prefix, text), prefix)
 
 
-def _with_includes(path: Path) -> str:
-    """A file and what it includes; empty where that cannot be read, which its compiler says with the line."""
+def _check_includes(path: Path) -> None:
+    """Raises UsageError where a file includes one that lies elsewhere, by what its compiler is given."""
     try:
-        return Source(path).text
-    except UsageError:
+        files, rules = dict.fromkeys(Shader(path).files), Source(path)
+    except ShaderError as error:
+        raise UsageError(str(error)) from error
+    if elsewhere := next((file for file in files if not (is_own_file(file) or rules.may_read(file))), None):
+        raise UsageError(f"{path}: it includes {elsewhere}, which lies outside its folder; move it there")
+
+
+def _with_includes(path: Path) -> str:
+    """What its compiler is given of a file and of what it includes, without comments; empty where that cannot be read,
+    which the compiler says with the line."""
+    try:
+        return bare(Shader(path).text)
+    except ShaderError:
         return ""
 
 

@@ -31,15 +31,13 @@ class FileOfChild:
 if sys.platform == "win32":
     from . import windows
 
-    # The status of a process that divided a whole number by 0.
-    DIVIDED_BY_ZERO = 0xC0000094
     # Of what Windows ends a process with, in words. Other statuses from 0xC0000000 on are said as they are.
     _ENDINGS = {
         1816: "the limit of processor time",  # ERROR_NOT_ENOUGH_QUOTA of winerror.h
         0xC0000005: "an access violation",
         0xC0000017: "a lack of memory",
         0xC000001D: "an illegal instruction",
-        DIVIDED_BY_ZERO: "a division of a whole number by 0",
+        0xC0000094: "a division of a whole number by 0",
         0xC00000FD: "a stack overflow",
         0xC000013A: "an interruption",
         0xC0000374: "a corrupted heap",
@@ -93,9 +91,6 @@ if sys.platform == "win32":
 else:
     import resource
     import signal
-
-    # The status of a process that divided a whole number by 0.
-    DIVIDED_BY_ZERO = -signal.SIGFPE
 
     def started(command: Sequence[str], **how: Any) -> subprocess.Popen[Any]:
         """A process with a group of its own: an interruption of this process does not reach it, and `end_group` ends

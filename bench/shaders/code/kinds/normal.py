@@ -46,8 +46,9 @@ def normals(domain: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 def is_catalogues(encoding: Encoding) -> bool:
-    """Whether an encoding is the catalogue's, or a variant of one."""
-    return encoding.name.partition(":")[0] in ENCODINGS
+    """Whether an encoding is the catalogue's, or a variant of one. A name alone may be anybody's."""
+    known = ENCODINGS.get(encoding.name.partition(":")[0])
+    return known is not None and known.glsl == encoding.glsl
 
 
 def _numbers(codec: Codec) -> Numbers:

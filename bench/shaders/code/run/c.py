@@ -2,56 +2,70 @@
 
 from __future__ import annotations
 
-import shutil
+import re
+import subprocess
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 
 from .....gbuffer.gl.shader import ShaderError, read_shader
+from ....ground.compilers import tools
+from ....ground.compilers.text import Text, own
 from ....ground.machine import children
-from ....ground.machine.systems.people import how_to_install
+from ....ground.machine.systems import walls
+from ....ground.machine.systems.walls import Wall
 from ....ground.output.errors import MissingError
 from .interface import MADE, Interface, Ran, Run, Runner, ran_of, rows_of
-from .sources import compile_with, first_line, folder, required, run_apart
+from .sources import compile_with, first_line, folder, judged_text, run_apart
 
 WRAPPER, MAIN = Path(__file__).with_suffix(".c"), Path(__file__).with_name("main.c")
 EXACT = ("-O2", "-ffp-contract=off")
 LIMITS = {"RUN_SECONDS": children.SECONDS, "RUN_MEMORY": f"{children.MEMORY}ull", "RUN_FILE": f"{children.FILE}ull"}
-INSTALL = f"no C: cc is not on the path; install it ({how_to_install('gcc')})"
+# POSIX's calls for the program around the file; the file itself is C99.
+LANGUAGE = ("-std=c99", "-D_GNU_SOURCE", "-iquote", ".")
+PROGRAM = "code"
 
 
-def compiler() -> str:
-    """The C compiler. Raises MissingError."""
-    return required(shutil.which("cc"), INSTALL)
+def compiler() -> Path:
+    """Return the C compiler. Raises MissingError."""
+    return tools.path_of(tools.C)
 
 
 @contextmanager
 def prepared(path: Path, interface: Interface) -> Iterator[Run]:
     """The file as a program. Raises MissingError, ShaderError."""
-    with built(path, interface, compiler(), [*EXACT, *macros(LIMITS)]) as run:
+    with built(path, interface, tools.C, [*EXACT, *macros(LIMITS)]) as run:
         yield run
 
 
 @contextmanager
 def built(path: Path, interface: Interface, tool: str, options: Sequence[str]) -> Iterator[Run]:
-    """The file as a program of a compiler and its options. Raises ShaderError."""
+    """The file as a program of a compiler and its options. Raises MissingError, ShaderError."""
+    text = read_shader(path)
     with folder() as place:
-        (place / "code.h").write_text(read_shader(path), encoding="utf-8", newline="\n")
-        # POSIX's calls for the program around the file; the file itself is C99.
-        includes = ("-std=c99", "-D_GNU_SOURCE", "-iquote", str(place), "-iquote", str(path.parent))
-        command = [tool, *includes, *options, *_macros(interface), str(WRAPPER), str(MAIN), "-lm"]
-        yield called(compiled(command, place / "code", {str(place / "code.h"): str(path)}), path, interface)
+        files = {
+            "code.h": judged_text(text, "c"),
+            "run.c": defined(_macros(interface)) + own(WRAPPER),
+            "main.c": own(MAIN),
+        }
+        # The tables that it includes lie next to it.
+        tables = [path.with_name(name) for name in re.findall(r'^#include "(\w+_tables\.h)"$', text, re.M)]
+        files |= {table.name: judged_text(read_shader(table), "c") for table in tables}
+        words = [*LANGUAGE, *options, "run.c", "main.c", "-lm"]
+        wall = None if interface.is_ours else compilers_wall(tool, place)
+        yield called(compiled(tool, words, place, files, path, wall), path, interface)
 
 
-def _macros(interface: Interface) -> list[str]:
+def _macros(interface: Interface) -> dict[str, object]:
     prefix, words = interface.prefix, interface.words
     kinds = {"RUN_VEC4": 4, "RUN_CODE": interface.size, "RUN_KIND": interface.result}
     types = {name: "float" if size == 1 else f"{prefix}_vec{size}" for name, size in kinds.items()}
     types["RUN_KIND"] = interface.structure or types["RUN_KIND"]
     types["RUN_TEXEL"] = f"{prefix}_uvec{words}" if words > 1 else "uint32_t"
-    return macros(interface.defines_with(lambda places: _listed(places, prefix), "({}){{{}}}", _scalars) | types)
+    return interface.defines_with(lambda places: _listed(places, prefix), "({}){{{}}}", _scalars) | types
 
 
 def _scalars(path: str, size: int) -> list[str]:
@@ -70,31 +84,71 @@ def _given(place: str, prefix: str) -> str:
     return f"({prefix}_vec{len(fields)}){{{', '.join(f'{row}.{field}' for field in fields)}}}"
 
 
-def macros(values: dict[str, object]) -> list[str]:
-    """Options that define macros for a compiler of C."""
+def defined(values: Mapping[str, object], language: str = "c") -> Text:
+    """Return macros as a text, which holds names of a file's. Raises ShaderError."""
+    return judged_text("".join(f"#define {name} {value}\n" for name, value in values.items()), language)
+
+
+def macros(values: Mapping[str, object]) -> list[str]:
+    """Return options that define numbers for a compiler of C."""
     return [f"-D{name}={value}" for name, value in values.items()]
 
 
-def compiled(command: Sequence[str], made: Path, names: Mapping[str, str]) -> Path:
-    """The program that a compiler makes. Raises ShaderError, whose message has other names for some files."""
-    try:
-        compile_with([*command, "-o", str(made)])
-    except ShaderError as error:
-        said = str(error)
-        for old, new in names.items():
-            said = said.replace(old, new)
-        raise ShaderError(said) from error
-    return made
+def compilers_wall(tool: str, place: Path) -> Wall:
+    """Return what a compiler may use of somebody's text: its own parts, and a folder.
+
+    Raises:
+        MissingError: there is no wall, or no program is made and run behind it.
+    """
+    walls.require()
+    path = str(tools.path_of(tool))
+    if said := _failure_behind_wall(tool, path):
+        raise MissingError(said)
+    return walls.of_c_compiler(path) | Wall(writes=(str(place),))
+
+
+def programs_wall(program: Path) -> Wall:
+    """Return what a program of somebody's text may use: the system's libraries, and the folder that it lies in."""
+    return walls.of_program(program) | Wall(writes=(str(program.parent),))
+
+
+@cache
+def _failure_behind_wall(tool: str, path: str) -> str:
+    """Why a compiler or what it makes does not run behind a wall, as where `cc` is a script; empty where both do."""
+    with folder() as place:
+        try:
+            wall = walls.of_c_compiler(path) | Wall(writes=(str(place),))
+            files = {"tried.c": judged_text("int main(void) { return 0; }\n", "c")}
+            program = compiled(tool, ["tried.c"], place, files, place / "tried.c", wall)
+            run_apart(program, [str(program)], programs_wall(program))
+        except (ShaderError, OSError, subprocess.TimeoutExpired) as error:
+            return f"C made of your files is not run here: behind Landlock {error}"
+    return ""
+
+
+def compiled(
+    tool: str, words: Sequence[str], place: Path, files: Mapping[str, Text], path: Path, wall: Wall | None = None
+) -> Path:
+    """Return the program that a compiler makes of texts, the first of which is that of a path.
+
+    Raises:
+        MissingError: there is no such compiler.
+        ShaderError: it refuses the texts.
+    """
+    compile_with(tool, [*words, "-o", PROGRAM], place, files, lambda said: re.sub(r"^0(?=:)", str(path), said), wall)
+    return place / PROGRAM
 
 
 def called(program: Path, path: Path, interface: Interface) -> Run:
-    """What a program does with rows: see main.c. Each run is a process of its own."""
+    """Return what a program does with rows: see main.c. Each run is a process of its own, behind a wall where the text
+    is not the catalogue's."""
+    wall = None if interface.is_ours else programs_wall(program)
 
     def run(n: np.ndarray, view: np.ndarray, texels: np.ndarray) -> Ran:
         place, count = program.parent, len(n)
         rows_of(n, view, texels).tofile(place / "given.bin")
         try:
-            run_apart(path, [str(program), str(place), str(count)])
+            run_apart(path, [str(program), str(place), str(count)], wall)
         except PermissionError as error:
             where = place.parent
             raise MissingError(
@@ -108,7 +162,7 @@ def called(program: Path, path: Path, interface: Interface) -> Run:
 
 def how() -> str:
     """The compiler. Raises MissingError."""
-    return f"{first_line(compiler(), '--version')}, {' '.join(EXACT)}"
+    return f"{first_line(tools.C)}, {' '.join(EXACT)}"
 
 
 RUNNER = Runner(prepared, how)

@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from ....ground.compilers import tools
+from ....ground.compilers.text import Text
 from ...isa import spirv
-from ...languages import tools
 from . import opengl
 from .interface import Interface, Run, Runner
-from .sources import EmittedSource, compile_with, folder, required
+from .sources import EmittedSource, compile_with, folder, judged_text
 
 WRAPPER = Path(__file__).with_suffix(".hlsl")
 # How a structure is made: by the function that HlslWriter writes behind it.
 MADE = "{}_of({})"
 # Bindings of what the file declares itself: behind the three buffers.
+MODULE = "code.spv"
 OPTIONS = ("-S", "comp", "-e", "main", "-V", "--target-env", "vulkan1.1", "--auto-map-bindings")
-
-
-def _glslang_path() -> str:
-    spirv.compiler()
-    return required(spirv.COMPILER, spirv.NO_COMPILER)
 
 
 @contextmanager
@@ -29,24 +26,26 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
     """The file on the GL device. Raises MissingError, ShaderError, NoDeviceError."""
     source = EmittedSource(WRAPPER, path, interface, MADE)
     with folder() as place:
-        given = place / "code.hlsl"
-        given.write_text(source.text, encoding="utf-8", newline="\n")
-        compile_with([_glslang_path(), "-D", *OPTIONS, "-o", str(place / "code.spv"), str(given)], source, given)
-        text = glsl_of(place / "code.spv")
+        text = glsl_of(place, judged_text(source.text, "hlsl", source), source.explain)
     with opengl.prepared(opengl.compiled(text, str), interface) as run:
         yield run
 
 
-def glsl_of(binary: Path) -> str:
-    """GLSL of desktop OpenGL of a module of SPIR-V. Raises MissingError, ShaderError."""
-    cross = str(tools.path_of(tools.SPIRV_CROSS))
-    return compile_with([cross, "--version", "430", "--no-es", "--no-420pack-extension", str(binary)])
+def glsl_of(place: Path, text: Text, explain: Callable[[str], str] = str) -> str:
+    """Return GLSL of desktop OpenGL of a text of HLSL, made in a folder. Raises MissingError, ShaderError."""
+    compile_with(tools.GLSLANG, ["-D", *OPTIONS, "-o", MODULE, "code.hlsl"], place, {"code.hlsl": text}, explain)
+    return glsl_of_module(place)
+
+
+def glsl_of_module(place: Path) -> str:
+    """Return GLSL of desktop OpenGL of the module of SPIR-V in a folder. Raises MissingError, ShaderError."""
+    return compile_with(tools.SPIRV_CROSS, ["--version", "430", "--no-es", "--no-420pack-extension", MODULE], place, {})
 
 
 def translators() -> str:
     """The two translators. Raises MissingError."""
     glslang, cross = spirv.title(spirv.compiler()), tools.path_of(tools.SPIRV_CROSS).stem
-    return f"{glslang.replace('glslang', spirv.COMPILER)}, {cross}"
+    return f"{glslang.replace('glslang', tools.GLSLANG)}, {cross}"
 
 
 def how() -> str:

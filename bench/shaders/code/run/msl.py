@@ -6,7 +6,6 @@ Where Apple's compiler `metal` is on the path as well, it checks the file's synt
 from __future__ import annotations
 
 import re
-import shutil
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -14,39 +13,48 @@ from pathlib import Path
 import numpy as np
 
 from .....gbuffer.gl.shader import read_shader
-from ....ground.machine.systems.people import how_to_install
-from .c import EXACT, LIMITS, MAIN, called, compiled, macros
+from ....ground.compilers import tools
+from ....ground.compilers.text import own
+from ....ground.output.errors import MissingError
+from .c import EXACT, LIMITS, MAIN, called, compiled, compilers_wall, defined, macros
 from .interface import Interface, Run, Runner
-from .sources import compile_with, first_line, folder, required
+from .sources import compile_with, first_line, folder, judged_text
 
 WRAPPER, LIBRARY = Path(__file__).with_suffix(".cpp"), Path(__file__).with_name("metal_stdlib.h")
 # Metal has no double: a number without a letter is a float.
 OPTIONS = ("-std=c++17", *EXACT, "-w", "-Xclang", "-cl-single-precision-constant")
-INSTALL = f"no clang: clang++ is not on the path; install it ({how_to_install('clang')})"
-METAL = "metal"
 # A texture's name where there is no table.
 NONE = "run_none"
 
 
-def compiler() -> str:
-    """clang. Raises MissingError."""
-    return required(shutil.which("clang++"), INSTALL)
+def compiler() -> Path:
+    """Return clang. Raises MissingError."""
+    return tools.path_of(tools.CLANG)
+
+
+def _has_metal() -> bool:
+    try:
+        return bool(tools.path_of(tools.METAL))
+    except MissingError:
+        return False
 
 
 @contextmanager
 def prepared(path: Path, interface: Interface) -> Iterator[Run]:
     """The file as a program. Raises MissingError, ShaderError."""
-    clang, text = compiler(), read_shader(path)
-    if metal := shutil.which(METAL):
-        compile_with([metal, "-x", "metal", "-fsyntax-only", str(path)])
+    text = read_shader(path)
     with folder() as place:
-        (place / "code.metal").write_text(text, encoding="utf-8", newline="\n")
-        (place / "metal_stdlib").write_text(f'#include "{LIBRARY}"\n', encoding="utf-8", newline="\n")
-        defines = macros(interface.defines_with(", ".join, "{}{{{}}}") | _table_macros(text, interface))
-        defines += macros({**LIMITS, "RUN_TABLE_COUNT": len(interface.tables), "_GNU_SOURCE": 1})
-        command = [clang, *OPTIONS, "-I", str(place), *defines, str(WRAPPER), str(MAIN)]
+        files = {"code.metal": judged_text(text, "msl")}
+        if _has_metal():
+            compile_with(tools.METAL, ["-x", "metal", "-fsyntax-only", "code.metal"], place, files)
+        files |= {"metal_stdlib": own(LIBRARY), "main.c": own(MAIN)}
+        named = interface.defines_with(", ".join, "{}{{{}}}") | _table_macros(text, interface)
+        files["run.cpp"] = defined(named, "msl") + own(WRAPPER)
+        defines = macros({**LIMITS, "RUN_TABLE_COUNT": len(interface.tables), "_GNU_SOURCE": 1})
         _write(interface.tables, place)
-        yield called(compiled(command, place / "code", {str(place / "code.metal"): str(path)}), path, interface)
+        words = [*OPTIONS, "-I", ".", *defines, "run.cpp", "main.c"]
+        wall = None if interface.is_ours else compilers_wall(tools.CLANG, place)
+        yield called(compiled(tools.CLANG, words, place, files, path, wall), path, interface)
 
 
 def _table_macros(text: str, interface: Interface) -> dict[str, object]:
@@ -81,8 +89,8 @@ def _write(tables: Mapping[str, np.ndarray], place: Path) -> None:
 
 def how() -> str:
     """clang, and that it is not Metal. Raises MissingError."""
-    checked = f"syntax by {first_line(METAL, '--version')}, " if shutil.which(METAL) else ""
-    return f"{checked}{first_line(compiler(), '--version')}, not by Metal"
+    checked = f"syntax by {first_line(tools.METAL)}, " if _has_metal() else ""
+    return f"{checked}{first_line(tools.CLANG)}, not by Metal"
 
 
 RUNNER = Runner(prepared, how)

@@ -12,6 +12,8 @@ from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 
+from ....ground.compilers import tools
+from ....ground.compilers.text import judged
 from ....ground.machine import children
 from ....ground.machine.webgpu import adapters
 
@@ -23,7 +25,7 @@ def main(words: Sequence[str]) -> None:
 
     with suppress(wgpu.GPUError):
         device = adapters()[0].request_device_sync()
-        device.create_shader_module(code=Path(words[0]).read_text(encoding="utf-8"))
+        tools.webgpu_module(device, judged(Path(words[0]).read_text(encoding="utf-8"), "wgsl"))
 
 
 if __name__ == "__main__":

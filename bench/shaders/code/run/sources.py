@@ -5,13 +5,16 @@ from __future__ import annotations
 import re
 import subprocess
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 from .....gbuffer.gl.shader import Line, ShaderError, Source
+from ....ground.compilers import tools
+from ....ground.compilers.lines import bare, with_known_directives
+from ....ground.compilers.text import RULES, RefusedError, Text, judged
 from ....ground.machine import children
-from ....ground.output.errors import MissingError
+from ....ground.machine.systems.walls import Wall
 from .interface import Interface
 
 # Slang's compiler loads 200 MB before it begins.
@@ -44,49 +47,68 @@ def folder() -> Iterator[Path]:
         yield Path(made)
 
 
-def run_apart(path: Path, command: Sequence[str]) -> None:
-    """Run what was made of a file, in a process of its own for a limited time.
+def run_apart(path: Path, command: Sequence[str], wall: Wall | None = None) -> None:
+    """Run what was made of a file, in a process of its own for a limited time, behind a wall if there is one.
 
     Raises:
         ShaderError: it does not end, or ends badly.
         PermissionError: it may not be run.
     """
     try:
-        done = children.finished(command, SECONDS)
+        done = children.finished(wall.around(command) if wall else command, SECONDS)
     except subprocess.TimeoutExpired as error:
         raise ShaderError(f"{path}: it did not end within {SECONDS} s") from error
     if done.returncode:
         raise ShaderError(f"{path}: it {children.how_it_ended(done)}")
 
 
-def required(tool: str | None, install: str) -> str:
-    """A tool that is there. Raises MissingError, which says what to install."""
-    if not tool:
-        raise MissingError(install)
-    return tool
-
-
-def compile_with(command: Sequence[str], source: Source | None = None, given: Path | None = None) -> str:
-    """What a compiler prints, which runs in a process of its own for a limited time.
+def judged_text(text: str, language: str, source: Source | None = None) -> Text:
+    """Return a text that holds what was made of an encoder, without its comments, for compilers of a language.
 
     Args:
-        source: what it is given, whose lines come from several files.
-        given: where that was written.
+        source: the text as lines that come from several files.
+
+    Raises:
+        ShaderError: no compiler is given it; with file and line.
+    """
+    whole = with_known_directives(bare(text, is_wgsl=language == "wgsl"), RULES[language].heads)
+    try:
+        return judged(whole, language)
+    except RefusedError as error:
+        said = f"0:{error.line}: {error.why}"
+        raise ShaderError(source.explain(said) if source else said) from error
+
+
+def compile_with(
+    tool: str,
+    words: Sequence[str],
+    place: Path,
+    files: Mapping[str, Text],
+    explain: Callable[[str], str] = str,
+    wall: Wall | None = None,
+) -> str:
+    """Return what a compiler prints, which runs in a process of its own for a limited time.
+
+    Args:
+        words: its options, and names of files in the folder.
+        place: the folder.
+        files: the texts that it is given, by their names there; in messages the first one is called 0.
+        explain: turns a message into the user's.
+        wall: what it may use, of a text that may be anybody's.
 
     Raises:
         ShaderError: it refuses the file or does not end; its first complaint, with file and line.
+        MissingError: it is not there.
     """
-    tool = Path(command[0]).name
     try:
-        done = children.finished(command, SECONDS)
-    except subprocess.TimeoutExpired as error:
-        raise ShaderError(f"{tool} took longer than {SECONDS} s") from error
-    if done.returncode:
+        done = tools.run(tool, words, place, files, SECONDS, wall)
+    except tools.ToolError as error:
+        raise ShaderError(str(error)) from error
+    if done.status:
         # Under the name that `Source.explain` knows.
-        log = f"{done.stderr}\n{done.stdout}".replace(str(given), "0")
-        said = first_complaint(log)
-        raise ShaderError(f"{tool}: {source.explain(said) if source else said}")
-    return done.stdout
+        log = re.sub(rf"\S*\b{re.escape(next(iter(files), '-'))}", "0", f"{done.err}\n{done.out}")
+        raise ShaderError(f"{tool}: {explain(first_complaint(log))}")
+    return done.out
 
 
 def first_complaint(log: str) -> str:
@@ -99,7 +121,6 @@ def first_complaint(log: str) -> str:
     return f"{place[1]}: {said}"[:400] if place and errors else said[:400]
 
 
-def first_line(tool: str, *words: str) -> str:
-    """The first line that a tool prints of its version."""
-    done = children.finished([tool, *words], SECONDS)
-    return (f"{done.stdout}\n{done.stderr}".strip().splitlines() or ["no version"])[0].strip()
+def first_line(tool: str) -> str:
+    """Return the first line that a tool prints of its version. Raises MissingError."""
+    return (tools.version_text(tool).splitlines() or ["no version"])[0].strip()

@@ -13,13 +13,15 @@ import numpy as np
 
 from .....encodings.codecs.files import file_text
 from .....gbuffer.gl.shader import ShaderError
+from ....ground.compilers import tools
+from ....ground.compilers.text import Text
 from ....ground.machine import children
 from ....ground.machine.systems import forks
 from ....ground.machine.systems.processes import signal_name
 from ....ground.machine.webgpu import API, NO_DRIVER, adapters
 from ....ground.output.errors import MissingError
 from .interface import GIVEN, MADE, Interface, Ran, Run, Runner, ran_of, rows_of
-from .sources import SECONDS, folder
+from .sources import SECONDS, folder, judged_text
 
 WRAPPER = Path(__file__).with_suffix(".j2")
 MAIN, GROUP = "run_main", 64
@@ -98,21 +100,21 @@ def _program(gpu: Any, path: Path, interface: Interface, tables: Any) -> Any:
         for at, kind in enumerate(kinds)
     ]
     buffers = gpu.create_bind_group_layout(entries=entries)
-    text = _text(path, interface)
+    text = judged_text(_text(path, interface), "wgsl")
     if not interface.is_ours:
         _try_apart(path, text)
     try:
-        module = gpu.create_shader_module(code=text)
+        module = tools.webgpu_module(gpu, text)
         layout = gpu.create_pipeline_layout(bind_group_layouts=[tables, buffers])
         return gpu.create_compute_pipeline(layout=layout, compute={"module": module, "entry_point": MAIN})
     except wgpu.GPUError as error:
         raise ShaderError(f"{path}: {_complaint(str(error))}") from error
 
 
-def _try_apart(path: Path, text: str) -> None:
+def _try_apart(path: Path, text: Text) -> None:
     """Compile somebody's text in a process of its own: naga ends the process at some. Raises ShaderError."""
     with folder() as place:
-        (place / "code.wgsl").write_text(text, encoding="utf-8", newline="\n")
+        tools.put(place / "code.wgsl", text)
         try:
             done = forks.finished(f"{__package__}.naga", [str(place / "code.wgsl")], SECONDS)
         except subprocess.TimeoutExpired as error:

@@ -13,11 +13,13 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from .....gbuffer.gl.device import device
 from .....gbuffer.gl.shader import ShaderError
+from ....ground.compilers import tools
+from ....ground.compilers.text import own
 from ....ground.machine import children
-from ...isa import spirv
 from ..emit import LANGUAGES
+from ..kinds.normal import is_catalogues
 from ..run import c, hlsl, opengl, wgsl
-from ..run.sources import compile_with, folder, run_apart
+from ..run.sources import folder, judged_text, run_apart
 from .emit import GBufferCode
 from .fields import surface_leaves, target_leaves
 from .surfaces import PLACES
@@ -106,12 +108,8 @@ def _glsl(code: GBufferCode, rows: np.ndarray) -> np.ndarray:
 
 
 def _hlsl(code: GBufferCode, rows: np.ndarray) -> np.ndarray:
-    spirv.compiler()
     with folder() as place:
-        given = place / "code.hlsl"
-        given.write_text(_wrapped("run_hlsl.j2", code), encoding="utf-8", newline="\n")
-        compile_with([spirv.COMPILER, "-D", *hlsl.OPTIONS, "-o", str(place / "code.spv"), str(given)])
-        return _run_text(hlsl.glsl_of(place / "code.spv"), code, rows)
+        return _run_text(hlsl.glsl_of(place, judged_text(_wrapped("run_hlsl.j2", code), "hlsl")), code, rows)
 
 
 def _wgsl(code: GBufferCode, rows: np.ndarray) -> np.ndarray:
@@ -125,7 +123,7 @@ def _wgsl(code: GBufferCode, rows: np.ndarray) -> np.ndarray:
     entries = [{"binding": at, "visibility": seen, "buffer": {"type": kind}} for at, kind in enumerate(kinds)]
     layout = gpu.create_bind_group_layout(entries=entries)
     try:
-        module = gpu.create_shader_module(code=_wrapped("run_wgsl.j2", code))
+        module = tools.webgpu_module(gpu, judged_text(_wrapped("run_wgsl.j2", code), "wgsl"))
         groups = gpu.create_pipeline_layout(bind_group_layouts=[tables.layout, layout])
         program = gpu.create_compute_pipeline(layout=groups, compute={"module": module, "entry_point": MAIN})
     except wgpu.GPUError as error:
@@ -147,14 +145,17 @@ def _wgsl(code: GBufferCode, rows: np.ndarray) -> np.ndarray:
 
 def _c(code: GBufferCode, rows: np.ndarray) -> np.ndarray:
     with folder() as place:
-        _write_files(code, place, "code.h")
-        (place / "rows.c").write_text(_wrapped("run_c.j2", code), encoding="utf-8", newline="\n")
+        texts = {"code.h": code.body, "rows.c": _wrapped("run_c.j2", code)}
+        texts |= {name: data.decode() for name, data in code.files([]).items() if name.endswith("_tables.h")}
+        files = {name: judged_text(text, "c") for name, text in texts.items()} | {"main.c": own(c.MAIN)}
         np.ascontiguousarray(rows).tofile(place / "given.bin")
         sizes = {"RUN_GIVEN": rows.shape[1], "RUN_MADE": _made(code)}
-        options = ("-std=c99", "-D_GNU_SOURCE", "-iquote", str(place), *c.EXACT, *c.macros(c.LIMITS | sizes))
-        command = [c.compiler(), *options, str(place / "rows.c"), str(c.MAIN), "-lm"]
-        program = c.compiled(command, place / "code", {})
-        run_apart(place / "code.h", [str(program), str(place), str(len(rows))])
+        words = [*c.LANGUAGE, *c.EXACT, *c.macros(c.LIMITS | sizes), "rows.c", "main.c", "-lm"]
+        is_ours = is_catalogues(code.layout.encoding)
+        wall = None if is_ours else c.compilers_wall(tools.C, place)
+        program = c.compiled(tools.C, words, place, files, place / "code.h", wall)
+        wall = None if is_ours else c.programs_wall(program)
+        run_apart(place / "code.h", [str(program), str(place), str(len(rows))], wall)
         return np.fromfile(place / "made.bin", np.uint32).reshape(len(rows), -1)
 
 
@@ -172,8 +173,8 @@ def _python(code: GBufferCode, rows: np.ndarray) -> np.ndarray:
 
 def _write_files(code: GBufferCode, place: Path, name: str) -> None:
     """The file under a name, and its tables."""
-    for own, data in code.files([]).items():
-        (place / own).write_bytes(data)
+    for file, data in code.files([]).items():
+        (place / file).write_bytes(data)
     (place / name).write_text(code.body, encoding="utf-8", newline="\n")
 
 

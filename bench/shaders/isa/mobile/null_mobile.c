@@ -9,7 +9,7 @@
 
    Structures and numbers are those of the kernel's include/uapi/drm/msm_drm.h and v3d_drm.h; V3D 4.2's registers as Mesa's
    own null device has them (src/broadcom/drm-shim/v3d_noop.c). */
-#include "../null_drm.h"
+#include "null_drm.h"
 
 static const uint64_t MIB = 1ull << 20, GIB = 1ull << 30;
 

@@ -7,6 +7,8 @@ from pathlib import Path
 
 from .....gbuffer.defines.kernels import Operation
 from .....gbuffer.gl.shader import ShaderError
+from ....ground.compilers.lines import bare
+from ....ground.compilers.text import RefusedError, judged, own
 from ....ground.output import cache as kept
 from ...translator import tree
 from ...translator.glsl_parser import read_glsl
@@ -24,7 +26,11 @@ MACROS = ("GROUP", "BESIDE_PLANE", "GIVEN", "BESIDE", "MADE")
 def cuda_of(operation: Operation) -> str:
     """The kernel's whole text. Raises ShaderError as `functions_of`."""
     head = "".join(f"#define {name} {kind_text(str(operation.defines[name]))}\n" for name in MACROS)
-    return "\n".join((head + _text(LANGUAGE), functions_of(operation), f"{_text(KERNEL)}}}  // namespace glsl\n"))
+    try:
+        parts = (judged(head, "cuda"), own(LANGUAGE), judged(bare(functions_of(operation)), "cuda"), own(KERNEL))
+    except RefusedError as error:
+        raise ShaderError(f"NVIDIA's compiler is not given it: {error.why}") from error
+    return "\n".join((*(part.content for part in parts), "}  // namespace glsl\n"))
 
 
 def functions_of(operation: Operation) -> str:
@@ -50,7 +56,3 @@ def functions_of(operation: Operation) -> str:
 def _own_files() -> list[Path]:
     """What decides how GLSL is translated."""
     return [*sorted(Path(tree.__file__).parent.glob("*.py")), FOLDER / "cuda_writer.py"]
-
-
-def _text(path: Path) -> str:
-    return path.read_text(encoding="utf-8")

@@ -7,7 +7,7 @@
    NORMALBENCH_NULL_RADEON is the PCI device. Without it there is no device.
 
    Structures and numbers are those of the kernel's include/uapi/drm/drm.h and radeon_drm.h. */
-#include "../null_drm.h"
+#include "null_drm.h"
 
 /* radeon's requests; what is not answered here succeeds and does nothing: submitting, waiting, tiling. */
 enum { MEMORY = 0x1c, CREATE = 0x1d, MAP = 0x1e, INFO = 0x27, USER_POINTER = 0x2d };

@@ -1,5 +1,6 @@
 """Nothing of the cache is read that another user may have written."""
 
+import grp
 import os
 import stat
 from pathlib import Path
@@ -7,6 +8,8 @@ from types import SimpleNamespace
 
 import pytest
 
+from normalbench.bench.ground.compilers.text import judged
+from normalbench.bench.ground.machine.systems.files import is_guarded
 from normalbench.bench.ground.native import library as native
 from normalbench.bench.ground.output import cache
 from normalbench.bench.ground.output.errors import MissingError
@@ -43,15 +46,84 @@ def test_a_poisoned_library_is_compiled_anew(folder, done_to, part):
         pytest.skip("no C compiler")
     native._made.cache_clear()
     source = f"int answer(void) {{ return {len(part)}; }}"
-    assert native.library(source, "answer").answer() == len(part)
+    assert native.library(judged(source, "c"), "answer").answer() == len(part)
     (kept,) = (folder / "native").glob("*.so")
     # It is whole and says something else, as the digest at its end does.
-    poison = native._compiled("int answer(void) { return 666; }", folder.parent).read_bytes()
+    poison = native._compiled(judged("int answer(void) { return 666; }", "c"), folder.parent).read_bytes()
     kept.write_bytes(poison)
     done_to({"": folder, "native": folder / "native", "file": kept}[part])
     assert not cache.is_private(kept)
     native._made.cache_clear()
-    assert native.library(source, "answer").answer() == len(part)
+    assert native.library(judged(source, "c"), "answer").answer() == len(part)
+
+
+def is_open_to_a_group(path):
+    os.chown(path, -1, ELSE)
+    path.chmod(0o770)
+
+
+def is_reached_by_a_link_to_anothers(path):
+    path.rename(path.with_name("moved"))
+    path.symlink_to(path.with_name("moved"))
+    is_anothers(path.with_name("moved"))
+
+
+ABOVE = [
+    is_open_to_others,
+    pytest.param(is_open_to_a_group, marks=as_root),
+    pytest.param(is_anothers, marks=as_root),
+    pytest.param(is_reached_by_a_link_to_anothers, marks=as_root),
+]
+
+
+@pytest.fixture
+def deep(monkeypatch, tmp_path):
+    """A cache within two folders of this user's; the outer one."""
+    monkeypatch.delenv(cache.OFF, raising=False)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "outer" / "inner"))
+    (tmp_path / "outer" / "inner").mkdir(mode=0o700, parents=True)
+    (tmp_path / "outer").chmod(0o700)
+    return tmp_path / "outer"
+
+
+@pytest.mark.parametrize("part", ["outer", "inner"])
+@pytest.mark.parametrize("done_to", ABOVE)
+def test_a_library_planted_in_a_folder_above_the_cache_is_not_loaded(deep, done_to, part):
+    """All of the cache itself is this user's; who writes above it puts another one in its place. Nothing is kept."""
+    if not native.compiler():
+        pytest.skip("no C compiler")
+    native._made.cache_clear()
+    source = "int answer(void) { return 1; }"
+    assert native.library(judged(source, "c"), "answer").answer() == 1
+    (kept,) = (deep / "inner" / "normalbench" / "native").glob("*.so")
+    kept.write_bytes(native._compiled(judged("int answer(void) { return 666; }", "c"), deep).read_bytes())
+    done_to(deep if part == "outer" else deep / "inner")
+    before = kept.read_bytes()
+    native._made.cache_clear()
+    assert cache.is_private(kept) and cache.loadable(kept) is None
+    assert native.library(judged(source, "c"), "answer").answer() == 1 and kept.read_bytes() == before
+
+
+@pytest.mark.parametrize("done_to", ABOVE)
+def test_a_device_planted_above_the_cache_is_not_loaded(deep, done_to):
+    """It is built for this process, in a folder of its own."""
+    there = null_device.library()
+    assert there.is_relative_to(deep) and null_device.library() == there
+    done_to(deep)
+    assert null_device.library().parent == cache.folder_of_this_process()
+
+
+@as_root
+def test_folders_that_let_nobody_else_in_keep_libraries(deep):
+    """A sticky folder of root's, as /tmp is; and one that this user's own group may write, with nobody else in it."""
+    (deep / "inner" / "file").touch()
+    deep.chmod(0o1777)
+    assert is_guarded(deep / "inner" / "file") and cache.keeps_code()
+    deep.chmod(0o775)
+    assert cache.keeps_code() == (grp.getgrgid(0).gr_mem in ([], ["root"])), "the group of root"
+    os.chown(deep, ELSE, 0)
+    deep.chmod(0o1777)
+    assert not cache.keeps_code(), "who owns a sticky folder moves what is in it"
 
 
 @pytest.mark.parametrize("done_to", WAYS)
@@ -81,11 +153,11 @@ def test_a_pipe_or_a_device_in_place_of_a_file_is_not_read(folder, put):
     assert cache.read(KEY) is None
     if native.compiler():
         native._made.cache_clear()
-        native.library("int answer(void) { return 7; }", "answer")
+        native.library(judged("int answer(void) { return 7; }", "c"), "answer")
         (kept,) = (folder / "native").glob("*.so")
         put(kept)
         native._made.cache_clear()
-        assert native.library("int answer(void) { return 7; }", "answer").answer() == 7
+        assert native.library(judged("int answer(void) { return 7; }", "c"), "answer").answer() == 7
     programs = folder / "programs"
     cache.make_folder(programs)
     for name in ("file", "odd"):
@@ -113,7 +185,7 @@ def test_a_library_is_loaded_whichever_folder_nothing_is_executed_from(monkeypat
     monkeypatch.setattr(native.ctypes, "CDLL", guarded)
     for _ in range(2):
         native._made.cache_clear()
-        assert native.library("int answer(void) { return 5; }", "answer").answer() == 5
+        assert native.library(judged("int answer(void) { return 5; }", "c"), "answer").answer() == 5
 
 
 def test_a_device_is_built_elsewhere_where_nothing_is_executed_from_the_cache(folder, monkeypatch):

@@ -8,9 +8,9 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+from normalbench.bench.ground.compilers.text import judged, own
 from normalbench.bench.ground.native.elementwise import INFIX, OTHERS, NotElementwiseError, c_function, c_type
-from normalbench.bench.ground.native.library import address, library, source
-from normalbench.bench.subjects.normals import fill
+from normalbench.bench.ground.native.library import HEAD, address, library
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.vec import floor_log2, maximum, minimum, power_of_two, sign_not_zero
 
@@ -35,8 +35,8 @@ WORDS = np.array([0, 1, 2, 3, 31, 255, 2**16 + 1, 2**31 - 1, 2**31, 2**32 - 1, 0
 def by_c(function, a: np.ndarray, b: np.ndarray) -> np.ndarray:
     kind = jax.eval_shape(function, a, b).dtype
     written = c_function("function", function, a.dtype, b.dtype) + LOOP
-    text = source(fill.SOURCE, written, [], FROM=c_type(a.dtype), TO=c_type(kind))
-    made = library(text.partition("\nvoid fill")[0], "each")
+    text = own(HEAD, FROM=c_type(a.dtype), TO=c_type(kind)) + judged(written, "c")
+    made = library(text, "each")
     found = np.empty(len(a), kind)
     made.each(ctypes.c_size_t(len(a)), *map(address, (a, b, found)))
     return found

@@ -4,6 +4,7 @@ import ctypes
 
 import pytest
 
+from normalbench.bench.ground.compilers.text import judged
 from normalbench.bench.ground.native import library as native
 from normalbench.bench.ground.output import cache
 
@@ -22,16 +23,16 @@ def folder(tmp_path, monkeypatch):
 def forgotten(monkeypatch):
     """What another test compiled, and whether a compiler was found."""
     native._made.cache_clear()
-    native.compiler.cache_clear()
+    native.tools.version_text.cache_clear()
     monkeypatch.setattr(native, "_hangs", [])
     yield
     native._made.cache_clear()
-    native.compiler.cache_clear()
+    native.tools.version_text.cache_clear()
 
 
 def made(text: str = SOURCE) -> ctypes.CDLL:
     native._made.cache_clear()
-    return native.library(text, "answer")
+    return native.library(judged(text, "c"), "answer")
 
 
 @needs_c
@@ -74,8 +75,8 @@ def test_what_does_not_compile_says_why():
 
 
 def test_without_a_compiler_there_is_none(monkeypatch):
-    monkeypatch.setattr(native.shutil, "which", lambda _: None)
-    with pytest.raises(native.NoCompilerError, match=r"^no C compiler: install"):
+    monkeypatch.setattr(native.tools.shutil, "which", lambda _: None)
+    with pytest.raises(native.NoCompilerError, match=r"^no C compiler: .*install"):
         made()
 
 
@@ -96,9 +97,9 @@ ODD = {
 def test_an_odd_compiler_is_as_none(folder, tmp_path, monkeypatch, name):
     """Its failure is one line, nothing is kept, and a compiler that does not end is not asked again."""
     script, said = ODD[name]
-    real, calls = native.shutil.which("cc"), tmp_path / "calls"
+    real, calls = native.tools.shutil.which("cc"), tmp_path / "calls"
     (tmp_path / "bin").mkdir()
-    body = f'echo >> {calls}; [ "$1" = --version ] && echo odd && exit; cd {tmp_path}; {script.format(real=real)}'
+    body = f'echo >> {calls}; [ "$1" = --version ] && echo odd && exit; {script.format(real=real)}'
     (tmp_path / "bin" / "cc").write_text(f"#!/bin/bash\n{body}\n")
     (tmp_path / "bin" / "cc").chmod(0o755)
     monkeypatch.setenv("PATH", f"{tmp_path / 'bin'}:/usr/bin:/bin")
@@ -108,6 +109,6 @@ def test_an_odd_compiler_is_as_none(folder, tmp_path, monkeypatch, name):
     asked = calls.read_text().count("\n")
     for text in (SOURCE, SOURCE + "\n"):
         with pytest.raises(native.NoCompilerError):
-            native.library(text, "answer")
+            native.library(judged(text, "c"), "answer")
     assert not [*folder.glob("*.so")]
     assert calls.read_text().count("\n") == asked + (name != "does not end")

@@ -1,6 +1,7 @@
 """Code of motion vectors, depth, light and curves: run in each language, and equal to the catalogue's."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,10 +10,11 @@ from languages import require_runner
 
 from normalbench.bench.shaders.code.emit import LANGUAGES
 from normalbench.bench.shaders.code.files import code_of, stem_of
+from normalbench.bench.shaders.code.kinds.normal import is_catalogues
 from normalbench.bench.shaders.code.reference import reference
 from normalbench.bench.shaders.code.verify import agreement
 from normalbench.bench.subjects.codecs.kinds.codecs import NAMED, codecs_of_kind, kinds_named
-from normalbench.encodings.catalogue import BY_KIND
+from normalbench.encodings.catalogue import BY_KIND, ENCODINGS
 
 # Of each kind, codes and storages that are made otherwise: shares, polynomials, powers, floats, and integers.
 CODECS = (
@@ -241,3 +243,11 @@ def test_the_code_over_another_range_gives_the_catalogues_texels(kind, name, tmp
     require_runner("c")
     found = agreement_of(codec_of(kind, name, ""), "c", tmp_path)
     assert found.holds, found.says
+
+
+def test_a_name_makes_nobodys_file_the_catalogues():
+    """Whose an encoder is decides whether it is walled in: another file with a name of the catalogue's is not ours."""
+    known = ENCODINGS["octahedral"]
+    assert is_catalogues(known) and is_catalogues(replace(known, name="octahedral:sign=0"))
+    assert not is_catalogues(replace(known, glsl=Path("octahedral.glsl")))
+    assert not is_catalogues(replace(known, name="octahedral:HALF=1", glsl=Path("mine.hlsl")))

@@ -1,5 +1,6 @@
 """Every language runs the same hand-written files, and gives what NumPy gives."""
 
+import json
 import os
 import re
 from dataclasses import replace
@@ -8,9 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from normalbench.bench.ground.compilers.text import Text
+from normalbench.bench.ground.machine.systems import landlock
 from normalbench.bench.ground.output.errors import MissingError
 from normalbench.bench.shaders.code.emit import LANGUAGES
-from normalbench.bench.shaders.code.run import c, interface, runner
+from normalbench.bench.shaders.code.run import c, interface, msl, runner
 from normalbench.bench.shaders.code.run.interface import Interface, Ran
 from normalbench.gbuffer.gl.device import NoDeviceError
 from normalbench.gbuffer.gl.shader import ShaderError
@@ -94,6 +97,13 @@ def test_a_broken_file_is_one_line_that_names_it(language, tmp_path):
     assert "\n" not in str(error.value) and "broken.txt" in str(error.value), str(error.value)
 
 
+@pytest.fixture
+def no_judge(monkeypatch):
+    """The judge of texts taken out: what it would refuse is compiled."""
+    for module in (c, msl):
+        monkeypatch.setattr(module, "judged_text", lambda text, *_: Text(text, is_own=False))
+
+
 # What a file may do, and how the process that it is in ends.
 ENDS = {
     "reads what is not there": ("return *(volatile float *)8;", "SIGSEGV"),
@@ -103,6 +113,7 @@ ENDS = {
 }
 
 
+@pytest.mark.usefixtures("no_judge")
 @pytest.mark.parametrize("what", ENDS)
 @pytest.mark.parametrize("language", ["c", "msl"])
 def test_somebodys_code_loses_its_own_process(language, what, tmp_path, monkeypatch):
@@ -121,6 +132,76 @@ def test_somebodys_code_loses_its_own_process(language, what, tmp_path, monkeypa
     with pytest.raises(ShaderError, match=how) as error:
         runner(language).run(tmp_path / "hurt.txt", SPHEREMAP, *given(8))
     assert "\n" not in str(error.value) and "hurt.txt" in str(error.value)
+
+
+# Whatever it opens or starts it ends the process.
+TRAPS = ('fopen("/etc/passwd", "r")', 'fopen("/tmp/escaped", "w")', 'popen("exit 0", "r") && system("exit 0") == 0')
+FOREIGN = replace(SPHEREMAP, is_ours=False)
+walled = pytest.mark.skipif(
+    not landlock.is_available() and not os.environ.get("CI"), reason="this kernel has no Landlock"
+)
+
+
+@walled
+@pytest.mark.parametrize("trap", TRAPS)
+@pytest.mark.parametrize("language", ["c", "msl"])
+def test_somebodys_code_opens_and_starts_nothing(language, trap, tmp_path, request):
+    """It is refused. Without the judge it gives what it gives without its attempts, which succeed without the wall."""
+    expected = ran(language, SPHEREMAP, given(8))
+    name = "inline float2 spheremap" if language == "msl" else "static inline"
+    before, mark, rest = file_of(SPHEREMAP, language).read_text().partition(f"\n{name}")
+    assert mark
+    head = f"#include <stdio.h>\n#include <stdlib.h>\n{before}\n"
+    tries = f"__attribute__((constructor)) static void tries(void) {{ if ({trap}) abort(); }}\n"
+    (tmp_path / "tries.txt").write_text(f"{head}{tries}{mark}{rest}")
+    with pytest.raises(ShaderError, match=r"is not read"):
+        runner(language).run(tmp_path / "tries.txt", FOREIGN, *given(8))
+    request.getfixturevalue("no_judge")
+    with pytest.raises(ShaderError, match="SIGABRT"):
+        runner(language).run(tmp_path / "tries.txt", SPHEREMAP, *given(8))
+    found = runner(language).run(tmp_path / "tries.txt", FOREIGN, *given(8))
+    assert all(np.array_equal(a, b) for a, b in zip(expected, found, strict=True))
+
+
+@walled
+def test_tables_of_somebodys_code_are_found_behind_the_wall():
+    arrays = given(100)
+    for a, b in zip(ran("c", SCALED, arrays), ran("c", replace(SCALED, is_ours=False), arrays), strict=True):
+        assert np.array_equal(a, b)
+
+
+@pytest.mark.parametrize("language", ["c", "msl"])
+def test_without_a_wall_somebodys_code_is_not_run(language, monkeypatch):
+    """The catalogue's is."""
+    monkeypatch.setattr(landlock, "abi", lambda: 0)
+    ran(language, SPHEREMAP, given(8))
+    with pytest.raises(MissingError, match="Landlock: none; C made of your files is not run here"):
+        runner(language).run(file_of(SPHEREMAP, language), FOREIGN, *given(8))
+
+
+def test_without_a_wall_the_row_of_a_users_encoder_says_so(run, monkeypatch, tmp_path):
+    """And doctor does."""
+    monkeypatch.setattr(landlock, "abi", lambda: 0)
+    (tmp_path / "mine.glsl").write_text(
+        "vec2 mine_encode(vec3 n, vec3 view) { return n.xy; }\n"
+        "vec3 mine_decode(vec2 e, vec3 view) { return vec3(e, sqrt(max(1.0 - dot(e, e), 0.0))); }\n"
+    )
+    words = ("code", str(tmp_path / "mine.glsl"), "--storage", "rg8", "--to", "c", "--check", "--format", "json")
+    status, out, _ = run(*words)
+    (row,) = json.loads(out)
+    assert (status, row["verdict"]) == (0, "not run")
+    assert row["says"] == "not run here: Landlock: none; C made of your files is not run here"
+    assert "no: Landlock: none; C made of your files is not run here" in run("doctor", "--format", "json")[1]
+
+
+def test_a_script_in_place_of_a_compiler_is_not_run_behind_the_wall(monkeypatch, tmp_path):
+    """As some systems wrap theirs: the row says why there is no run."""
+    (tmp_path / "cc").write_text('#!/bin/sh\nexec /usr/bin/cc "$@"\n')
+    (tmp_path / "cc").chmod(0o755)
+    ran("c", SPHEREMAP, given(8))
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+    with pytest.raises(MissingError, match="C made of your files is not run here: behind Landlock cc: "):
+        runner("c").run(file_of(SPHEREMAP, "c"), FOREIGN, *given(8))
 
 
 def test_what_naga_panics_at_is_refused_in_a_line(tmp_path):

@@ -1,6 +1,7 @@
 """C in somebody's engine: whatever it is given, nothing undefined happens, and the same comes back."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -48,10 +49,10 @@ def ran(codec, folder):
     for name, data in code.files([]).items():
         (folder / name).write_bytes(data)
     found = []
+    # Behind the wall that is around users' code a sanitizer cannot look at its own process.
+    interface = replace(code.interface, is_ours=True)
     for level in ("-O0", "-O2"):
-        with c.built(
-            folder / code.name, code.interface, c.compiler(), [level, "-ffp-contract=off", *SANITIZERS]
-        ) as run:
+        with c.built(folder / code.name, interface, "cc", [level, "-ffp-contract=off", *SANITIZERS]) as run:
             found.append(run(*hostile()))
     # The bits of what is no number are nobody's business.
     same = [np.array_equal(a, b, equal_nan=a.dtype.kind == "f") for a, b in zip(*found, strict=True)]

@@ -17,6 +17,7 @@ from costing import glsl
 from normalbench.bench.door.cli import app as cli
 from normalbench.bench.door.run import asked_of
 from normalbench.bench.door.run_options import RunOptions
+from normalbench.bench.ground.compilers import tools as compilers
 from normalbench.bench.ground.machine import devices
 from normalbench.bench.ground.options import gpu_families as families
 from normalbench.bench.ground.options.option import fields_of
@@ -65,7 +66,7 @@ def first(compiled_once, own_cache):
 @pytest.mark.slow
 def test_the_second_run_compiles_nothing(run, first, monkeypatch):
     monkeypatch.setattr(isa_process, "CHILD", ["false"])
-    monkeypatch.setattr(spirv, "_run", lambda *_: pytest.fail("compiled again"))
+    monkeypatch.setattr(compilers, "_piped", lambda *_: pytest.fail("compiled again"))
     assert run(*SMALL) == first
 
 
@@ -195,8 +196,8 @@ def test_a_driver_that_is_named_without_its_folder_is_kept_all_the_same(run, mon
 @pytest.mark.parametrize("tool", [spirv.COMPILER, spirv.OPTIMISER])
 def test_another_version_of_a_tool_compiles_again(run, monkeypatch, tool):
     first, own, ran = run(*SMALL), spirv.version, []
-    compiled = spirv._run
-    monkeypatch.setattr(spirv, "_run", lambda *given: ran.append(given[0][0]) or compiled(*given))
+    piped = compilers._piped
+    monkeypatch.setattr(compilers, "_piped", lambda *given: ran.append(Path(given[0][0]).name) or piped(*given))
     assert run(*SMALL) == first and not ran
     monkeypatch.setattr(spirv, "version", lambda asked: "Version 99.1" if asked == tool else own(asked))
     _, out, _ = run(*SMALL)
@@ -370,7 +371,7 @@ def test_a_users_shader_that_does_not_compile_costs_its_rows_and_is_named_with_f
 @pytest.mark.usefixtures("radv", "own_cache")
 def test_a_compiler_that_crashes_is_one_line(run, monkeypatch):
     crashed = subprocess.CompletedProcess([], -11, b"", b"")
-    monkeypatch.setattr(spirv, "_run", lambda *_: crashed)
+    monkeypatch.setattr(compilers, "_piped", lambda *_: crashed)
     status, out, err = run("cost", *EVERY, "--encoding", "xy,octahedral", "--family", "navi21", "--storage", "rgba8")
     assert status == 0 and all(row["skipped"] for row in json.loads(out))
     assert err == "normalbench: rows without figures: glslangValidator ended with status -11 and said nothing\n"

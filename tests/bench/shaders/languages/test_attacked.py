@@ -37,8 +37,9 @@ def test_a_file_writes_no_program_and_reads_no_other_file(tmp_path, text, ending
     """Words of Slang's that put a string into the C++ that is run, or read a module, however they are written."""
     (tmp_path / "other.slang").write_text("float secret() { return 1.0; }\n")
     path = tmp_path / f"mine.{ending}"
-    path.write_text(text + PLAIN)
-    with pytest.raises(UsageError, match=r"mine\.\w+: \w+ is not read"):
+    code = ENCODE.replace("CODE", "n.xy * f(1.0)") + DECODE if "f(" in text else PLAIN
+    path.write_text(text + code)
+    with pytest.raises(UsageError, match=r"mine\.\w+:\d+: \w+ is not read"):
         translated(path)
 
 
@@ -82,6 +83,47 @@ def test_no_disguise_of_an_include_reads_a_file_elsewhere(tmp_path, ending, by):
         part.write_text(attack)
         answer = child.answer(word, folders[2])
         assert answer.get("error", "").startswith(str(folders[1])), (attack, answer)
+
+
+def test_a_refusal_names_the_line_whatever_branches_stand_before_it(tmp_path):
+    path = tmp_path / "mine.hlsl"
+    path.write_text("#ifdef A\n#else\n#endif\n#if B\n#endif\nimport x;\n" + PLAIN)
+    with pytest.raises(UsageError, match=r"mine\.hlsl:6: import is not read; #include a file next to it"):
+        translated(path)
+    path.write_text("#ifdef A\n#else\n#endif\n#define B a # b\n#if C # 1\n#endif\n" + PLAIN)
+    with pytest.raises(UsageError, match=r"mine\.hlsl:5: a # inside a line is not read"):
+        translated(path)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "float __OctWrap(float x) { return x; }\nstruct __VSOut { float __unused; };\n",
+        "#ifdef __cplusplus\n#if __has_include(<cmath>)\n#include <cmath>\n#endif\n#endif\n",
+        "#if defined(__cplusplus) && defined(__has_feature)\n#endif\n",
+        'string Url = "http://a.b/c"; /* "never */ // closed \\\n behind it\n',
+        "#define PASTED(a, b) a##b\nfloat PASTED(hel, per)(float i, float m, float p, float o) { return i; }\n",
+        "#pragma once\n#line 3\n#define LONG(x) \\\n    (x)\n\f#define FEED\n",
+    ],
+)
+def test_what_harms_nobody_is_read(tmp_path, text):
+    path = tmp_path / "mine.hlsl"
+    path.write_text(text + PLAIN)
+    assert translated(path).named == "PackDir:UnpackDir"
+
+
+@pytest.mark.parametrize("ending", ["hlsl", "slang", "frag"])
+@pytest.mark.parametrize(
+    "value", ["\\", "1 \\ ", "//", "/*", '#include "NOTE"', '%:include "NOTE"', "import", "__include"]
+)
+def test_a_macro_of_a_command_line_is_judged_as_a_line_of_the_file(tmp_path, ending, value):
+    """`-D A=VALUE`: it hides no line behind it, and reads no file."""
+    (tmp_path / "note.txt").write_text("float two() { return 2.0; }\n")
+    path = tmp_path / f"mine.{ending}"
+    path.write_text("A\n" + ENCODE.replace("CODE", "n.xy * two()") + DECODE)
+    word = f"{path}:define=A={value.replace('NOTE', str(tmp_path / 'note.txt'))}"
+    (tmp_path / "work").mkdir()
+    assert child.answer(word, tmp_path / "work").get("error", "")
 
 
 @pytest.mark.parametrize(

@@ -5,8 +5,9 @@ import time
 
 import pytest
 
+from normalbench.bench.ground.compilers.lines import bare, without_comments
 from normalbench.bench.ground.output.errors import UsageError
-from normalbench.bench.shaders.languages.source import Source, without_comments
+from normalbench.bench.shaders.languages.source import Source
 
 
 def written(folder, text, name="mine.hlsl"):
@@ -128,7 +129,23 @@ def test_a_line_that_goes_on_is_read_as_one(tmp_path, text, lines):
 def test_comments_leave_every_column_where_it_is():
     text = 'a /* b\nc */ d // e\n"// f" g'
     bare = without_comments(text)
-    assert len(bare) == len(text) and bare == 'a     \n     d     \n"// f" g'
+    assert len(bare) == len(text) and bare == 'a     \n     d     \n"   f" g'
+
+
+@pytest.mark.parametrize(
+    ("text", "left"),
+    [
+        ("a /* b /* c */ d */ e", "a                   e"),
+        ("a // b \\\nc", "a       \nc"),
+        ("a // b\u2028c", "a      c"),
+        ("/* // */ a", "         a"),
+        ("// /*\na", "     \na"),
+        ("a /* b /* */", "a /* b /* */"),
+    ],
+)
+def test_comments_of_wgsl_are_its_own(text, left):
+    """One may stand in another, and a line ends where it ends; one that is not closed stays."""
+    assert bare(text, is_wgsl=True) == left
 
 
 def test_a_comment_without_an_end_is_named(tmp_path):

@@ -10,9 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from normalbench.bench.ground.compilers import tools
 from normalbench.bench.ground.directions import directions
 from normalbench.bench.run.measuring import files_of
-from normalbench.bench.shaders.languages import tools, translated
+from normalbench.bench.shaders.languages import translated
 from normalbench.bench.shaders.languages.plain import NotPlainError, plain
 from normalbench.bench.subjects.codecs.doctor.exact import is_unit
 from normalbench.bench.tables.quality.table import QualityOptions

@@ -65,7 +65,7 @@ SHADERS = {
     "unclosed": (GOOD + "/* never closed", "not closed"),
     "misspelt": (GOOD.replace("n.xy", "n.xq"), r"misspelt\.glsl:2"),
     "half": (GOOD.split("vec3 NAME_decode")[0], "no function vec3 half_decode"),
-    "garbage": ("\x00\x01\x02\xff", "no function"),
+    "garbage": ("\x00\x01\x02\xff", "no function|the letter U.0000 is not read"),
     "uniform": ("uniform float k;\n" + GOOD.replace("return n.xy;", "return n.xy * k;"), "reads the uniform k, which"),
     "texture": (
         "layout(binding = 0) uniform sampler2D table[2];\n"
@@ -171,3 +171,22 @@ def test_nothing_of_the_current_folder_is_imported(tmp_path):
     words = ["cost", "--isa", "--encoding", path, "--family", "navi21", "--format", "json"]
     done = subprocess.run([sys.executable, "-P", "-c", script, *words], cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode in (0, 3) and not list(tmp_path.glob("ran-*")), done.stderr
+
+
+@pytest.mark.parametrize("ending", ["glsl", "txt"])
+@pytest.mark.parametrize("text", ['#include "NOTE"', '/*\n#include "NOTE"\n*/', '\u2028#include "NOTE"'])
+def test_a_file_elsewhere_is_not_included(run, tmp_path, text, ending):
+    """Outside the repository, or with a name that does not end as a shader's does: neither is compiled."""
+    home, note = tmp_path / "own", tmp_path / ("elsewhere" if ending == "glsl" else "own") / f"note.{ending}"
+    (home / ".git").mkdir(parents=True)
+    note.parent.mkdir(exist_ok=True)
+    note.write_text("float two() { return 2.0; }\n")
+    path = home / "mine.glsl"
+    path.write_text(
+        text.replace("NOTE", str(note)) + GOOD.replace("NAME", "mine").replace("return n.xy;", "return n.xy * two();")
+    )
+    status, _, err = run("quality", "--encoding", str(path), "--storage", "rg8", "--count", "1000")
+    assert (status, err) == (
+        2,
+        f"normalbench: {path}: it includes {note}, which lies outside its folder; move it there\n",
+    )

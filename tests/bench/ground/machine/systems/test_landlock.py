@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
+from normalbench.bench.ground.compilers import tools
 from normalbench.bench.ground.machine import children
 from normalbench.bench.ground.machine.systems import landlock, walls
 from normalbench.bench.ground.machine.systems.walls import Wall
 from normalbench.bench.ground.output.errors import MissingError
-from normalbench.bench.shaders.languages import tools
 
 pytestmark = pytest.mark.skipif(
     not landlock.is_available() and not os.environ.get("CI"), reason="this kernel has no Landlock"

@@ -1,4 +1,4 @@
-"""Slang's compiler as a library: what it makes of a text, and which functions it finds in it.
+"""Slang's compiler as a library: what it makes of a text.
 
 Its C interface is that of slang.h, which every build of it has: the wheels `slangpy` and `slangtorch`, and the folders
 around a `slangc` on the path. A text that it cannot bear ends the process: it is called in a child.
@@ -8,13 +8,16 @@ from __future__ import annotations
 
 import ctypes as c
 import importlib.util
+import os
 import shutil
+import tempfile
 from collections.abc import Iterator, Sequence
 from functools import cache
+from mmap import ACCESS_READ, mmap
 from pathlib import Path
 
-from ...ground.output.errors import MissingError
-from .pairs import PACKED, Function, Parameter, Place
+from ..output.errors import MissingError
+from .text import RefusedError, Text, judged
 
 MISSING = "no Slang: its compiler is not there; install it (pip install slangpy)"
 # Packages with the library in one of these folders. None of them is imported: they need what is not installed.
@@ -22,11 +25,8 @@ WHEELS, FOLDERS = ("slangpy", "slangtorch"), ("", "bin", "lib")
 NAMES = ("libslang-compiler.so*", "slang-compiler.dll", "libslang-compiler*.dylib", "libslang.so*", "slang.dll")
 # SlangLanguageVersion of 2025.
 LANGUAGE = 2025
-# SlangTypeKind, SlangScalarType and SlangModifierID.
-STRUCTURE, VECTOR, SCALAR = 1, 4, 5
-SCALARS = {1: "void", 2: "bool", 3: "int", 4: "uint", 7: "half", 8: "float", 9: "double"}
-OUT, INOUT = 9, 10
-FLOATS, NUMBERS = ("half", "float"), ("float", "uint", "int", "bool")
+# What a text is called in messages.
+GIVEN = "given.slang"
 
 
 class _Description(c.Structure):
@@ -65,7 +65,7 @@ def _folders() -> Iterator[Path]:
         yield from (own, own.parent / "lib")
 
 
-class _Api:
+class Api:
     """The functions of slang.h that are used here, as Python calls them."""
 
     def __init__(self) -> None:
@@ -108,104 +108,101 @@ class _Api:
 
 
 @cache
-def _api() -> _Api:
-    return _Api()
+def api() -> Api:
+    """Return the library of this process. Raises MissingError."""
+    return Api()
+
+
+@cache
+def knows(word: str) -> bool:
+    """Return whether the compiler may know a word: its library holds its keywords and functions as text."""
+    with path_of_library().open("rb") as file, mmap(file.fileno(), 0, access=ACCESS_READ) as library:
+        # Of a build that packs its text nothing is known.
+        return library.find(word.encode()) >= 0 or library.find(b"__intrinsic_asm") < 0
 
 
 class Compiled:
     """What the compiler made of a text.
 
     Attributes:
+        request: for reflection: see `Api`.
         failed: whether it refused the text.
         said: its messages.
     """
 
     def __init__(self, words: Sequence[str]):
-        api = _api()
-        self._request = api.request(api.session)
+        self.request = api().request(api().session)
         given = (c.c_char_p * len(words))(*[word.encode() for word in words])
-        self.failed = bool(api.take(self._request, given, len(words)) or api.compile(self._request))
-        self.said = (api.said(self._request) or b"").decode(errors="replace")
+        self.failed = bool(api().take(self.request, given, len(words)) or api().compile(self.request))
+        self.said = (api().said(self.request) or b"").decode(errors="replace")
 
     @property
     def code(self) -> str:
         """The text of the only entry point."""
-        return (_api().code(self._request, 0) or b"").decode(errors="replace")
-
-    def functions(self, names: Sequence[str]) -> list[Function]:
-        """The functions of these names, overloads each; a name that only another branch of the text has gives none.
-
-        Args:
-            names: what the text itself defines: the library does not bear names of its own.
-        """
-        api = _api()
-        reflection = api.reflection(self._request)
-        found = [(name, api.find(reflection, name.encode())) for name in names]
-        each = ((name, one) for name, several in found if several for one in _overloads(several))
-        return list(dict.fromkeys(_function(name, one) for name, one in each))
+        return (api().code(self.request, 0) or b"").decode(errors="replace")
 
 
-def _overloads(function: int) -> list[int]:
-    api = _api()
-    if not api.is_overloaded(function):
-        return [function]
-    found = (api.overload(function, at) for at in range(api.overloads(function)))
-    return [one for one in found if one]
+def compiled(text: str, options: Sequence[str], folder: Path) -> Compiled:
+    """Return what the compiler makes of a text.
+
+    Args:
+        options: its words for the target, and macros.
+        folder: an empty one to work in.
+
+    Raises:
+        RefusedError: the compiler may not be given the text.
+    """
+    given = folder / GIVEN
+    words = [str(given), "-enable-machine-readable-diagnostics", *options]
+
+    def expanded(plain: Text) -> str:
+        given.write_text(plain.content, encoding="utf-8", newline="\n")
+        return _expanded(words)
+
+    try:
+        judged(text, "slang", expanded, knows)
+    except _NotExpandedError as error:
+        return error.compiled
+    return Compiled(words)
 
 
-def _function(name: str, function: int) -> Function:
-    api = _api()
-    parameters = [_parameter(api.parameter(function, at)) for at in range(api.parameters(function))]
-    # What has a value of its own need not be given.
-    given = [one for one in parameters if not one.has_default]
-    result = api.result(function)
-    sizes = tuple(0 if one.is_made else size_of(one.places) for one in given)
-    takes = given[0].kind if given and not given[0].is_made else ""
-    results = tuple(_places("", result))
-    return Function(
-        name,
-        size_of(results),
-        sizes,
-        _kind(result),
-        takes if takes in PACKED else "",
-        tuple(parameters),
-        results,
-    )
+class _NotExpandedError(Exception):
+    """A text that the preprocessor refuses."""
+
+    def __init__(self, compiled: Compiled):
+        super().__init__(compiled.said)
+        self.compiled = compiled
 
 
-def size_of(places: Sequence[Place]) -> int:
-    """How many numbers a vector of two or three floats has; 0 of another type."""
-    whole = places[0] if len(places) == 1 and "." not in places[0].path else None
-    return whole.size if whole and whole.kind == "float" and whole.size in (2, 3) else 0
+def _expanded(words: Sequence[str]) -> str:
+    """What the preprocessor makes of a file, which it prints.
+
+    Raises:
+        _NotExpandedError: it refuses the file.
+        RefusedError: what it prints is not seen here, so that nothing would be judged.
+    """
+    if not _is_seen(Path(words[0]).with_name("seen.slang")):
+        raise RefusedError(0, "Slang's compiler does not say what its preprocessor makes of it")
+    return _printed(words)
 
 
-def _parameter(variable: int) -> Parameter:
-    api = _api()
-    name, kind = (api.variable_name(variable) or b"").decode(), api.type_of(variable)
-    is_out, is_inout = (bool(api.modifier(variable, mark)) for mark in (OUT, INOUT))
-    places = tuple(_places(name, kind))
-    return Parameter(
-        name, _kind(kind), is_inout or not is_out, is_out or is_inout, bool(api.has_default(variable)), places
-    )
+@cache
+def _is_seen(probe: Path) -> bool:
+    probe.write_text(probe.stem, encoding="utf-8", newline="\n")
+    return probe.stem in _printed([str(probe)])
 
 
-def _places(path: str, kind: int) -> Iterator[Place]:
-    """The numbers and vectors of a type; those of a structure one by one."""
-    api = _api()
-    scalar = SCALARS.get(api.scalar(kind), "")
-    scalar = "float" if scalar in FLOATS else scalar
-    if api.kind(kind) in (VECTOR, SCALAR) and scalar in NUMBERS:
-        yield Place(path, scalar, int(api.count(kind)) if api.kind(kind) == VECTOR else 1)
-    elif api.kind(kind) == STRUCTURE:
-        for field in (api.field(kind, at) for at in range(api.fields(kind))):
-            inner = (api.variable_name(field) or b"").decode()
-            yield from _places(f"{path}.{inner}" if path else inner, api.type_of(field))
-
-
-def _kind(kind: int) -> str:
-    """A type as HLSL writes it."""
-    api = _api()
-    scalar = SCALARS.get(api.scalar(kind), "")
-    if api.kind(kind) == VECTOR and scalar:
-        return f"{scalar}{api.count(kind)}"
-    return scalar if api.kind(kind) == SCALAR and scalar else (api.type_name(kind) or b"").decode()
+def _printed(words: Sequence[str]) -> str:
+    """What the library prints to descriptor 1. Raises _NotExpandedError."""
+    with tempfile.TemporaryFile() as file:
+        own = os.dup(1)
+        os.dup2(file.fileno(), 1)
+        try:
+            done = Compiled([*words, "-E"])
+        finally:
+            os.dup2(own, 1)
+            os.close(own)
+        if done.failed:
+            raise _NotExpandedError(done)
+        file.seek(0)
+        return file.read().decode(errors="replace")

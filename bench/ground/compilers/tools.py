@@ -1,0 +1,210 @@
+"""The compilers that there are: where they lie, what to install where they are not, and how they are run."""
+
+from __future__ import annotations
+
+import importlib.util
+import shutil
+import subprocess
+from collections.abc import Mapping, Sequence
+from functools import cache
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+from ..machine import children
+from ..machine.systems import landlock, walls
+from ..machine.systems.people import how_to_install
+from ..machine.systems.processes import file_of_child, signal_name
+from ..machine.systems.walls import Wall
+from ..output.errors import MissingError
+from . import slang
+from .text import RefusedError, Text, judged
+
+GLSLANG, SPIRV_CROSS, SPIRV_OPT, SLANG = "glslangValidator", "spirv-cross", "spirv-opt", "slangc"
+C, CLANG, METAL = "cc", "clang++", "metal"
+# Slang's compiler as a library, which is no program.
+SLANG_LIBRARY = "slang-compiler"
+# What to install.
+MISSING: Mapping[str, str] = MappingProxyType(
+    {
+        GLSLANG: f"no GLSL compiler: {GLSLANG} is not on the path; install it ({how_to_install('glslang-tools')})",
+        SPIRV_CROSS: f"no HLSL: {SPIRV_CROSS} is not on the path; install it ({how_to_install('spirv-cross')})",
+        SPIRV_OPT: f"no SPIR-V counts: {SPIRV_OPT} is not on the path; install it ({how_to_install('spirv-tools')})",
+        SLANG: f"no Slang: {SLANG} is not there; install it (pip install --no-deps slangtorch)",
+        SLANG_LIBRARY: slang.MISSING,
+        C: f"no C compiler: {C} is not on the path; install it ({how_to_install('gcc')})",
+        CLANG: f"no clang: {CLANG} is not on the path; install it ({how_to_install('clang')})",
+        METAL: f"no Metal: {METAL} is not on the path; it comes with Xcode",
+    }
+)
+# Python packages that have a tool in their folder bin.
+_WHEELS: Mapping[str, str] = MappingProxyType({SLANG: "slangtorch"})
+# What they say their version by; --version, if nothing else.
+_ASKED: Mapping[str, str] = MappingProxyType({SPIRV_CROSS: "--revision", SLANG: "-v"})
+SECONDS = 20.0
+
+
+class ToolError(Exception):
+    """A tool that crashes or does not end, whatever it is given."""
+
+
+def path_of(tool: str) -> Path:
+    """Return where a tool is: on the path, or in a package that has it.
+
+    Raises:
+        MissingError: one line that says what to install.
+    """
+    if tool == SLANG_LIBRARY:
+        return slang.path_of_library()
+    path = shutil.which(tool) or _in_a_wheel(tool)
+    if not path:
+        raise MissingError(MISSING.get(tool, f"{tool} is not on the path"))
+    return Path(path)
+
+
+def _in_a_wheel(tool: str) -> str | None:
+    # The package itself is not imported: it needs what is not installed.
+    spec = importlib.util.find_spec(_WHEELS[tool]) if tool in _WHEELS else None
+    folders = (spec and spec.submodule_search_locations) or []
+    return next((path for folder in folders if (path := shutil.which(tool, path=str(Path(folder) / "bin")))), None)
+
+
+@cache
+def version_text(tool: str) -> str:
+    """Return all that a tool says of its version. Raises MissingError."""
+    try:
+        command = [path_of(tool), _ASKED.get(tool, "--version")]
+        done = subprocess.run(command, capture_output=True, encoding="utf-8", errors="replace", timeout=SECONDS)
+    except (OSError, subprocess.TimeoutExpired):
+        return ""
+    return f"{done.stdout}\n{done.stderr}".strip()
+
+
+def version(tool: str) -> str:
+    """Return a tool's name and its own word for its version, or what to install."""
+    try:
+        lines = version_text(tool).splitlines()
+    except MissingError as error:
+        return str(error)
+    return f"{tool} {lines[0].strip() if lines else 'of no version'}"
+
+
+def stamp(tool: str) -> str:
+    """Return what tells one build of a tool from another: its place, size and time. Raises MissingError."""
+    path = path_of(tool).resolve()
+    status = path.stat()
+    return f"{path} {status.st_size} {status.st_mtime_ns}"
+
+
+def stamp_or_empty(tool: str) -> str:
+    """Return the same; empty where there is no such tool."""
+    try:
+        return stamp(tool)
+    except MissingError:
+        return ""
+
+
+def put(path: Path, text: Text) -> None:
+    """Write a text where a compiler reads it."""
+    path.write_text(text.content, encoding="utf-8", newline="\n")
+
+
+class Ran(NamedTuple):
+    """How a tool ended, and what it printed."""
+
+    status: int
+    out: str
+    err: str
+
+
+def run(
+    tool: str,
+    words: Sequence[str],
+    folder: Path,
+    files: Mapping[str, Text],
+    seconds: float = SECONDS,
+    wall: Wall | None = None,
+) -> Ran:
+    """Write texts into a folder, and run a tool there.
+
+    Args:
+        words: options, and names of files in the folder.
+        files: by their names, the texts that it is given.
+        seconds: how long it may take.
+        wall: what it may use, of a text that may be anybody's.
+
+    Raises:
+        MissingError: there is no such tool.
+        ToolError: it crashes or does not end.
+    """
+    for name, text in files.items():
+        put(folder / name, text)
+    command = [str(path_of(tool)), *words]
+    try:
+        done = children.finished(wall.around(command) if wall else command, seconds, folder)
+    except subprocess.TimeoutExpired as error:
+        raise ToolError(f"{tool} did not end within {seconds:g} s") from error
+    except OSError as error:
+        raise ToolError(f"{tool}: {error.strerror or error}") from error
+    if name := signal_name(done.returncode):
+        raise ToolError(f"{tool} was ended by {name}: this is too much for it")
+    return Ran(done.returncode, done.stdout, done.stderr)
+
+
+def wall_around(tool: str, folder: Path) -> Wall | None:
+    """Return what a tool may use that works on somebody's text in a folder; None where there are no walls.
+
+    Raises:
+        MissingError: there is no such tool.
+    """
+    is_walled = landlock.is_available()
+    return walls.of_tool(path_of(tool)) | Wall(writes=(str(folder),)) if is_walled else None
+
+
+def slang_text(text: str, words: Sequence[str], folder: Path) -> Text:
+    """Return a text that `slangc` may be given with some options. Its own preprocessor says which words macros spell,
+    where the text itself leaves that open.
+
+    Raises:
+        RefusedError: it may not be given the text.
+        MissingError: there is no such tool.
+        ToolError: it crashes, does not end, or its preprocessor refuses the text.
+    """
+
+    def expanded(plain: Text) -> str:
+        wall = wall_around(SLANG, folder)
+        done = run(SLANG, [*words, "-E", slang.GIVEN], folder, {slang.GIVEN: plain}, wall=wall)
+        if done.status:
+            raise ToolError(f"{SLANG}: {' '.join(done.err.split())[:200]}")
+        return done.out
+
+    try:
+        return judged(text, "slang")
+    except RefusedError:
+        return judged(text, "slang", expanded, slang.knows)
+
+
+def module_of(text: Text, words: Sequence[str]) -> tuple[Ran, bytes]:
+    """Return how glslang ended, and the module of SPIR-V that it made of a text, which it reads from standard input."""
+    with file_of_child() as made:
+        command = [str(path_of(GLSLANG)), "--stdin", *words, "-o", made.path]
+        done = _piped(command, text.content.encode(), *made.descriptors)
+        return Ran(done.returncode, done.stdout.decode(errors="replace"), ""), made.content()
+
+
+def optimised(binary: bytes) -> bytes:
+    """Return a module of SPIR-V after its optimiser; empty where that refuses it."""
+    done = _piped([str(path_of(SPIRV_OPT)), "-O", "-", "-o", "-"], binary)
+    return done.stdout if done.returncode == 0 else b""
+
+
+def _piped(command: list[str], given: bytes, *descriptors: int) -> subprocess.CompletedProcess[bytes]:
+    try:
+        return subprocess.run(command, input=given, capture_output=True, timeout=SECONDS, pass_fds=descriptors)
+    except subprocess.TimeoutExpired as error:
+        raise ToolError(f"{Path(command[0]).name} took longer than {SECONDS:g} s") from error
+
+
+def webgpu_module(device: Any, text: Text) -> Any:
+    """Return what naga makes of WGSL on a device of wgpu."""
+    return device.create_shader_module(code=text.content)

@@ -1,0 +1,92 @@
+"""The functions that Slang's compiler finds in a text, with what they take and give."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from ...ground.compilers.slang import Compiled, api
+from .pairs import PACKED, Function, Parameter, Place
+
+# SlangTypeKind, SlangScalarType and SlangModifierID of slang.h.
+STRUCTURE, VECTOR, SCALAR = 1, 4, 5
+SCALARS = {1: "void", 2: "bool", 3: "int", 4: "uint", 7: "half", 8: "float", 9: "double"}
+OUT, INOUT = 9, 10
+FLOATS, NUMBERS = ("half", "float"), ("float", "uint", "int", "bool")
+
+
+def functions_of(compiled: Compiled, names: Sequence[str]) -> list[Function]:
+    """Return the functions of these names, overloads each; a name that only another branch has gives none.
+
+    Args:
+        names: what the text itself defines: the library does not bear names of its own.
+    """
+    reflection = api().reflection(compiled.request)
+    found = [(name, api().find(reflection, name.encode())) for name in names]
+    each = ((name, one) for name, several in found if several for one in _overloads(several))
+    return list(dict.fromkeys(_function(name, one) for name, one in each))
+
+
+def _overloads(function: int) -> list[int]:
+    library = api()
+    if not library.is_overloaded(function):
+        return [function]
+    found = (library.overload(function, at) for at in range(library.overloads(function)))
+    return [one for one in found if one]
+
+
+def _function(name: str, function: int) -> Function:
+    library = api()
+    parameters = [_parameter(library.parameter(function, at)) for at in range(library.parameters(function))]
+    # What has a value of its own need not be given.
+    given = [one for one in parameters if not one.has_default]
+    result = library.result(function)
+    sizes = tuple(0 if one.is_made else size_of(one.places) for one in given)
+    takes = given[0].kind if given and not given[0].is_made else ""
+    results = tuple(_places("", result))
+    return Function(
+        name,
+        size_of(results),
+        sizes,
+        _kind(result),
+        takes if takes in PACKED else "",
+        tuple(parameters),
+        results,
+    )
+
+
+def size_of(places: Sequence[Place]) -> int:
+    """How many numbers a vector of two or three floats has; 0 of another type."""
+    whole = places[0] if len(places) == 1 and "." not in places[0].path else None
+    return whole.size if whole and whole.kind == "float" and whole.size in (2, 3) else 0
+
+
+def _parameter(variable: int) -> Parameter:
+    library = api()
+    name, kind = (library.variable_name(variable) or b"").decode(), library.type_of(variable)
+    is_out, is_inout = (bool(library.modifier(variable, mark)) for mark in (OUT, INOUT))
+    places = tuple(_places(name, kind))
+    return Parameter(
+        name, _kind(kind), is_inout or not is_out, is_out or is_inout, bool(library.has_default(variable)), places
+    )
+
+
+def _places(path: str, kind: int) -> Iterator[Place]:
+    """The numbers and vectors of a type; those of a structure one by one."""
+    library = api()
+    scalar = SCALARS.get(library.scalar(kind), "")
+    scalar = "float" if scalar in FLOATS else scalar
+    if library.kind(kind) in (VECTOR, SCALAR) and scalar in NUMBERS:
+        yield Place(path, scalar, int(library.count(kind)) if library.kind(kind) == VECTOR else 1)
+    elif library.kind(kind) == STRUCTURE:
+        for field in (library.field(kind, at) for at in range(library.fields(kind))):
+            inner = (library.variable_name(field) or b"").decode()
+            yield from _places(f"{path}.{inner}" if path else inner, library.type_of(field))
+
+
+def _kind(kind: int) -> str:
+    """A type as HLSL writes it."""
+    library = api()
+    scalar = SCALARS.get(library.scalar(kind), "")
+    if library.kind(kind) == VECTOR and scalar:
+        return f"{scalar}{library.count(kind)}"
+    return scalar if library.kind(kind) == SCALAR and scalar else (library.type_name(kind) or b"").decode()
