@@ -61,6 +61,8 @@ def test_programs_mean_the_same_in_every_language(seed, tmp_path, monkeypatch):
 
 
 def _is_known(path: Path, folder: Path) -> bool:
-    """Of the test's folder, or what Python and its packages read when they are first used."""
+    """Of the test's folder, or what Python and its packages read at first: JAX looks for TPUs in /sys."""
     ours = any(path.is_relative_to(root) for root in (folder, sys.prefix, sys.base_prefix))
-    return ours or path.suffix in (".py", ".pyc", ".so") or path.name == "entry_points.txt"
+    return (
+        ours or path.suffix in (".py", ".pyc", ".so") or path.name == "entry_points.txt" or path.is_relative_to("/sys")
+    )

@@ -21,7 +21,7 @@ if __name__ == "__main__":
     sys.path[:1] = [str(HERE.parent), str(HERE.parent / "inputs")]
     os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(HERE.parents[1] / ".pytest_cache" / "jax"))
 
-from attack import code, files, forms, interruptions, texts, translations, words  # noqa: E402 # the folders above hold it
+from attack import code, files, forms, interruptions, judge, texts, translations, words  # noqa: E402 # the folders above hold it
 from attack.kind import Attack, Kind  # noqa: E402
 
 KINDS = (
@@ -31,6 +31,7 @@ KINDS = (
     *code.KINDS,
     *translations.KINDS,
     *forms.KINDS,
+    *judge.KINDS,
     *interruptions.KINDS,
 )
 BY_NAME = {kind.name: kind for kind in KINDS}
