@@ -80,13 +80,17 @@ def version_text(tool: str) -> str:
     return f"{done.stdout}\n{done.stderr}".strip()
 
 
+def first_line(tool: str) -> str:
+    """Return the first line that a tool prints of its version; empty where it prints none. Raises MissingError."""
+    return version_text(tool).partition("\n")[0].strip()
+
+
 def version(tool: str) -> str:
     """Return a tool's name and its own word for its version, or what to install."""
     try:
-        lines = version_text(tool).splitlines()
+        return f"{tool} {first_line(tool) or 'of no version'}"
     except MissingError as error:
         return str(error)
-    return f"{tool} {lines[0].strip() if lines else 'of no version'}"
 
 
 def stamp(tool: str) -> str:

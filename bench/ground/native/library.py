@@ -39,7 +39,7 @@ class NoCompilerError(Exception):
 def compiler() -> str:
     """Return what the C compiler calls itself; empty where there is none."""
     try:
-        return (tools.version_text(tools.C).splitlines() or [""])[0]
+        return tools.first_line(tools.C)
     except MissingError:
         return ""
 

@@ -67,8 +67,7 @@ def commented(body: str, language: str, guard: str, head: Iterable[str]) -> str:
     """The text of a file under a comment of these paragraphs; one that is indented stays as it is. Languages with a
     preprocessor take the text once, however often it is included: `guard` says what it is."""
     mark = LANGUAGES[language].mark
-    lines = (f"{mark} {line}".rstrip() for said in head for line in _lines(said))
-    comment = "".join(f"{in_a_comment(line)}\n" for line in lines)
+    comment = "".join(in_a_comment(f"{mark} {line}").rstrip() + "\n" for said in head for line in _lines(said))
     if not LANGUAGES[language].has_preprocessor:
         return f"{comment}\n{body}"
     name = f"{identifier(guard).upper()}_INCLUDED"
@@ -77,8 +76,8 @@ def commented(body: str, language: str, guard: str, head: Iterable[str]) -> str:
 
 def _lines(said: str) -> list[str]:
     if said.startswith("  "):
-        return [in_a_comment(said)]
-    return textwrap.wrap(in_a_comment(said), WIDTH - MARK, subsequent_indent="  ", break_on_hyphens=False) or [""]
+        return [said]
+    return textwrap.wrap(said, WIDTH - MARK, subsequent_indent="  ", break_on_hyphens=False) or [""]
 
 
 def file_name(codec: Any, language: str) -> str:

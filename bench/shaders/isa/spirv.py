@@ -11,10 +11,9 @@ from typing import Any
 
 from ....gbuffer.gl.shader import ShaderError, Source
 from ...ground.compilers import tools
-from ...ground.compilers.lines import bare, with_known_directives
-from ...ground.compilers.text import RULES, RefusedError, Text, judged
 from ...ground.output import cache as kept
 from ...ground.output.errors import MissingError
+from ..judged import judged_text
 
 COMPILER, OPTIMISER = tools.GLSLANG, tools.SPIRV_OPT
 NO_COMPILER, NO_OPTIMISER = tools.MISSING[COMPILER], tools.MISSING[OPTIMISER]
@@ -109,7 +108,9 @@ def _is_spirv(binary: bytes) -> bool:
 
 def _glslang_binary(source: Source, stage: str) -> bytes:
     try:
-        done, binary = tools.module_of(_judged(source), ["-S", stage, "-V", "--auto-map-bindings"])
+        done, binary = tools.module_of(
+            judged_text(source.text, "glsl", source), ["-S", stage, "-V", "--auto-map-bindings"]
+        )
     except tools.ToolError as error:
         raise ToolError(str(error)) from error
     if done.status == 0 and _is_spirv(binary):
@@ -118,15 +119,6 @@ def _glslang_binary(source: Source, stage: str) -> bytes:
     if not errors:
         raise ToolError(f"{COMPILER} ended with status {done.status} and said nothing")
     raise ShaderError(source.explain(errors[0]))
-
-
-def _judged(source: Source) -> Text:
-    """The text as the compiler is given it. Raises ShaderError."""
-    text = with_known_directives(bare(source.text), RULES["glsl"].heads)
-    try:
-        return judged(text, "glsl")
-    except RefusedError as error:
-        raise ShaderError(source.explain(f"0:{error.line}: {error.why}")) from error
 
 
 def _optimised(binary: bytes) -> bytes | None:

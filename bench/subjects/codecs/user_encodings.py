@@ -296,7 +296,6 @@ def _text(path: Path, is_unit: bool, by: str) -> _Text:
         name, components, _ = encode_of(path, read_shader(path))
     except ShaderError as error:
         raise UsageError(str(error)) from error
-    _check_includes(path)
     whole = _with_includes(path)
     check_given(path, whole)
     # Not resolved: the twin lies next to the path that was given.
@@ -317,23 +316,17 @@ def _of_unit_text(path: Path, name: str, components: int) -> _Text:
     return _Text(name, components, glsl_file(prefix, text), prefix)
 
 
-def _check_includes(path: Path) -> None:
-    """Raises UsageError where a file includes one that lies elsewhere, by what its compiler is given."""
+def _with_includes(path: Path) -> str:
+    """What its compiler is given of a file and of what it includes, without comments. Raises UsageError where it cannot
+    be read, or includes a file that lies elsewhere."""
     try:
-        files, rules = dict.fromkeys(Shader(path).files), Source(path)
+        shader, rules = Shader(path), Source(path)
     except ShaderError as error:
         raise UsageError(str(error)) from error
+    files = dict.fromkeys(shader.files)
     if elsewhere := next((file for file in files if not (is_own_file(file) or rules.may_read(file))), None):
         raise UsageError(f"{path}: it includes {elsewhere}, which lies outside its folder; move it there")
-
-
-def _with_includes(path: Path) -> str:
-    """What its compiler is given of a file and of what it includes, without comments; empty where that cannot be read,
-    which the compiler says with the line."""
-    try:
-        return bare(Shader(path).text)
-    except ShaderError:
-        return ""
+    return bare(shader.text)
 
 
 def _lacking_functions(reason: str) -> tuple[Callable[..., Any], Callable[..., Any]]:

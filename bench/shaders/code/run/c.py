@@ -18,8 +18,9 @@ from ....ground.machine import children
 from ....ground.machine.systems import walls
 from ....ground.machine.systems.walls import Wall
 from ....ground.output.errors import MissingError
+from ...judged import judged_text
 from .interface import MADE, Interface, Ran, Run, Runner, ran_of, rows_of
-from .sources import compile_with, first_line, folder, judged_text, run_apart
+from .sources import compile_with, folder, run_apart
 
 WRAPPER, MAIN = Path(__file__).with_suffix(".c"), Path(__file__).with_name("main.c")
 EXACT = ("-O2", "-ffp-contract=off")
@@ -162,7 +163,7 @@ def called(program: Path, path: Path, interface: Interface) -> Run:
 
 def how() -> str:
     """The compiler. Raises MissingError."""
-    return f"{first_line(tools.C)}, {' '.join(EXACT)}"
+    return f"{tools.first_line(tools.C)}, {' '.join(EXACT)}"
 
 
 RUNNER = Runner(prepared, how)

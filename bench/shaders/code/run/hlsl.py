@@ -9,9 +9,10 @@ from pathlib import Path
 from ....ground.compilers import tools
 from ....ground.compilers.text import Text
 from ...isa import spirv
+from ...judged import judged_text
 from . import opengl
 from .interface import Interface, Run, Runner
-from .sources import EmittedSource, compile_with, folder, judged_text
+from .sources import EmittedSource, compile_with, folder
 
 WRAPPER = Path(__file__).with_suffix(".hlsl")
 # How a structure is made: by the function that HlslWriter writes behind it.

@@ -16,9 +16,10 @@ from .....gbuffer.gl.shader import read_shader
 from ....ground.compilers import tools
 from ....ground.compilers.text import own
 from ....ground.output.errors import MissingError
+from ...judged import judged_text
 from .c import EXACT, LIMITS, MAIN, called, compiled, compilers_wall, defined, macros
 from .interface import Interface, Run, Runner
-from .sources import compile_with, first_line, folder, judged_text
+from .sources import compile_with, folder
 
 WRAPPER, LIBRARY = Path(__file__).with_suffix(".cpp"), Path(__file__).with_name("metal_stdlib.h")
 # Metal has no double: a number without a letter is a float.
@@ -89,8 +90,8 @@ def _write(tables: Mapping[str, np.ndarray], place: Path) -> None:
 
 def how() -> str:
     """clang, and that it is not Metal. Raises MissingError."""
-    checked = f"syntax by {first_line(tools.METAL)}, " if _has_metal() else ""
-    return f"{checked}{first_line(tools.CLANG)}, not by Metal"
+    checked = f"syntax by {tools.first_line(tools.METAL)}, " if _has_metal() else ""
+    return f"{checked}{tools.first_line(tools.CLANG)}, not by Metal"
 
 
 RUNNER = Runner(prepared, how)

@@ -7,10 +7,11 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ....ground.compilers import tools
+from ...judged import judged_text
 from . import opengl
 from .hlsl import MADE, MODULE, WRAPPER, glsl_of_module, translators
 from .interface import Interface, Run, Runner
-from .sources import EmittedSource, compile_with, first_line, folder, judged_text
+from .sources import EmittedSource, compile_with, folder
 
 
 @contextmanager
@@ -30,7 +31,7 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
 
 def how() -> str:
     """The compilers and the device. Raises MissingError, NoDeviceError."""
-    return f"slangc {first_line(tools.SLANG)}, {translators()}, {opengl.device_name()}"
+    return f"slangc {tools.first_line(tools.SLANG)}, {translators()}, {opengl.device_name()}"
 
 
 RUNNER = Runner(prepared, how)

@@ -11,8 +11,7 @@ from pathlib import Path
 
 from .....gbuffer.gl.shader import Line, ShaderError, Source
 from ....ground.compilers import tools
-from ....ground.compilers.lines import bare, with_known_directives
-from ....ground.compilers.text import RULES, RefusedError, Text, judged
+from ....ground.compilers.text import Text
 from ....ground.machine import children
 from ....ground.machine.systems.walls import Wall
 from .interface import Interface
@@ -62,23 +61,6 @@ def run_apart(path: Path, command: Sequence[str], wall: Wall | None = None) -> N
         raise ShaderError(f"{path}: it {children.how_it_ended(done)}")
 
 
-def judged_text(text: str, language: str, source: Source | None = None) -> Text:
-    """Return a text that holds what was made of an encoder, without its comments, for compilers of a language.
-
-    Args:
-        source: the text as lines that come from several files.
-
-    Raises:
-        ShaderError: no compiler is given it; with file and line.
-    """
-    whole = with_known_directives(bare(text, is_wgsl=language == "wgsl"), RULES[language].heads)
-    try:
-        return judged(whole, language)
-    except RefusedError as error:
-        said = f"0:{error.line}: {error.why}"
-        raise ShaderError(source.explain(said) if source else said) from error
-
-
 def compile_with(
     tool: str,
     words: Sequence[str],
@@ -119,8 +101,3 @@ def first_complaint(log: str) -> str:
     said = (errors or lines or ["it failed without a word"])[0].removeprefix("ERROR: ")
     place = re.search(r"--> (\S+:\d+):\d+", log)
     return f"{place[1]}: {said}"[:400] if place and errors else said[:400]
-
-
-def first_line(tool: str) -> str:
-    """Return the first line that a tool prints of its version. Raises MissingError."""
-    return (tools.version_text(tool).splitlines() or ["no version"])[0].strip()

@@ -20,8 +20,9 @@ from ....ground.machine.systems import forks
 from ....ground.machine.systems.processes import signal_name
 from ....ground.machine.webgpu import API, NO_DRIVER, adapters
 from ....ground.output.errors import MissingError
+from ...judged import judged_text
 from .interface import GIVEN, MADE, Interface, Ran, Run, Runner, ran_of, rows_of
-from .sources import SECONDS, folder, judged_text
+from .sources import SECONDS, folder
 
 WRAPPER = Path(__file__).with_suffix(".j2")
 MAIN, GROUP = "run_main", 64

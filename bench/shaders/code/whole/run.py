@@ -16,10 +16,11 @@ from .....gbuffer.gl.shader import ShaderError
 from ....ground.compilers import tools
 from ....ground.compilers.text import own
 from ....ground.machine import children
+from ...judged import judged_text
 from ..emit import LANGUAGES
 from ..kinds.normal import is_catalogues
 from ..run import c, hlsl, opengl, wgsl
-from ..run.sources import folder, judged_text, run_apart
+from ..run.sources import folder, run_apart
 from .emit import GBufferCode
 from .fields import surface_leaves, target_leaves
 from .surfaces import PLACES

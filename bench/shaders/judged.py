@@ -1,0 +1,24 @@
+"""Texts made of encoders, as compilers may be given them."""
+
+from __future__ import annotations
+
+from ...gbuffer.gl.shader import ShaderError, Source
+from ..ground.compilers.lines import bare, with_known_directives
+from ..ground.compilers.text import RULES, RefusedError, Text, judged
+
+
+def judged_text(text: str, language: str, source: Source | None = None) -> Text:
+    """Return a text that holds what was made of an encoder, without its comments, for compilers of a language.
+
+    Args:
+        source: the text as lines that come from several files.
+
+    Raises:
+        ShaderError: no compiler is given it; with file and line.
+    """
+    whole = with_known_directives(bare(text, is_wgsl=language == "wgsl"), RULES[language].heads)
+    try:
+        return judged(whole, language)
+    except RefusedError as error:
+        said = f"0:{error.line}: {error.why}"
+        raise ShaderError(source.explain(said) if source else said) from error
