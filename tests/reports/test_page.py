@@ -349,6 +349,10 @@ def test_printing_shows_every_row_on_white(opened):
 
 
 DRAW_ALL = "ready().then(() => window.dispatchEvent(new Event('beforeprint')))"
+# What clips each panel is named for its chart and place there, whichever was drawn first.
+CLIPS = """Array.from(document.querySelectorAll("figure[data-chart]"), (figure) =>
+  Array.from(figure.querySelectorAll(".plot"), (plot, place) =>
+    [plot.querySelector("clipPath").id, figure.dataset.chart, place])).flat()"""
 FORMS = (
     "Array.from(document.querySelectorAll('input, select, button'), (one) => [one.value, one.checked, one.textContent])"
 )
@@ -376,4 +380,6 @@ def test_a_page_that_was_loaded_anew_is_as_in_a_new_window(browser, report, open
         opened.page.evaluate("[document.documentElement.outerHTML, scrollY, innerWidth]"),
     )
     assert found == expected and opened.asked == [report.as_uri()] and opened.said == []
+    names = opened.page.evaluate(CLIPS)
+    assert names and all(clip == f"{chart}-panel-{place}" for clip, chart, place in names), names
     assert opened.page.evaluate("matchMedia('screen').matches && matchMedia('(prefers-color-scheme: light)').matches")
