@@ -26,7 +26,7 @@ class MotionEncoding:
     A motion is in screens a frame: 1 is the width of the image along x, and its height along y. The range is the
     largest motion that comes to 1 or -1, in screens. The GLSL file defines `vec2 <name>_encode_motion(vec2 motion,
     float range)` and `vec2 <name>_decode_motion(vec2 e, float range)`. No encoder clips: fixed-point storages do.
-    Motions are finite.
+    An encoder that computes a root or a logarithm takes NaN for no motion; `linear` leaves it to the format.
 
     Attributes:
         name: the catalogue's key, the file's name and the prefix of the GLSL functions.

@@ -11,9 +11,9 @@ BACK = (0.305306011, 0.682171111, 0.012522878)
 
 
 def encode(x, range):
-    """A quantity (float32 or float64, any shape, not negative) to [0, 1] up to the range."""
+    """A quantity (float32 or float64, any shape; 0 for what is negative or NaN) to [0, 1] up to the range."""
     # e = (1 + offset) s^(1 / power) - offset for s = x / range, at least 0
-    return maximum((1.0 + SRGB_OFFSET) * (x / range) ** (1.0 / SRGB_POWER) - SRGB_OFFSET, 0.0)
+    return maximum((1.0 + SRGB_OFFSET) * (maximum(x, 0.0) / range) ** (1.0 / SRGB_POWER) - SRGB_OFFSET, 0.0)
 
 
 def decode(e, range):

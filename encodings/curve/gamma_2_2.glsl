@@ -2,7 +2,7 @@
 
 float gamma_2_2_encode_curve(float x, float range) {
     // e = (x / range)^(1 / gamma)
-    return pow(x / range, 1.0 / GAMMA_2_2);
+    return pow(max(x, 0.0) / range, 1.0 / GAMMA_2_2);
 }
 
 float gamma_2_2_decode_curve(float e, float range) {

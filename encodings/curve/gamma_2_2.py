@@ -3,14 +3,15 @@
 from pathlib import Path
 
 from ..codecs.curve_codec import CurveEncoding
+from ..vec import maximum
 
 GAMMA = 2.2
 
 
 def encode(x, range):
-    """A quantity (float32 or float64, any shape, not negative) to [0, 1] up to the range."""
+    """A quantity (float32 or float64, any shape; 0 for what is negative or NaN) to [0, 1] up to the range."""
     # e = (x / range)^(1 / gamma)
-    return (x / range) ** (1.0 / GAMMA)
+    return (maximum(x, 0.0) / range) ** (1.0 / GAMMA)
 
 
 def decode(e, range):

@@ -2,7 +2,7 @@
 
 float log_encode_curve(float x, float range) {
     // e = log2(1 + x) / log2(1 + range)
-    return log2(1.0 + x) / log2(1.0 + range);
+    return log2(1.0 + max(x, 0.0)) / log2(1.0 + range);
 }
 
 float log_decode_curve(float e, float range) {

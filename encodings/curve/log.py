@@ -3,15 +3,15 @@
 from pathlib import Path
 
 from ..codecs.curve_codec import CurveEncoding
-from ..vec import exp2, log2
+from ..vec import exp2, log2, maximum
 
 RANGE = 31.0
 
 
 def encode(x, range):
-    """A quantity (float32 or float64, any shape, not negative) to [0, 1] up to the range."""
+    """A quantity (float32 or float64, any shape; 0 for what is negative or NaN) to [0, 1] up to the range."""
     # e = log2(1 + x) / log2(1 + range)
-    return log2(1.0 + x) / log2(1.0 + range)
+    return log2(1.0 + maximum(x, 0.0)) / log2(1.0 + range)
 
 
 def decode(e, range):

@@ -2,7 +2,7 @@
 
 float ray_bits_encode_curve(float x, float range) {
     // e = (2^k - 1) / 255 of k rays, the nearest to 8 x / range
-    float k = floor(min(x / range, 1.0) * RAY_BITS_RAYS + 0.5);
+    float k = floor(min(max(x, 0.0) / range, 1.0) * RAY_BITS_RAYS + 0.5);
     return (exp2(k) - 1.0) * (1.0 / RAY_BITS_BYTE);
 }
 

@@ -12,9 +12,9 @@ RAYS, BYTE = 8.0, 255.0
 
 
 def encode(x, range):
-    """A quantity (float32 or float64, any shape, not negative) to the byte of its rays, over 255."""
+    """A quantity (float32 or float64, any shape; 0 for what is negative or NaN) to the byte of its rays, over 255."""
     # e = (2^k - 1) / 255 of k rays, the nearest to 8 x / range
-    k = floor(minimum(x / range, 1.0) * RAYS + 0.5)
+    k = floor(minimum(maximum(x, 0.0) / range, 1.0) * RAYS + 0.5)
     return (2.0**k - 1.0) * (1.0 / BYTE)
 
 

@@ -2,7 +2,7 @@
 
 float square_root_encode_curve(float x, float range) {
     // e = sqrt(x / range)
-    return sqrt(x / range);
+    return sqrt(max(x, 0.0) / range);
 }
 
 float square_root_decode_curve(float e, float range) {

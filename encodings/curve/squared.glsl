@@ -2,7 +2,7 @@
 
 float squared_encode_curve(float x, float range) {
     // e = (x / range)^2
-    float share = x / range;
+    float share = max(x, 0.0) / range;
     return share * share;
 }
 

@@ -3,13 +3,13 @@
 from pathlib import Path
 
 from ..codecs.curve_codec import CurveEncoding
-from ..vec import sqrt
+from ..vec import maximum, sqrt
 
 
 def encode(x, range):
-    """A quantity (float32 or float64, any shape, not negative) to [0, 1] up to the range."""
+    """A quantity (float32 or float64, any shape; 0 for what is negative or NaN) to [0, 1] up to the range."""
     # e = (x / range)^2
-    share = x / range
+    share = maximum(x, 0.0) / range
     return share * share
 
 

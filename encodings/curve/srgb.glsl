@@ -2,7 +2,7 @@
 
 float srgb_encode_curve(float x, float range) {
     // e = slope s for s = x / range up to the knee, else (1 + offset) s^(1 / power) - offset
-    float s = x / range;
+    float s = max(x, 0.0) / range;
     float curved = (1.0 + SRGB_OFFSET) * pow(max(s, SRGB_KNEE), 1.0 / SRGB_POWER) - SRGB_OFFSET;
     return s <= SRGB_KNEE ? s * SRGB_SLOPE : curved;
 }

@@ -8,9 +8,9 @@ from ..vec import maximum, select
 
 
 def encode(x, range):
-    """A quantity (float32 or float64, any shape, not negative) to [0, 1] up to the range."""
+    """A quantity (float32 or float64, any shape; 0 for what is negative or NaN) to [0, 1] up to the range."""
     # e = slope s for s = x / range up to the knee, else (1 + offset) s^(1 / power) - offset
-    s = x / range
+    s = maximum(x, 0.0) / range
     curved = (1.0 + SRGB_OFFSET) * maximum(s, SRGB_KNEE) ** (1.0 / SRGB_POWER) - SRGB_OFFSET
     return select(s <= SRGB_KNEE, s * SRGB_SLOPE, curved)
 

@@ -2,7 +2,7 @@
 #include "../storages/storage.glsl"
 
 vec4 chroma_half_encode(vec4 light) {
-    vec3 c = min(light.xyz, vec3(CHROMA_HALF_MOST));
+    vec3 c = min(max(light.xyz, 0.0), vec3(CHROMA_HALF_MOST));
     uint bits = float_bits(max(max(c.x, c.y), c.z), 5, 10, true, false);
     float m = float_value(bits, 5, 10);
     // e = (sqrt(L / m), the bits of m)

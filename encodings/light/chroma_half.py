@@ -14,8 +14,8 @@ MOST, MOST_BITS, STEPS = FORMS[16].largest, 31.0 * 1024.0 - 1.0, 65535.0
 
 
 def encode(light: Vec4) -> Vec4:
-    """Light to [0, 1]; more than 65504 is cut off."""
-    c = Vec3(*(minimum(channel, MOST) for channel in light.xyz))
+    """Light to [0, 1]: 0 for what is negative or NaN, 65504 for more than that."""
+    c = Vec3(*(minimum(maximum(channel, 0.0), MOST) for channel in light.xyz))
     half = maximum(maximum(c.x, c.y), c.z).astype(jnp.float16)
     bits, m = half.view(jnp.uint16).astype(jnp.float32), half.astype(jnp.float32)
     # e = (sqrt(L / m), the bits of m)

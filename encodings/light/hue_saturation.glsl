@@ -1,7 +1,7 @@
 // Hue, saturation and a root, beside hue_saturation.py.
 
 vec4 hue_saturation_encode(vec4 light) {
-    vec3 c = light.xyz;
+    vec3 c = light_or_none(light).xyz;
     float v = max(max(c.x, c.y), c.z);
     float d = v - min(min(c.x, c.y), c.z);
     // 6 h = (g - b) / d, 2 + (b - r) / d or 4 + (r - g) / d, by which is the largest; s = d / v

@@ -7,15 +7,15 @@ saturation; a colour that would have that code is taken for the first hue, which
 from pathlib import Path
 
 from ..codecs.light_encoding import LightEncoding
-from ..vec import TINY, Vec3, Vec4, floor, maximum, minimum, select, sqrt
+from ..vec import TINY, Vec3, Vec4, floor, light_or_none, maximum, minimum, select, sqrt
 
 LIMIT = 16.0
 HUES, SATURATIONS = 63.0, 3.0
 
 
 def encode(light: Vec4) -> Vec4:
-    """Light to [0, 1]; more than 16 is cut off by the format."""
-    c = light.xyz
+    """Light to [0, 1]: 0 for what is negative or NaN; more than 16 is cut off by the format."""
+    c = light_or_none(light).xyz
     v = maximum(maximum(c.x, c.y), c.z)
     d = v - minimum(minimum(c.x, c.y), c.z)
     # 6 h = (g - b) / d, 2 + (b - r) / d or 4 + (r - g) / d, by which is the largest; s = d / v

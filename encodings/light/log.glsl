@@ -2,7 +2,7 @@
 
 vec4 log_encode(vec4 light) {
     // e = 2^-L
-    return exp2(-light);
+    return exp2(-light_or_none(light));
 }
 
 vec4 log_decode(vec4 e) {

@@ -8,15 +8,15 @@ import math
 from pathlib import Path
 
 from ..codecs.light_encoding import LightEncoding
-from ..vec import Vec4, exp2, log2, maximum
+from ..vec import Vec4, exp2, light_or_none, log2, maximum
 
 LEAST = 1.0 / 255.0
 
 
 def encode(light: Vec4) -> Vec4:
-    """Light to (0, 1]."""
+    """Light to (0, 1]: 1 for what is negative or NaN."""
     # e = 2^-L
-    return Vec4(*(exp2(-c) for c in light))
+    return Vec4(*(exp2(-c) for c in light_or_none(light)))
 
 
 def decode(e: Vec4) -> Vec4:

@@ -12,7 +12,7 @@ vec3 nao32_light(vec3 xyz) {
 
 vec4 nao32_encode(vec4 light) {
     // (X', Y, XYZ') = L M, x = X' / XYZ', y = Y / XYZ'
-    vec3 p = nao32_xyz(light.xyz);
+    vec3 p = nao32_xyz(light_or_none(light).xyz);
     vec2 xy = p.xy / max(p.z, TINY);
     // Le = 2 log2 Y + 127, e = (x, y, floor(Le) / 255, Le - floor(Le))
     float le = min(max(2.0 * log2(max(p.y, TINY)) + NAO32_BIAS, 0.0), NAO32_STEPS);

@@ -6,7 +6,7 @@ Le counts half stops from 2^-63.5 up: its whole part in the third channel, the r
 from pathlib import Path
 
 from ..codecs.light_encoding import LightEncoding
-from ..vec import TINY, Vec3, Vec4, exp2, floor, log2, maximum, minimum, select
+from ..vec import TINY, Vec3, Vec4, exp2, floor, light_or_none, log2, maximum, minimum, select
 
 # Rows are what red, green and blue contribute to (X', Y, XYZ'); the second matrix is the inverse, to float32's digits
 # where the published one has four: a light that is read and written 256 times would drift by those.
@@ -25,9 +25,9 @@ def _product(v: Vec3, m: tuple[float, ...]) -> Vec3:
 
 
 def encode(light: Vec4) -> Vec4:
-    """Light to [0, 1]; below 2^-63.5 there is none."""
+    """Light to [0, 1]: 0 for what is negative or NaN; below 2^-63.5 there is none."""
     # (X', Y, XYZ') = L M, x = X' / XYZ', y = Y / XYZ'
-    p = _product(light.xyz, MATRIX)
+    p = _product(light_or_none(light).xyz, MATRIX)
     x, y = p.x / maximum(p.z, TINY), p.y / maximum(p.z, TINY)
     # Le = 2 log2 Y + 127, e = (x, y, floor(Le) / 255, Le - floor(Le))
     le = minimum(maximum(2.0 * log2(maximum(p.y, TINY)) + BIAS, 0.0), STEPS)

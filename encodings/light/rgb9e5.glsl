@@ -1,7 +1,8 @@
 // RGB9E5, beside rgb9e5.py.
 
 vec4 rgb9e5_encode(vec4 light) {
-    vec3 c = min(light.xyz, vec3(RGB9E5_MOST));
+    // c = max(0, min(c, most)), which is 0 for NaN
+    vec3 c = min(max(light.xyz, 0.0), vec3(RGB9E5_MOST));
     float largest = max(max(c.x, c.y), c.z);
     // x = max(-B - 1, floor(log2(max c))) + 1 + B, one more where the largest mantissa would round to 2^N
     float x = max(floor_log2(largest), -1.0 - RGB9E5_BIAS) + (1.0 + RGB9E5_BIAS);

@@ -14,8 +14,9 @@ STEPS = 255.0
 
 
 def encode(light: Vec4) -> Vec4:
-    """Light to four bytes of [0, 1]; more than 65408 is cut off."""
-    c = Vec3(*(minimum(channel, MOST) for channel in light.xyz))
+    """Light to four bytes of [0, 1]: 0 for what is negative or NaN, 65408 for more than that."""
+    # c = max(0, min(c, most)), which is 0 for NaN
+    c = Vec3(*(minimum(maximum(channel, 0.0), MOST) for channel in light.xyz))
     largest = maximum(maximum(c.x, c.y), c.z)
     # x = max(-B - 1, floor(log2(max c))) + 1 + B, one more where the largest mantissa would round to 2^N
     x = maximum(floor_log2(largest), -1.0 - BIAS) + (1.0 + BIAS)

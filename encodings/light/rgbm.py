@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 
 from ..codecs.light_encoding import LightEncoding
-from ..vec import Vec4, ceil, maximum, minimum
+from ..vec import Vec4, ceil, light_or_none, maximum, minimum
 
 RANGE = 6.0
 STEPS = 255.0
@@ -17,12 +17,13 @@ SLACK = 2.0**-10
 
 
 def encode(light: Vec4, limit: float = RANGE) -> Vec4:
-    """Light to [0, 1]; more than the range is cut off."""
+    """Light to [0, 1]: 0 for what is negative or NaN; more than the range is cut off."""
     # m = ceil(255 max(L) / range - slack) / 255, at least 1/255 and at most 1
-    largest = maximum(maximum(light.x, light.y), light.z)
+    rgb = light_or_none(light).xyz
+    largest = maximum(maximum(rgb.x, rgb.y), rgb.z)
     m = minimum(maximum(ceil(largest * (STEPS / limit) - SLACK), 1.0), STEPS) * (1.0 / STEPS)
     # e = (L / (m range), m)
-    c = light.xyz * (1.0 / (m * limit))
+    c = rgb * (1.0 / (m * limit))
     return Vec4(c.x, c.y, c.z, m)
 
 

@@ -3,7 +3,7 @@
 
 vec2 log_encode_motion(vec2 motion, float range) {
     // c = sign(v) log2(1 + k |v| / range) / log2(1 + k)
-    vec2 x = 1.0 + abs(motion) / range * MOTION_LOG_K;
+    vec2 x = max(1.0 + abs(motion) / range * MOTION_LOG_K, 1.0);
     return sign_not_zero(motion) * vec2(log2_of(x.x), log2_of(x.y)) / MOTION_LOG_OCTAVES;
 }
 

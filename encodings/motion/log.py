@@ -9,16 +9,16 @@ from pathlib import Path
 
 from ..codecs.motion_codec import MotionEncoding
 from ..elementary import CONSTANTS, exp2_of, log2_of
-from ..vec import Vec2, sign_not_zero
+from ..vec import Vec2, maximum, sign_not_zero
 
 OCTAVES = 11.0
 K = 2.0**OCTAVES - 1.0
 
 
 def encode(motion: Vec2, range) -> Vec2:
-    """Motion to [-1, 1] up to the range, and beyond."""
+    """Motion to [-1, 1] up to the range, and beyond; NaN is no motion."""
     # c = sign(v) log2(1 + k |v| / range) / log2(1 + k)
-    x = 1.0 + abs(motion) / range * K
+    x = Vec2(*(maximum(1.0 + share * K, 1.0) for share in abs(motion) / range))
     return sign_not_zero(motion) * Vec2(log2_of(x.x), log2_of(x.y)) / OCTAVES
 
 

@@ -3,14 +3,14 @@
 from pathlib import Path
 
 from ..codecs.motion_codec import MotionEncoding
-from ..vec import Vec2, sign_not_zero, sqrt
+from ..vec import Vec2, select, sign_not_zero, sqrt
 
 
 def encode(motion: Vec2, range) -> Vec2:
-    """Motion to [-1, 1] up to the range, and beyond."""
+    """Motion to [-1, 1] up to the range, and beyond; NaN is no motion."""
     # c = sign(v) sqrt(|v| / range)
     share = abs(motion) / range
-    return sign_not_zero(motion) * Vec2(sqrt(share.x), sqrt(share.y))
+    return sign_not_zero(motion) * Vec2(*(select(s > 0.0, sqrt(s), 0.0) for s in share))
 
 
 def decode(e: Vec2, range) -> Vec2:

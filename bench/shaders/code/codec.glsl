@@ -13,4 +13,15 @@
 vec4 colour_encode(vec3 light) { return COLOUR_ENCODE(vec4(light, 0.0)); }
 vec3 colour_decode(vec4 e) { return COLOUR_DECODE(e).xyz; }
 #endif
+
+#ifdef DEPTH_ENCODE
+// Infinite depth, NaN and what is beyond the far plane are stored as the far plane is.
+float depth_encode(float depth, float near, float far) {
+#if DEPTH_SIGNED
+    return DEPTH_ENCODE(depth_or_far(depth, far), near, far);
+#else
+    return DEPTH_ENCODE(depth <= far ? depth : far, near, far);
+#endif
+}
+#endif
 #include "storage.glsl"

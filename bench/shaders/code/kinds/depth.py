@@ -35,6 +35,15 @@ def _bound(codec: DepthCodec) -> dict[str, float]:
     return {"far": 1.0} if codec.encoding.own_units and codec.storage.is_open else {}
 
 
+def _defines(codec: DepthCodec) -> dict[str, object]:
+    """The catalogue's encoders are given nothing beyond the far plane, where there is one; a user's own encoder is written as it is."""
+    macros = defines(codec.encoding, "_depth", "float")
+    if _bound(codec) or not is_in(DEPTH)(codec):
+        return macros
+    is_signed = int(codec.encoding.signed)
+    return macros | {"DEPTH_ENCODE": macros["ENCODE"], "ENCODE": "depth_encode", "DEPTH_SIGNED": is_signed}
+
+
 def _numbers(codec: DepthCodec) -> Numbers:
     storage = codec.storage
     if storage.home != "packed":
@@ -61,7 +70,7 @@ KIND = CodeKind(
     given=lambda _: ("n.x",),
     settings=MappingProxyType({"near": "view.x", "far": "view.y"}),
     result=lambda _: 1,
-    defines=lambda codec: defines(codec.encoding, "_depth", "float"),
+    defines=_defines,
     numbers=_numbers,
     values=_values,
     stored=lambda codec, n, view: codec.stored(n[:, 0], view[:, 0], jnp.float32(FAR)),
