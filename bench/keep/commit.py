@@ -31,7 +31,9 @@ def commit_of(named: str | None, folder: Path) -> Row:
     # Filters of a repository are programs, which git runs to compare files: one from a stranger is not asked.
     if _has_filters(folder):
         return about | {"changed": False}
-    return about | {"changed": bool(_git(folder, "status", "--porcelain", "--untracked-files=no"))}
+    # A submodule has settings of its own, and its filters run too.
+    status = _git(folder, "status", "--porcelain", "--untracked-files=no", "--ignore-submodules=all")
+    return about | {"changed": bool(status)}
 
 
 def _has_filters(folder: Path) -> bool:
@@ -45,7 +47,9 @@ def _git(folder: Path, *words: str) -> str:
     try:
         # What a repository's settings name as programs: those that watch its files, and hooks.
         safe = ("-c", "core.fsmonitor=false", "-c", f"core.hooksPath={os.devnull}", "--no-optional-locks", "--no-pager")
-        done = subprocess.run(["git", *safe, *words], cwd=folder, capture_output=True, timeout=SECONDS)
+        # What is missing in a partial clone would be fetched, by a program that its settings name.
+        variables = os.environ | {"GIT_ALLOW_PROTOCOL": "none", "GIT_NO_LAZY_FETCH": "1", "GIT_TERMINAL_PROMPT": "0"}
+        done = subprocess.run(["git", *safe, *words], cwd=folder, env=variables, capture_output=True, timeout=SECONDS)
     except (OSError, subprocess.TimeoutExpired):
         return ""
     return done.stdout.decode(errors="replace").strip() if done.returncode == 0 else ""

@@ -20,9 +20,9 @@ class CurveEncoding:
 
     A quantity is what a material has one of at a point: a roughness, a metalness, a reflectance, a share of ambient
     light, or a channel of a colour. The range is the largest quantity that is kept; more is cut off by fixed-point
-    storages, not here. An encoder that computes a root, a power or a logarithm, or that falls, takes a negative quantity
-    and NaN for 0; `linear` and `reflectivity` leave that to the format. The GLSL file defines `float <name>_encode_curve(float x, float
-    range)` and `float <name>_decode_curve(float e, float range)`.
+    storages, not here. An encoder that computes a root, a power or a logarithm, or that falls, takes a negative
+    quantity and NaN for 0; `linear` and `reflectivity` leave that to the format. The GLSL file defines
+    `float <name>_encode_curve(float x, float range)` and `float <name>_decode_curve(float e, float range)`.
 
     Attributes:
         name: the catalogue's key, the file's name and the prefix of the GLSL functions.

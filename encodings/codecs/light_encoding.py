@@ -23,8 +23,9 @@ class LightEncoding:
     Attributes:
         name: the catalogue's key, the file's name and the prefix of the GLSL functions.
         title: what a reader calls it.
-        encode: light (Vec4) to a texel, as the format is given it. An encoder that computes anything takes negative light
-            and NaN for none, and infinite light for the most that it holds; `plain` and `linear` leave that to the format.
+        encode: light (Vec4) to a texel, as the format is given it. An encoder that computes anything takes
+            negative light and NaN for none, and infinite light for the most that it holds; `plain` and `linear` leave
+            that to the format.
         decode: a texel, as the format gives it back, to light.
         storages: the formats that it is made for, names of LIGHT_STORAGES.
         blend: one of BLENDS.

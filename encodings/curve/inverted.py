@@ -7,7 +7,7 @@ from ..vec import maximum
 
 
 def encode(x, range):
-    """A quantity (float32 or float64, any shape; 0 for what is negative or NaN) to [0, 1]: 1 of nothing, and 0 of the range."""
+    """A quantity (float32 or float64, any shape; 0 for what is negative or NaN) to [0, 1], from 1 down to 0."""
     # e = 1 - x / range
     return 1.0 - maximum(x, 0.0) / range
 

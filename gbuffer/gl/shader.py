@@ -52,13 +52,22 @@ class Source:
         defines: macros set at its head; those that nothing mentions are left out, so that what is the same program has
             the same text.
         names: the file or the files that stand behind `#include NAME`.
+        may_read: whether a file that is not of this program may be included, its links resolved; it is not opened
+            otherwise. None: what is read has been asked before.
     """
 
-    def __init__(self, path: str | Path, defines: Mapping[str, object] | None = None, names=None):
+    def __init__(
+        self,
+        path: str | Path,
+        defines: Mapping[str, object] | None = None,
+        names=None,
+        may_read: Callable[[Path], bool] | None = None,
+    ):
         self.place = main = _resolved_path(Path(shaders().get(str(path), path)))
         stand_for = tuple(sorted((name, _as_files(target)) for name, target in (names or {}).items()))
         is_own = all(map(_is_own, (main, *(file for _, files in stand_for for file in files))))
-        (version, *rest), body = (_expanded_of_own if is_own else _expanded)(main, stand_for)
+        expanded = _expanded_of_own(main, stand_for) if is_own else _expanded(main, stand_for, may_read)
+        (version, *rest), body = expanded
         macros = {name: glsl_value(value) for name, value in (defines or {}).items()}
         mentioned = _words(body) | _words(" ".join(macros.values()))
         head = [(f"#define {name} {value}", main, 1) for name, value in macros.items() if name in mentioned]
@@ -119,7 +128,9 @@ def _joined_text(lines: Iterable[Line]) -> str:
     return "".join(f"{line}\n" for line, _, _ in lines)
 
 
-def _expanded(main: Path, names: Sequence[tuple[str, tuple[Path, ...]]]) -> tuple[list[Line], str]:
+def _expanded(
+    main: Path, names: Sequence[tuple[str, tuple[Path, ...]]], may_read: Callable[[Path], bool] | None = None
+) -> tuple[list[Line], str]:
     """The lines of a shader and of what it includes, each file once, and the text of all but the first line."""
     stand_for, seen = dict(names), set()
 
@@ -135,7 +146,10 @@ def _expanded(main: Path, names: Sequence[tuple[str, tuple[Path, ...]]]) -> tupl
         named = match["name"]
         if named and named not in stand_for:
             raise ShaderError(f"{path}:{number}: nothing is named {named}")
-        targets = map(_resolved_path, stand_for[named]) if named else (_beside(path, match["file"]),)
+        targets = [*map(_resolved_path, stand_for[named])] if named else [_beside(path, match["file"])]
+        for target in targets:
+            if may_read and not (_is_own(target) or may_read(target)):
+                raise ShaderError(f"{main}: it includes {target}, which lies outside its folder; move it there")
         return [made for target in targets if target not in seen for made in expand(target)]
 
     lines = expand(main)

@@ -33,12 +33,15 @@ def write(charts: Sequence[Chart], *files: tuple[Path, str]) -> None:
 
 @contextmanager
 def settings(name: str) -> Iterator[None]:
-    """Text stays text, names in the file are the same each time, and a letter that a font lacks is the reader's."""
+    """Text stays text, names in the file are the same each time, and a letter that a font lacks is the reader's. A
+    matplotlibrc changes nothing: one in the current folder may be a stranger's, and could start LaTeX."""
     import matplotlib
 
     # Without a height for titles matplotlib lays out all labels anew at each drawing, to see what is in the way.
     chosen: Any = {"svg.fonttype": "none", "svg.hashsalt": name, "axes.titley": 1.0}
-    with warnings.catch_warnings(), matplotlib.rc_context(chosen):
+    with warnings.catch_warnings(), matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(chosen)
         warnings.filterwarnings("ignore", message=".*missing from.*font")
         warnings.filterwarnings("ignore", message="constrained_layout not applied")
         yield

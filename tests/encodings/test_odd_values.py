@@ -1,5 +1,5 @@
 """Light, quantities, motion and depth that no image should hold: NaN, infinities, negatives, denormals, -0, and one
-step beyond each range. The same of emitted code: bench/shaders/code/test_odd_values.py."""
+step beyond each range. The same of emitted code: bench/shaders/code/test_odd_code.py."""
 
 from itertools import product
 
@@ -65,7 +65,7 @@ def test_rgb9e5_is_black_for_negative_light_and_65408_at_most():
 
 @pytest.mark.parametrize("codec", [codec for codec in CURVES if codec.name not in KEPT], ids=lambda codec: codec.name)
 def test_a_quantity_that_is_negative_or_nan_is_0(codec):
-    """A root, a power or a logarithm of it is undefined in GLSL. In fixed point it is 0 by the format, of all curves."""
+    """A root, a power or a logarithm of it is undefined in GLSL. In fixed point it is 0 by the format."""
     back = np.asarray(jax.jit(codec.round_trip)(jnp.asarray(NOTHING)))
     zero = np.asarray(jax.jit(codec.round_trip)(jnp.zeros(1, jnp.float32)))
     assert (back == zero).all(), dict(zip(NOTHING.tolist(), back.tolist(), strict=True))

@@ -51,6 +51,16 @@ def test_lines_and_the_names_at_their_ends_are_the_same_both_ways(agree):
     assert shown.extents["y"] == pytest.approx((16 - 0.04 * 2384, 2400 + 0.04 * 2384))
 
 
+def test_a_matplotlibrc_changes_no_chart(tmp_path, monkeypatch):
+    """One in the current folder may be a stranger's: LaTeX is a program, and reads other files."""
+    draw.write([a_chart()], (tmp_path / "before.png", "png"))
+    monkeypatch.setitem(pyplot.rcParams, "text.usetex", True)
+    monkeypatch.setitem(pyplot.rcParams, "figure.facecolor", "red")
+    draw.write([a_chart()], (tmp_path / "after.png", "png"))
+    assert (tmp_path / "before.png").read_bytes() == (tmp_path / "after.png").read_bytes()
+    assert pyplot.rcParams["text.usetex"], "the settings of whoever calls stay"
+
+
 def test_every_kind_of_mark_is_the_same_both_ways(agree):
     rows = tuple({"codec": f"c{n}", "x": float(n), "z": n + 2.0, "name": f"c{n}", "rest": n == 1} for n in range(4))
     names = Axis(title="", scale=Scale.NAMES, names=distinct(rows, "name"))

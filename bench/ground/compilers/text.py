@@ -75,6 +75,9 @@ class Rules(NamedTuple):
 # that begin with two underscores are refused anyway, but for those of `_HARMLESS` and names of the user's.
 OTHER_FILES = ("import", "__import", "__include", "implementing", "__exported")
 _OTHER_TEXT = ("spirv_asm", "DllImport", "DllExport", "TorchEntryPoint", "CudaKernel", "syntax", "attribute_syntax")
+# Attributes of vk:: that put an instruction, its operands or an extension of a file's choice into SPIR-V.
+_OTHER_TEXT += ("spirv_instruction", *(f"ext_{word}" for word in ("instruction", "capability", "extension")))
+_OTHER_TEXT += tuple(f"ext_{word}" for word in ("decorate", "decorate_id", "decorate_string", "literal", "reference"))
 _HARMLESS = (
     *("__generic", "__init", "__subscript", "__extension", "__ref", "__constref", "__prefix", "__postfix"),
     *("__BuiltinType", "__BuiltinArithmeticType", "__BuiltinFloatingPointType", "__BuiltinIntegerType"),

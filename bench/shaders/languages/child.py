@@ -97,6 +97,7 @@ def _wall_in(source: Source, folder: Path) -> None:
         with suppress(MissingError):
             wall |= walls.of_tool(tools.path_of(tool))
     wall.restrict()
+    landlock.forget_variables()
 
 
 def _facts_of_a_program(whole: Source, folder: Path, by: str, kind: str) -> dict[str, Any]:

@@ -119,10 +119,14 @@ def _tool_stamps(word: str | Path, by: str) -> list[str]:
 
 @cache
 def own() -> str:
-    """A hash of what makes the translation: this folder, and the reader and the writer of WGSL."""
-    folders = Path(__file__).parent, Path(tree.__file__).parent
-    files = sorted(file for folder in folders for file in folder.iterdir() if file.is_file())
-    return kept.key_of(*(file.read_bytes() for file in files))
+    """A hash of what makes the translation: this folder, the reader and the writer of WGSL, and what judges texts."""
+    return kept.key_of(*(file.read_bytes() for file in sources_of_this()))
+
+
+def sources_of_this() -> list[Path]:
+    """What `own` is a hash of."""
+    folders = (Path(file).parent for file in (__file__, tree.__file__, tools.__file__))
+    return sorted(file for folder in folders for file in folder.iterdir() if file.is_file())
 
 
 def _translated_or_none(value: Any) -> Translated | None:

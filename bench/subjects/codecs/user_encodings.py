@@ -23,7 +23,6 @@ from ....gbuffer.gl.shader import ShaderError, read_shader
 from ....gbuffer.gl.shader import Source as Shader
 from ...ground.choose import choose
 from ...ground.compilers.lines import bare
-from ...ground.compilers.text import is_own_file
 from ...ground.machine import children
 from ...ground.machine.cores import on_all_cores
 from ...ground.machine.systems import forks
@@ -311,6 +310,9 @@ def _of_unit_text(path: Path, name: str, components: int) -> _Text:
         Function(f"{name}_{side}", made, (given, NORMAL) if takes_view(path, f"{name}_{side}") else (given,))
         for side, (made, given) in sizes.items()
     )
+    # Into a text of this program goes no name that could end the line or the quotes.
+    if '"' in str(path) or not str(path).isprintable():
+        raise UsageError(f"{path}: a path with quotes or control characters is not read; rename it")
     prefix = f"unit_{name}"
     text = f'#include "{path}"\n' + pair(prefix, components, encoder, decoder, is_unit=True)
     return _Text(name, components, glsl_file(prefix, text), prefix)
@@ -320,13 +322,9 @@ def _with_includes(path: Path) -> str:
     """What its compiler is given of a file and of what it includes, without comments. Raises UsageError where it cannot
     be read, or includes a file that lies elsewhere."""
     try:
-        shader, rules = Shader(path), Source(path)
+        return bare(Shader(path, may_read=Source(path).may_read).text)
     except ShaderError as error:
         raise UsageError(str(error)) from error
-    files = dict.fromkeys(shader.files)
-    if elsewhere := next((file for file in files if not (is_own_file(file) or rules.may_read(file))), None):
-        raise UsageError(f"{path}: it includes {elsewhere}, which lies outside its folder; move it there")
-    return bare(shader.text)
 
 
 def _lacking_functions(reason: str) -> tuple[Callable[..., Any], Callable[..., Any]]:

@@ -235,6 +235,39 @@ def test_no_program_that_a_repository_names_is_run(repository, setting):
     assert started.exists()
 
 
+def test_no_filter_of_a_submodule_is_run(repository):
+    """A submodule has settings of its own, which `git status` follows."""
+    inner, started = repository / "inner", repository / "started"
+    inner.mkdir()
+    git(inner, "init", "-q")
+    (inner / "file.txt").write_text("x\n")
+    git(inner, "add", ".")
+    git(inner, "commit", "-q", "-m", "Begin")
+    git(repository, "add", "inner")
+    git(repository, "commit", "-q", "-m", "Take it")
+    git(inner, "config", "filter.odd.clean", f"touch {started}; cat")
+    (inner / ".gitattributes").write_text("*.txt filter=odd\n")
+    os.utime(inner / "file.txt", (1, 1))
+    assert commit_of(None, repository)["subject"] == "Take it" and not started.exists()
+    subprocess.run(["git", "status"], cwd=repository, capture_output=True)
+    assert started.exists(), "git itself starts it"
+
+
+def test_nothing_missing_is_fetched_from_where_a_repository_says(repository):
+    """A partial clone fetches what is missing by a program that its settings name."""
+    started = repository / "started"
+    tree = subprocess.run(["git", "rev-parse", "HEAD^{tree}"], cwd=repository, capture_output=True, text=True).stdout
+    (repository / ".git" / "objects" / tree[:2] / tree[2:].strip()).unlink()
+    settings = {"url": str(repository), "promisor": "true", "uploadpack": f"touch {started}; false"}
+    for name, value in settings.items():
+        git(repository, "config", f"remote.origin.{name}", value)
+    git(repository, "config", "core.repositoryformatversion", "1")
+    git(repository, "config", "extensions.partialClone", "origin")
+    assert commit_of(None, repository)["subject"] == "Begin" and not started.exists()
+    subprocess.run(["git", "status"], cwd=repository, capture_output=True)
+    assert started.exists(), "git itself starts it"
+
+
 def test_commits_of_one_second_are_in_their_order(repository):
     """As a rebase makes them."""
     ranks = []

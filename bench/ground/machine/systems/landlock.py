@@ -78,6 +78,13 @@ def restrict(reads: list[str], writes: list[str], executes: list[str]) -> None:
     os.close(rules)
 
 
+def forget_variables() -> None:
+    """Leave this process, and what it starts, no variables but VARIABLES and those of Python: others may be secrets."""
+    for name in [*os.environ]:
+        if name not in VARIABLES and not name.startswith("PYTHON"):
+            del os.environ[name]
+
+
 def command(words: list[str], reads: list[str], writes: list[str], executes: list[str]) -> list[str]:
     """A command that walls itself in and becomes another one, whose first word is a path that `executes` has too. See
     `restrict`; of the variables it keeps VARIABLES. Its status is 126 where it cannot be run."""

@@ -36,7 +36,8 @@ def _bound(codec: DepthCodec) -> dict[str, float]:
 
 
 def _defines(codec: DepthCodec) -> dict[str, object]:
-    """The catalogue's encoders are given nothing beyond the far plane, where there is one; a user's own encoder is written as it is."""
+    """The catalogue's encoders are given nothing beyond the far plane, where there is one; a user's own is written as
+    it is."""
     macros = defines(codec.encoding, "_depth", "float")
     if _bound(codec) or not is_in(DEPTH)(codec):
         return macros

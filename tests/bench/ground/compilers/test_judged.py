@@ -52,6 +52,7 @@ def test_macros_branches_and_messages_stay():
 
 
 WORDS = ["import", "__include", "implementing", "__target_switch", "__intrinsic_asm", "spirv_asm", "__requirePrelude"]
+WORDS += ["spirv_instruction", "ext_instruction"]
 
 
 @pytest.mark.parametrize("word", [*WORDS, "__anything", "DllImport", "syntax"])

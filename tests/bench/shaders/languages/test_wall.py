@@ -97,6 +97,21 @@ def test_code_in_the_process_opens_writes_and_starts_nothing(tmp_path, name):
     assert "tried: done" not in said and "root:" not in said and not (tmp_path / "written").exists()
 
 
+@pytest.mark.usefixtures("wall")
+def test_no_variable_that_compilers_do_not_need_is_left_in_the_process(tmp_path, monkeypatch):
+    """A token of somebody's, for instance."""
+    monkeypatch.setenv("SOME_TOKEN", "1")
+    attempt = "import os; print('variables: ' + ' '.join(os.environ), file=sys.stderr)"
+    _, said = answer(tmp_path, attempt=attempt, code=MINE.replace(" * secret()", ""))
+    assert "variables: " in said and "PATH" in said and "SOME_TOKEN" not in said, said
+
+
+def test_a_translation_is_kept_by_what_judged_it():
+    """Else what an earlier judge let through would be measured for ever."""
+    names = {f"{path.parent.name}/{path.name}" for path in translated.sources_of_this()}
+    assert {"compilers/text.py", "compilers/lines.py", "languages/slang.py", "translator/tree.py"} <= names
+
+
 GOOD = {"name": "a", "prefix": "a", "components": 2, "packed": "", "notes": [], "texts": ["", ""], "text": ""}
 GOOD |= {"functions": [], "read_by": "", "named": "", "shaped": {}}
 SAID = {

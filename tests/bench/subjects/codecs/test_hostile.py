@@ -9,6 +9,10 @@ from pathlib import Path
 
 import pytest
 
+from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.subjects.codecs.user_encodings import read_encoding
+from normalbench.gbuffer.gl import shader
+
 pytestmark = pytest.mark.usefixtures("gl")
 
 GOOD = """
@@ -171,6 +175,30 @@ def test_nothing_of_the_current_folder_is_imported(tmp_path):
     words = ["cost", "--isa", "--encoding", path, "--family", "navi21", "--format", "json"]
     done = subprocess.run([sys.executable, "-P", "-c", script, *words], cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode in (0, 3) and not list(tmp_path.glob("ran-*")), done.stderr
+
+
+def test_a_file_elsewhere_is_not_opened(tmp_path, monkeypatch):
+    """Its own includes would be read too, and a word of them be in a message."""
+    note, opened = tmp_path / "note.txt", []
+    note.write_text("password\n#include SECRET_WORD\n")
+    path = tmp_path / "own" / "mine.glsl"
+    path.parent.mkdir()
+    path.write_text(f'#include "{note}"\n' + GOOD.replace("NAME", "mine"))
+    read = shader.read_shader
+    monkeypatch.setattr(shader, "read_shader", lambda file: opened.append(file) or read(file))
+    with pytest.raises(UsageError, match=r"note\.txt, which lies outside its folder; move it there"):
+        read_encoding(path)
+    assert path in opened and note not in opened
+
+
+@pytest.mark.parametrize("letter", ['"', "\n", "\x0b", "\u2028"])
+def test_a_path_does_not_end_the_line_that_includes_it(tmp_path, letter):
+    """Codes in [0, 1] are read by a text that includes the file."""
+    path = tmp_path / f"a{letter}b" / "mine.glsl"
+    path.parent.mkdir()
+    path.write_text(GOOD.replace("NAME", "mine"))
+    with pytest.raises(UsageError, match="a path with quotes or control characters is not read; rename it"):
+        read_encoding(path, is_unit=True)
 
 
 @pytest.mark.parametrize("ending", ["glsl", "txt"])

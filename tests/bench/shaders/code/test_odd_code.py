@@ -17,13 +17,22 @@ from normalbench.encodings.catalogue import CURVE_ENCODINGS, DEPTH_ENCODINGS, LI
 
 ODD = np.float32([np.nan, np.inf, -np.inf, 3e38, -3e38, -1.0, -1e-3, 1e-42, -1e-42, -0.0, 0.0, 0.25, 65409, 65520])
 CODECS = [
-    *(("light", codec.encoding.name, codec.storage.name) for codec in LIGHT_BUFFERS.values() if not codec.storage.curved),
+    *(
+        ("light", codec.encoding.name, codec.storage.name)
+        for codec in LIGHT_BUFFERS.values()
+        if not codec.storage.curved
+    ),
     *(("curve", name, "r8") for name in CURVE_ENCODINGS),
     *(("motion", name, storage) for name in MOTION_ENCODINGS for storage in ("rg8", "rg16f")),
     *(("depth", name, "packed24") for name in DEPTH_ENCODINGS),
 ]
 # What C's compiler alone does not show: each language has its own max, and a way of its own to compare.
-FEW = [("light", "rgb9e5", "rgba8"), ("light", "log", "rgba8"), ("curve", "srgb", "r8"), ("depth", "window", "packed24")]
+FEW = [
+    ("light", "rgb9e5", "rgba8"),
+    ("light", "log", "rgba8"),
+    ("curve", "srgb", "r8"),
+    ("depth", "window", "packed24"),
+]
 SETTINGS = {"curve": (1.0, 0.0), "motion": (0.125, 0.0), "depth": (NEAR, FAR), "light": (0.0, 0.0)}
 
 
