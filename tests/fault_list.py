@@ -1244,8 +1244,8 @@ FAULTS = (
         "translation-is-not-walled-in",
         BENCH,
         "lost guard",
-        "    wall.restrict()\n\n\ndef _facts",
-        "\n\ndef _facts",
+        "    wall.restrict()\n    landlock.forget",
+        "    landlock.forget",
         "test_wall.py",
     ),
     Fault(
