@@ -54,7 +54,8 @@ class Gallery:
         """Everything that pictures.js needs to show them."""
         angle = {"least_log2": LEAST_LOG2, "steps_per_octave": STEPS_PER_OCTAVE, "not_a_number": NOT_A_NUMBER}
         articles = {"gain": GAIN, "power": POWER}
-        return {"subjects": self.subjects, "angle": angle, "articles": articles, "colours": colour_map()}
+        pictures = {"subjects": self.subjects, "left_out": list(self.left_out)}
+        return pictures | {"angle": angle, "articles": articles, "colours": colour_map()}
 
 
 def data_uri(pixels: Image.Image) -> str:

@@ -199,6 +199,30 @@ def test_constraints_change_the_answer_the_count_and_the_address(browser, run, t
     page.context.close()
 
 
+def test_a_follows_the_answer_until_a_reader_chooses_it(browser, run, tmp_path):
+    """So that the card, and the code to copy in it, are the answer's. What a reader chose stands in the address."""
+    assert run("report", str(answered_run(tmp_path / "run")))[0] == 0
+    page = Opened(browser, tmp_path / "run/report.html")
+    page.page.locator(".constraints").wait_for()
+    most, sides = page.page.locator("[data-limit=most]"), "[state.a, state.b]"
+    assert page.page.evaluate(sides) == ["fine rg8", "xy rg8"]
+    most.fill("6")
+    assert page.page.evaluate(sides) == ["xy rg8", "fine rg8"]
+    assert page.page.evaluate("location.hash") == "#v1/choose?most=6"
+    page.page.evaluate("choose('fine rg8')")
+    assert page.page.evaluate(sides) == ["fine rg8", "xy rg8"]
+    address = page.page.evaluate("location.hash")
+    assert address == "#v1/choose?most=6&a=fine%20rg8"
+    most.fill("")
+    most.fill("6")
+    assert page.page.evaluate(sides) == ["fine rg8", "xy rg8"] and page.said == []
+    page.context.close()
+    copied = Opened(browser, tmp_path / "run/report.html", fragment=address)
+    copied.page.locator(".constraints").wait_for()
+    assert copied.page.evaluate(sides) == ["fine rg8", "xy rg8"]
+    copied.context.close()
+
+
 def test_half_of_the_sphere_is_a_question_of_its_own(browser, run, tmp_path):
     """The storage stays, and A and B where they are codes of it; where a storage has no such question, one that has."""
     half = {"needs": "hemisphere", "normals": "hemisphere"}

@@ -120,6 +120,30 @@ def test_the_lens_shows_the_pixels_at_the_pointer_and_says_what_they_are(opened,
     assert opened.texts("[data-values]")[0].startswith("Pixel 10, 140,")
 
 
+WITHOUT = """(name) => {
+  for (const subject of viewer.data.subjects) subject.codecs = subject.codecs.filter(({ codec }) => codec !== name);
+  return viewer.begin();
+}"""
+
+
+@pytest.mark.slow
+def test_nothing_is_drawn_of_a_codec_without_a_picture(opened):
+    """Not another codec in its place; a line says what to run."""
+    viewed(opened)
+    opened.page.evaluate(WITHOUT, "spheremap rgba8")
+    opened.page.evaluate("change({ a: 'octahedral rgba8', b: 'spheremap rgba8' })")
+    opened.says("[data-pixel=right]", "no picture")
+    command = "normalbench run --tables quality --encoding spheremap --storage rgba8"
+    opened.says("[data-lacking]", f"The page has no picture of B, spheremap rgba8. To add it, run: {command}")
+    assert opened.texts("#viewer [data-name=right]") == ["spheremap rgba8: no picture"]
+    assert not drawn(opened, "right").any() and drawn(opened, "left").std() > 8
+    opened.page.evaluate("change({ b: 'xy rgba8' })")
+    opened.says("#viewer [data-name=right]", "xy rgba8")
+    opened.says("[data-pixel=right]", "code")
+    assert drawn(opened, "right").std() > 8 and opened.texts("[data-lacking]") == [""]
+    assert not [text for text in opened.texts("#right option") if "no picture" in text] and opened.said == []
+
+
 CHOSEN = """() => ({
   rows: Array.from(document.querySelectorAll("tr[data-codec]"))
     .filter((row) => getComputedStyle(row).getPropertyValue("--side")).map((row) => row.dataset.codec),

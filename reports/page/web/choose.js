@@ -116,7 +116,9 @@ class Choose {
     root.querySelector("[data-again]").addEventListener("click", () => change(Object.fromEntries(Object.keys(LIMITS).map((key) => [key, ""]))));
     root.addEventListener("drawn", ({ target }) => this.plot(target));
     shows.push((state, before) => this.show(state, before));
+    answersTo = (state) => this.answersTo(state);
     this.show(state, null);
+    change({}, true);
   }
 
   take(key, { type, checked, value, validity }) {
@@ -128,19 +130,24 @@ class Choose {
   ask(part, value) {
     const asked = { of: this.question.of, on: this.question.on, [part]: value }, fitting = this.questions.filter((one) => one[part] === value);
     const question = fitting.find(({ of, on }) => of === asked.of && on === asked.on) ?? fitting[0];
-    change({ for: question.where, ...this.sidesOf(question) });
+    // A reader's A and B stay where one of them is a code of the other question.
+    if (!question.codes.some(({ codec }) => CODECS.some((side) => state[side] === codec))) picked.clear();
+    change({ for: question.where });
   }
 
-  // A and B of another question are its answer and what comes next, unless one of them is a code of it.
-  sidesOf(question) {
-    if (question.codes.some(({ codec }) => CODECS.some((side) => state[side] === codec))) return {};
-    const { fit } = answerOf(question, askedOf(question, state), this.constants), name = (at) => (known.codecs.includes(fit[at]?.codec) ? fit[at].codec : "");
-    return { a: name(0), b: name(1) };
+  questionOf(state) {
+    return this.questions.find(({ where }) => where === state.for) ?? this.questions[0];
+  }
+
+  // The codecs of the answer that the page has, the best one first.
+  answersTo(state) {
+    const question = this.questionOf(state), { fit } = answerOf(question, askedOf(question, state), this.constants);
+    return fit.map(({ codec }) => codec).filter((codec) => known.codecs.includes(codec));
   }
 
   show(state, before) {
     if (before && ["for", "a", "b", ...Object.keys(LIMITS)].every((key) => state[key] === before[key])) return;
-    const question = this.questions.find(({ where }) => where === state.for) ?? this.questions[0], asked = askedOf(question, state);
+    const question = this.questionOf(state), asked = askedOf(question, state);
     const found = answerOf(question, asked, this.constants), isOwn = JSON.stringify(asked) !== JSON.stringify(question.asked);
     Object.assign(this, { question, found, asked });
     this.root.querySelector("[data-pair]").replaceChildren(...this.pair(found, question, state));

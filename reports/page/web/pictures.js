@@ -3,7 +3,7 @@
 // Pictures: two codecs under a divider that is dragged on the picture, and a lens at the pointer. What is drawn is
 // computed here from each pixel's stored bits, decoded normal and angle, or from its rendered colour.
 const SIDES = ["left", "right"];
-const ORIGINAL = -1;
+const ORIGINAL = -1, LACKING = -2;
 const normalViews = ({ gain, power }) => ({
   angle: "angle",
   error: `${gain} × |error|`,
@@ -207,6 +207,25 @@ class Planes {
   }
 }
 
+// In place of a codec's pixels that the page does not have.
+class NoPixels {
+  constructor({ width, height }, exact) {
+    Object.assign(this, { width, height, exact });
+  }
+
+  draw(canvas) {
+    Object.assign(canvas, { width: this.width, height: this.height });
+  }
+
+  numbers() {
+    return [];
+  }
+
+  say() {
+    return "no picture";
+  }
+}
+
 function componentsOf(from, i) {
   return [0, 1, 2].map((c) => (from[4 * i + c] / 127.5 - 1).toFixed(3));
 }
@@ -264,8 +283,8 @@ class Viewer {
     const subject = this.subject, key = `${this.one("#subject").value}/${at}`;
     if (!this.read.has(key)) {
       subject.exact ||= pixelsOf(subject.original, subject.width, subject.height);
-      const codec = Number(at) === ORIGINAL ? null : subject.codecs[at];
-      this.read.set(key, subject.exact.then((exact) => Planes.of(subject, codec, exact)));
+      const codec = Number(at) === ORIGINAL ? null : subject.codecs[at], isLacking = Number(at) === LACKING;
+      this.read.set(key, subject.exact.then((exact) => (isLacking ? new NoPixels(subject, exact) : Planes.of(subject, codec, exact))));
       if (this.read.size > KEPT) this.read.delete(this.read.keys().next().value);
     }
     return this.read.get(key);
@@ -382,7 +401,7 @@ class Viewer {
 
   put(side, planes, view, scale, isGrey) {
     this.shown[side] = planes;
-    const canvas = this.one(`[data-canvas="${side}"]`), label = planes.codec ? planes.codec.label : "exact";
+    const canvas = this.one(`[data-canvas="${side}"]`), label = this.side(side).selectedOptions[0].textContent;
     planes.draw(canvas, view, scale, isGrey);
     const title = this.one("#view").selectedOptions[0].textContent;
     canvas.setAttribute("aria-label", `${side} of the divider: ${label}, ${title}, ${this.subject.title}`);
@@ -506,14 +525,27 @@ class Viewer {
 
   // A stands to the left and B to the right, where there are pictures of them.
   take(state) {
-    const lacking = CODECS.filter((side) => state[side] && this.find(state[side]) < 0).map((side) => `${side.toUpperCase()}, ${state[side]}`);
-    this.one("[data-lacking]").textContent = lacking.length ? `This picture is not in the page of ${lacking.join(" and of ")}.` : "";
-    const before = SIDES.map((side) => this.side(side).value);
-    for (const [at, side] of SIDES.entries()) {
-      const found = this.find(state[CODECS[at]]);
-      if (found >= 0) this.side(side).value = found;
-    }
-    return SIDES.some((side, at) => this.side(side).value !== before[at]);
+    const note = this.one("[data-lacking]"), missing = CODECS.filter((side) => state[side] && this.find(state[side]) < 0);
+    const lines = missing.map((side) => [`The page has no picture of ${side.toUpperCase()}, ${state[side]}. To add it, run: `, element("code", {}, this.commandFor(state[side], note.dataset.run)), " "]);
+    note.replaceChildren(...lines.flat());
+    const shown = () => SIDES.map((side) => this.side(side).selectedOptions[0].textContent), before = shown();
+    for (const [at, side] of SIDES.entries()) this.choose(this.side(side), state[CODECS[at]]);
+    return shown().some((text, at) => text !== before[at]);
+  }
+
+  // A codec in the list of a side; nothing is drawn there where the page has no picture of it.
+  choose(list, name) {
+    const found = this.find(name), isOut = list.value === String(LACKING);
+    list.querySelector(`[value="${LACKING}"]`)?.remove();
+    if (found < 0 && name) list.prepend(new Option(`${name}: no picture`, LACKING));
+    if (found >= 0 || name) list.value = found < 0 ? LACKING : found;
+    else if (isOut) list.value = ORIGINAL;
+  }
+
+  commandFor(name, run) {
+    const { left_out } = this.data, [encoding, storage] = name.split(" "), table = this.subject.of === "image" ? "render" : "quality";
+    if (left_out.includes(`${name}, ${this.subject.title}`)) return `normalbench report ${run} --pictures beside`;
+    return `normalbench run --tables ${table} --encoding ${encoding} --storage ${storage}`;
   }
 
   follow(state) {

@@ -10,6 +10,9 @@ const DEFAULTS = { ...NONE, view: known.view, a: known.a, b: known.b };
 // What is no key of this version is kept, for the one that wrote it.
 let state = { ...DEFAULTS, others: [] };
 const shows = [];
+// The codecs of the answer to what a state asks, the best one first; and which of A and B a reader has chosen.
+let answersTo = () => [];
+const picked = new Set();
 let isShown = false;
 
 // Whatever is asked for, A and B are two codecs, or none.
@@ -22,9 +25,19 @@ function changed(state, change) {
   return next;
 }
 
+// What A is unless a reader chooses it: the answer. And B: the next one that is not A.
+const usualA = (state) => answersTo(state)[0] ?? DEFAULTS.a;
+const usualB = (state) => [...answersTo(state), DEFAULTS.b, DEFAULTS.a].find((name) => name !== state.a) ?? "";
+
+function followed(state) {
+  const next = { ...state, a: picked.has("a") ? state.a : usualA(state) };
+  return { ...next, b: picked.has("b") && state.b !== next.a ? state.b : usualB(next) };
+}
+
 // The address of a state, less what is as usual.
 function hashOf({ others, ...values }) {
-  const pairs = [...KEYS.filter((key) => values[key] !== DEFAULTS[key]).map((key) => [key, values[key]]), ...others];
+  const usual = { ...DEFAULTS, a: usualA(values), b: usualB(values) };
+  const pairs = [...KEYS.filter((key) => values[key] !== usual[key]).map((key) => [key, values[key]]), ...others];
   return `#${VERSION}/${values.view}${pairs.length ? "?" : ""}${pairs.map((pair) => pair.map(encodeURIComponent).join("=")).join("&")}`;
 }
 
@@ -61,8 +74,9 @@ function at(state, id) {
 
 // Changes the state. A step that Back takes is one of A, B and the view.
 function change(next, isDragged = false) {
-  const before = state;
-  state = changed(state, next);
+  const before = state, moved = changed(state, next);
+  for (const side of CODECS) if (moved[side] !== before[side]) picked.add(side);
+  state = followed(moved);
   const hash = hashOf(state), isStep = ["a", "b", "view", "at", ...CONSTRAINTS].some((key) => before[key] !== state[key]);
   if (hash !== location.hash) history[isStep && !isDragged ? "pushState" : "replaceState"](null, "", hash);
   show(before);
@@ -72,7 +86,9 @@ function readAddress() {
   // Browsers tell of one step twice.
   if (isShown && location.hash === hashOf(state)) return;
   const [found, unknown] = stateOf(location.hash), before = state, isLink = location.hash && !location.hash.startsWith(`#${VERSION}/`);
-  state = found;
+  picked.clear();
+  for (const side of CODECS) if (location.hash.match(`[?&]${side}=`)) picked.add(side);
+  state = followed(found);
   const said = document.querySelector("#unknown");
   said.hidden = !unknown.length;
   said.textContent = unknown.length ? `The address names ${unknown.join(" and ")}, which this page does not have.` : "";
