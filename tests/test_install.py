@@ -11,7 +11,7 @@ from pathlib import Path
 
 import install_page
 import pytest
-from manual import ROOT
+from manual import NAMED, PAGES, README, ROOT
 from packaging.utils import canonicalize_name
 
 ROOMS = ("bench", "encodings", "gbuffer", "reports")
@@ -98,8 +98,22 @@ def test_the_wheel_works_in_an_empty_environment(version, tmp_path):
     assert done.returncode == 0, done.stderr
     size = int(subprocess.run(["du", "-s", "-B1", own.parents[1]], capture_output=True, text=True).stdout.split()[0])
     here, there = (row_by([str(program), "-m", "normalbench"]) for program in (sys.executable, own))
+    gate = gate_by(own, tmp_path / "project")
     shutil.rmtree(own.parents[1])
     assert there == here and size < 900e6
+    assert gate.returncode == 0 and "1 passed" in gate.stdout, gate.stdout + gate.stderr
+
+
+def gate_by(python: Path, folder: Path) -> subprocess.CompletedProcess[str]:
+    """README's gate in an environment that has what README installs for it."""
+    folder.mkdir()
+    for name, text in NAMED.findall(PAGES[README]):
+        (folder / name).write_text(text)
+    (packages,) = re.findall(r"`pip install (.+?)`", PAGES[README])
+    subprocess.run([python, "-m", "pip", "install", "-q", *packages.split()], check=True)
+    clean = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    command = [python, "-m", "pytest", "-p", "no:cacheprovider", "test_mine.py"]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, env=clean)
 
 
 def row_by(program):

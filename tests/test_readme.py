@@ -20,7 +20,7 @@ import numpy as np
 import pytest
 import typer
 from contributing import a_copy_of_the_rooms, normalbench_in
-from manual import PAGES, README, ROOT
+from manual import NAMED, PAGES, README, ROOT
 from written import as_document, packed, planes_of, png_bytes, some_normals, write_exr
 
 from normalbench.bench.door import code_command, examine, gbuffer_command, run, table_command
@@ -33,8 +33,6 @@ from normalbench.gbuffer.scenes.mesh import sphere
 
 MOST_LINES = 150
 FENCE = re.compile(r"^```.*?^```$", re.S | re.M)
-# An example is a fenced block under the name of its file.
-NAMED = re.compile(r"^<!-- file (\S+) -->\n```(?:glsl|hlsl|json|python|toml)\n(.*?)^```$", re.S | re.M)
 EXAMPLES = [(path, *found) for path, text in PAGES.items() for found in NAMED.findall(text)]
 FILES = {name: text for _, name, text in EXAMPLES}
 # An indented line is a command, up to its comment.
@@ -221,6 +219,33 @@ def test_the_columns_it_explains_are_those_of_the_tables():
     """To the letter as the registry has them."""
     for page in (columns_page, gpu_page):
         assert PAGES[page.PAGE] == page.text(), f"write it: python -m tests.{page.__name__}"
+
+
+IMPORT = re.compile(r"^(?:import|from) (\w+)", re.M)
+INSTALL = re.compile(r"`?pip install ([^`\n]+)")
+
+
+def installed_by(text: str) -> set[str]:
+    """What pip installs by a page's lines and with normalbench itself."""
+    known = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    words = [word for line in INSTALL.findall(text) for word in line.split() if not word.startswith("-")]
+    extras = [name for word in words for found in re.findall(r"\[([\w,]+)\]", word) for name in found.split(",")]
+    asked = known["dependencies"] + [line for name in extras for line in known["optional-dependencies"][name]] + words
+    return {re.split(r"[\[<>=;/ ]", line)[0].lower() for line in asked}
+
+
+def test_what_an_example_imports_is_installed_by_the_lines_of_its_page():
+    """A file of tests needs pytest, which normalbench does not install."""
+    scripts = [example for example in EXAMPLES if example[1].endswith(".py")]
+    assert scripts
+    for page, name, text in scripts:
+        check_installed(page, name, text)
+
+
+def check_installed(page, name, text):
+    imported = {*IMPORT.findall(text), *(["pytest"] if name.startswith("test_") else [])}
+    missing = imported - {*sys.stdlib_module_names, "normalbench", *installed_by(PAGES[page])}
+    assert not missing, f"{page}: {name} needs {', '.join(sorted(missing))}; say how it is installed"
 
 
 @pytest.mark.slow
