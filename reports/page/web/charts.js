@@ -72,10 +72,8 @@ class Axis {
 
 // A panel; drawn anew for another width, choice or zoom.
 class View {
-  constructor(plot, spec, panel) {
-    const figure = plot.closest("figure"), place = Array.from(figure.querySelectorAll(".plot")).indexOf(plot);
-    // The chart that comes into view first is drawn first: a count of what is drawn would name it anew each time.
-    Object.assign(this, { plot, spec, panel, figure, zoom: d3.zoomIdentity, stop: -1, id: `${figure.dataset.chart}-panel-${place}` });
+  constructor(plot, spec, panel, id) {
+    Object.assign(this, { plot, spec, panel, id, figure: plot.closest("figure"), zoom: d3.zoomIdentity, stop: -1 });
     this.tables = panel.tables.map(rowsOf);
     this.svg = set(d3.select(plot).append("svg"), { role: "img", "font-family": FONT });
     set(d3.select(plot), { tabindex: 0, role: "group" });

@@ -50,7 +50,8 @@ function drawNext(figure) {
   const { panels, ...spec } = charts.specs[figure.dataset.chart], plots = Array.from(figure.querySelectorAll(".plot"));
   const at = plots.findIndex((plot) => !charts.views.has(plot));
   if (at >= 0) {
-    charts.views.set(plots[at], new View(plots[at], spec, panels[at]));
+    // By its place, not by a count: what comes into view first is drawn first.
+    charts.views.set(plots[at], new View(plots[at], spec, panels[at], `${figure.dataset.chart}-panel-${at}`));
     plots[at].dispatchEvent(new Event("drawn", { bubbles: true }));
   }
   if (at === plots.length - 1) addSaving(figure);
