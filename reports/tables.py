@@ -133,6 +133,16 @@ def write_parquet(rows: Sequence[dict[str, Any]], path: Path) -> None:
         pq.write_table(pa.table(columns), file)
 
 
+def parquet_columns(data: bytes) -> list[str]:
+    """The columns of a Parquet file. Raises ValueError where it is none, or nothing reads it."""
+    if not has_parquet():
+        raise ValueError("Parquet files need pyarrow")
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    return pq.read_schema(pa.BufferReader(data)).names
+
+
 def to_markdown(rows: Sequence[dict[str, Any]], total: str = "") -> str:
     """A table for a pull request, columns aligned as text so that the source reads too; `total` as in `written`."""
     rows, caption = _captioned(rows, total)

@@ -21,8 +21,9 @@ from ..ground.options.storage_names import roundings_named
 from ..ground.options.targets import that_fit, what_is_left
 from ..ground.output.errors import MissingError, UsageError, leave_out, tell
 from ..ground.output.progress import progress
-from ..ground.output.writing import check_folder, check_is_folder, check_writable, say, whole_file, write
+from ..ground.output.writing import check_folder, check_is_folder, say, whole_file
 from ..ground.spelling import spelled
+from ..keep.row_files import check_rows, write
 from ..shaders.code.emit import LANGUAGES
 from ..shaders.code.files import Code, code_of, file_name, stem_of, usual_prefix
 from ..shaders.code.kinds.table import kind_of
@@ -31,7 +32,7 @@ from ..shaders.code.verify import Agreement, agreement
 from ..shaders.languages.source_options import in_names
 from ..subjects.codecs.kinds.codecs import NAMED, codecs_of_kind, kinds_named
 from ..subjects.codecs.names import codecs_named, fitting
-from .code_figures import DIFFERS, NOT_RUN, VERIFIED, figures, head, rounding_of
+from .code_figures import COLUMNS, DIFFERS, NOT_RUN, VERIFIED, figures, head, rounding_of
 from .gbuffer_command import LAYOUT, check_no_layout, gbuffer_command, is_of_layouts
 
 Row = dict[str, Any]
@@ -289,8 +290,7 @@ def _figures(found: Agreement, how: str) -> Row:
 def _check(
     codecs: Sequence[Any], languages: Sequence[str], options: CodeOptions, format: str, output: Path | None
 ) -> int:
-    if output:
-        check_writable(output)
+    check_rows(output, COLUMNS)
     rows: list[Row] = []
     made = _all_made(codecs, languages, options.prefix)
     with progress(len(made)) as tick:

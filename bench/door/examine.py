@@ -22,7 +22,8 @@ from ..ground.choose import choose_one
 from ..ground.machine.systems.people import command_line
 from ..ground.options.storage_names import storages_named
 from ..ground.output.errors import UsageError, tell
-from ..ground.output.writing import check_plot, save_plot, write, write_text
+from ..ground.output.writing import check_plot, save_plot, write_text
+from ..keep.row_files import check_rows, write
 from ..shaders.languages.source_options import in_names
 from ..shaders.languages.words import file_of, without_settings
 from ..subjects.codecs.kinds.named import examined_code, kind_of, notes_of
@@ -117,7 +118,8 @@ def _examine_own(file: Path, kind: OwnKind, format: str, output: Path | None) ->
 def _write(about: dict[str, str], wrong: Sequence[str], notes: Sequence[str], format: str, output: Path | None) -> None:
     said = [*_lines("finding", wrong), *([] if wrong else [(RIGHT, "verdict")]), *_lines("note", notes)]
     if format in FOR_PEOPLE:
-        write_text(lambda: _text(about, wrong, notes, format), output)
+        check_rows(output)
+        write_text(lambda: _text(about, wrong, notes, format), output, is_checked=True)
     else:
         functions = about.pop("functions")
         rows = [about | {"finding": line, "kind": kind, "functions": functions} for line, kind in said]

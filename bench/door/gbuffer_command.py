@@ -16,7 +16,8 @@ from ..ground.machine.systems.people import command_line
 from ..ground.options.code import CodeOptions
 from ..ground.output.errors import MissingError, UsageError, tell
 from ..ground.output.progress import progress
-from ..ground.output.writing import check_folder, check_is_folder, check_writable, say, whole_file, write
+from ..ground.output.writing import check_folder, check_is_folder, say, whole_file
+from ..keep.row_files import check_rows, write
 from ..shaders.code.run import runner
 from ..shaders.code.whole.emit import GBufferCode, gbuffer_code
 from ..shaders.code.whole.head import head
@@ -24,7 +25,7 @@ from ..shaders.code.whole.run import NOT_RUN as NEVER_RUN
 from ..shaders.code.whole.verify import agreement
 from ..shaders.translator.writer import identifier
 from ..subjects.codecs.layout_names import layouts_named
-from .code_figures import DIFFERS, NOT_RUN, VERIFIED
+from .code_figures import COLUMNS, DIFFERS, NOT_RUN, VERIFIED
 
 Row = dict[str, Any]
 LAYOUT, ENDING = "layout", ".toml"
@@ -129,8 +130,7 @@ def verified(code: GBufferCode) -> Row:
 
 
 def _check(made: Sequence[GBufferCode], format: str, output: Path | None) -> int:
-    if output:
-        check_writable(output)
+    check_rows(output, COLUMNS)
     rows: list[Row] = []
     with progress(len(made)) as tick:
         for code in made:

@@ -13,15 +13,15 @@ from pathlib import Path
 from typing import Any
 
 from ..ground.machine.memory import keep_what_is_freed
-from ..ground.options.option import fields_of
 from ..ground.output.errors import MissingError, UsageError, tell
+from ..ground.output.replacing import PAGE
 from ..ground.output.sources import sources
 from ..ground.output.writing import check_plot, check_writable, say, whole_file
 from ..keep.plain import plain
+from ..keep.row_files import check_rows
 from ..keep.runs import Done, facts_of
 from ..run.measuring import Asked, Beside, Nothing, Place, asked, beside, measured, with_parts
 from ..run.workers.places import place
-from ..shaders.languages.words import file_of, split_names
 from ..show.showing import say_lines, say_skipped, show
 from ..tables.table import Measured, Row, Table
 
@@ -47,9 +47,9 @@ def table_command(
         UsageError, MissingError: see measuring.asked; MissingError also in the end, where a part could not be measured.
     """
     keep_what_is_freed()
-    for path in filter(None, (output, report)):
-        check_writable(path)
-        _check_not_read(path, options)
+    check_rows(output)
+    if report:
+        check_writable(report, mark=PAGE)
     check_plot(getattr(outputs, "plot", None))
     scratch = tempfile.TemporaryDirectory(prefix="normalbench-") if report else nullcontext("")
     with scratch as folder, place(on) as where:
@@ -65,18 +65,6 @@ def table_command(
     if lacking := table.lacking(done):
         raise MissingError("; ".join(lacking))
     return int(failed)
-
-
-def _check_not_read(path: Path, options: Any) -> None:
-    """Raises UsageError where a file that is to be written is one of those that are measured, or its twin."""
-    for name, field in fields_of(type(options)).items():
-        if not field.option.files:
-            continue
-        for word in split_names(str(getattr(options, name) or "")):
-            read = file_of(word)
-            for one in (read, read.with_suffix(".py")) if read.suffix else ():
-                if one.exists() and path.exists() and path.samefile(one):
-                    raise UsageError(f"{path} is one of the files that are measured; name another file")
 
 
 def in_folder(table: Table, outputs: Any, folder: Path) -> Any:

@@ -7,9 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from ..ground.output.errors import tell
-from ..ground.output.writing import check_writable, without, write
+from ..ground.output.writing import without
 from .change_lines import in_short, total, what_matters
 from .comparison import GONE, compared, measured_otherwise
+from .row_files import write
 from .runs import read_to_show
 
 # What begins the names of such facts: see `machine.settings`.
@@ -28,8 +29,6 @@ def compare_command(before: Path, after: Path, fail_on: str, format: str, output
         the exit status: 1 where something changed that `fail_on` names.
     """
     ours, theirs = read_to_show(before), read_to_show(after)
-    if output:
-        check_writable(output)
     changes = compared(ours, theirs)
     if ours.facts.get("machine") != theirs.facts.get("machine"):
         tell("the machines differ; times are not compared")

@@ -10,13 +10,14 @@ from typing import Any
 
 from ..ground.choose import choose
 from ..ground.output.errors import UsageError, tell
-from ..ground.output.writing import check_plot, check_writable, whole_file, write
+from ..ground.output.writing import check_plot, whole_file
 from ..tables.table import Row
 from .change_lines import LINES, SENTENCES, in_short, sentences
 from .comparison import GONE, headline, in_order, rank_key
 from .history import Change, Series, changes_of, series_of
 from .history_chart import MOST, chart
 from .past_runs import Past, named_apart, past_runs
+from .row_files import write
 
 # What --by may be besides "change".
 COMMIT = "commit"
@@ -56,8 +57,6 @@ def history_command(
 ) -> int:
     """Write at which commits figures changed, or the figures by commit, and draw them; the exit status is 0."""
     check_plot(plot)
-    if output:
-        check_writable(output)
     runs = past_runs(folders)
     # All rows are judged, whichever are shown: how large a time's step must be depends on how many there are.
     everything = series_of(runs)

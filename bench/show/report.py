@@ -25,6 +25,7 @@ from ...reports.tables import LARGEST_WHOLE
 from ..ground.machine.systems.people import command_line
 from ..ground.output import cache
 from ..ground.output.errors import UsageError
+from ..ground.output.replacing import PAGE as MARK
 from ..ground.output.sources import sources
 from ..ground.output.writing import check_folder, check_page, check_writable, files_of, say, whole_file, write_text
 from ..keep import side_by_side
@@ -65,7 +66,7 @@ def report_command(folders: Sequence[Path], as_markdown: bool, pictures_beside: 
 
 def _check_output(output: Path, as_markdown: bool) -> None:
     """Raises UsageError for a file that cannot be written, or whose name says that it is something else."""
-    check_writable(output)
+    check_writable(output, mark=b"" if as_markdown else MARK)
     if not as_markdown:
         check_page(output)
     elif output.suffix.lower() in (".html", ".htm"):

@@ -9,7 +9,8 @@ from pathlib import Path
 
 from ...reports import tables
 from ..ground.output.errors import UsageError, lacks_twin, tell
-from ..ground.output.writing import check_writable, say, whole_file
+from ..ground.output.writing import say, whole_file
+from ..keep.row_files import check_rows
 from ..tables.charts import but_without_twins
 from ..tables.table import Measured, Role, Row, Sheet, Table
 
@@ -26,8 +27,8 @@ def show(table: Table, done: Measured, format: str, output: Path | None) -> None
         width = shutil.get_terminal_size((120, 40)).columns
         say(written(table, done, format, width))
         return
-    check_writable(output)
-    with whole_file(output) as partial:
+    check_rows(output)
+    with whole_file(output, is_checked=True) as partial:
         if format == "parquet":
             tables.write_parquet(_flat(table, done.rows), partial)
         else:

@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageDraw
 
+from .pictures import made_by
+
 # What a difference is multiplied by; grey is none.
 GAIN = 8.0
 # Each pixel is shown as a square of this many.
@@ -42,4 +44,6 @@ def beside(one: np.ndarray, other: np.ndarray, title: str) -> Image.Image:
 def write_animation(path: Path, frames: Sequence[Image.Image]) -> None:
     """Write an animated PNG that goes on for ever. Raises OSError."""
     first, *others = frames
-    first.save(path, format="png", save_all=True, append_images=others, duration=MILLISECONDS, loop=0)
+    first.save(
+        path, format="png", save_all=True, append_images=others, duration=MILLISECONDS, loop=0, pnginfo=made_by()
+    )

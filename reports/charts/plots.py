@@ -6,6 +6,8 @@ from pathlib import Path
 from typing import Any
 
 FORMATS = ("png", "svg", "pdf")
+# Who made a file, by its format: such a file may be replaced.
+MADE_BY = {"png": {"Software": "normalbench"}, "svg": {"Creator": "normalbench"}, "pdf": {"Creator": "normalbench"}}
 DPI = 120
 
 
@@ -39,7 +41,7 @@ def save(figure: Any, *files: tuple[Path, str]) -> None:
         for path, ending in files:
             # savefig would draw everything once more, to nowhere, where it lays out or has laid out a figure.
             canvas = get_registered_canvas_class(ending)(figure)
-            getattr(canvas, f"print_{ending}")(path)
+            getattr(canvas, f"print_{ending}")(path, metadata=MADE_BY[ending])
             figure.dpi = DPI
             # What is laid out once stays where it is.
             figure.set_layout_engine("none")

@@ -24,7 +24,8 @@ import devices
 import matplotlib
 
 from normalbench.bench.door.code_command import _save
-from normalbench.bench.ground.output import cache, writing
+from normalbench.bench.ground.output import cache
+from normalbench.bench.keep import row_files
 from normalbench.bench.keep.runs import opened, read_run
 from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.shaders.isa import null_device
@@ -102,7 +103,9 @@ def code(folder: Path) -> None:
 
 def table(folder: Path) -> None:
     for ending in ("csv", "parquet"):
-        writing.write([{"number": number} for number in range(1000)], ending, folder / f"rows.{ending}")
+        row_files.write(
+            [{"number": number, "half": number / 2} for number in range(1000)], ending, folder / f"rows.{ending}"
+        )
 
 
 def value(folder: Path) -> None:
@@ -125,7 +128,7 @@ def files_are_whole(folder: Path, before: Mapping[str, bytes], after: Mapping[st
 
 
 # By name a writer, what is there before, and the check of what it leaves where it is killed. Where nothing is said of
-# what is there, each file that it will write has another content.
+# what is there, each file that it will write is empty.
 WRITERS: dict[str, tuple[Callable[[Path], None], Callable[[Path], None] | None, Check]] = {
     "rows": (keep_rows, lambda folder: keep_rows(folder, 2), rows_are_whole),
     "import": (import_a_device, a_run, import_is_whole),
@@ -218,7 +221,7 @@ def main(name: str, folder: Path) -> None:
         else:
             for path in after:
                 (killed / path).parent.mkdir(parents=True, exist_ok=True)
-                (killed / path).write_text("old")
+                (killed / path).touch()
         before, number = files(killed), number + 1
         if not is_killed(write, killed, number):
             break

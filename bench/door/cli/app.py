@@ -28,7 +28,9 @@ from ...ground.options.code import CodeOptions
 from ...ground.options.option import Sources
 from ...ground.output.errors import MissingError, UsageError, tell, told
 from ...ground.output.progress import ending
-from ...ground.output.writing import abandon_output, check_is_folder, write
+from ...ground.output.replacing import reads
+from ...ground.output.writing import abandon_output, check_is_folder
+from ...keep.row_files import write
 from ...run.workers.words import check_place
 from ...tables.registry import TABLES
 from ...tables.table import Group
@@ -37,6 +39,7 @@ from .commands import OnOption, add_tables, command_with, with_options
 from .device_commands import add_devices
 from .formats import Format, FormatOption, format_of
 from .history_commands import add_history
+from .inputs import keep_inputs
 from .renderdoc_commands import add_renderdoc
 from .typed import added_up, check_begins_with_command
 
@@ -358,6 +361,7 @@ def main() -> int:
     signal.signal(signal.SIGINT, _end)
     ending.clear()
     told.clear()
+    reads.clear()
     try:
         if sys.stdout is None:
             _without_output(sys.argv)
@@ -407,8 +411,12 @@ def _words(words: list[str], group: Any) -> list[str]:
     # It may stand anywhere.
     no_cache, words = [NO_CACHE] * (NO_CACHE in words), [word for word in words if word != NO_CACHE]
     check_begins_with_command(words, group.commands, own)
-    is_known = bool(words) and words[0] in group.commands
-    return no_cache + ([words[0], *added_up(words[1:], group.commands[words[0]].params)] if is_known else words)
+    if not (words and words[0] in group.commands):
+        return no_cache + words
+    options = group.commands[words[0]].params
+    typed = added_up(words[1:], options)
+    keep_inputs(typed, options)
+    return [*no_cache, words[0], *typed]
 
 
 def _without_output(words: list[str]) -> None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
+from pathlib import Path
 from typing import Any, get_args
 
 from ...ground.output.errors import UsageError
@@ -33,7 +34,7 @@ def added_up(words: Sequence[str], options: Sequence[Any]) -> list[str]:
     Raises:
         UsageError: another option is given twice, with different values, or a word belongs to no option.
     """
-    by_flag = {flag: option for option in options for flag in (*option.opts, *option.secondary_opts)}
+    by_flag = _by_flag(options)
     has_arguments = any(option.param_type_name == "argument" for option in options)
     made: list[str] = []
     # Of each option its flag as typed first, and where its value stands among `made`.
@@ -59,10 +60,28 @@ def added_up(words: Sequence[str], options: Sequence[Any]) -> list[str]:
     return made
 
 
+def read_values(words: Sequence[str], options: Sequence[Any]) -> Iterator[str]:
+    """The values among words that a command reads. Options that take a path are what it writes.
+
+    Args:
+        words, options: as for `added_up`, which has refused what is wrong.
+    """
+    by_flag, rest = _by_flag(options), iter(words)
+    for word in rest:
+        flag, option = _option_of(word, by_flag)
+        value = word if option is None or option.is_flag else _value_of(word, flag, rest)
+        if value and not (option and _takes(option, Path)):
+            yield value
+
+
+def _by_flag(options: Sequence[Any]) -> dict[str, Any]:
+    return {flag: option for option in options for flag in (*option.opts, *option.secondary_opts)}
+
+
 def _stray(word: str, made: Sequence[str], by_flag: dict[str, Any]) -> UsageError:
     """What is wrong with a word that follows no option."""
     flag = made[-2] if len(made) > 1 else ""
-    if flag in by_flag and _is_text(by_flag[flag]):
+    if flag in by_flag and _takes(by_flag[flag], str):
         return UsageError(f"separate names by commas: {flag} {made[-1]},{word}")
     return UsageError(f"{word} stands after no option; say for example {next(iter(by_flag))} {word}")
 
@@ -94,12 +113,12 @@ def _add(made: list[str], typed: tuple[str, str], seen: dict[str, tuple[str, int
         made += [flag, value]
         return
     first, at = seen[option.name]
-    if _is_text(option):
+    if _takes(option, str):
         made[at] = f"{made[at]},{value}"
     elif made[at] != value:
         raise UsageError(f"{first} is given twice, {made[at]} and {value}; give it once")
 
 
-def _is_text(option: Any) -> bool:
-    kind = option.type_descriptor.annotation
-    return kind is str or str in get_args(kind)
+def _takes(option: Any, kind: type) -> bool:
+    annotation = option.type_descriptor.annotation
+    return annotation is kind or kind in get_args(annotation)

@@ -7,9 +7,10 @@ from pathlib import Path
 
 from ...ground.output.errors import UsageError, tell, tell_together
 from ...ground.output.progress import progress
-from ...ground.output.writing import check_writable, without, write
+from ...ground.output.writing import check_writable, without
+from ...keep.row_files import check_rows, write
 from .changed import gates_that_read
-from .gates import BASELINE, WRITER, Baselines, Gate, checked, read_gates
+from .gates import BASELINE, COLUMNS, WRITER, Baselines, Gate, checked, read_gates
 
 
 def check_command(
@@ -27,8 +28,7 @@ def check_command(
         return 0
     if writes:
         _check_baselines(gates, found, run)
-    if output:
-        check_writable(output)
+    check_rows(output, COLUMNS)
     with progress(len(found)) as tick:
         rows = list(checked(found, run, tick, baselines))
     for path in baselines.write():

@@ -21,6 +21,8 @@ from .measured import USUAL, Found, located, measured, table_named, with_their_o
 MAX_GATES = 1000
 BASELINE = "matches_baseline"
 WRITER = "normalbench check --write-baseline"
+# Of the rows that `check` writes.
+COLUMNS = ("gate", "table", "row", "column", "figure", "limit", "holds", "worst_normal", "changed", "lacks", "skipped")
 
 
 @dataclass(frozen=True)
@@ -223,8 +225,7 @@ class Baselines:
 
 def _row(gate: Gate, found: Found, **more: Any) -> Row:
     row: Row = {"gate": gate.place.rsplit(" ", 1)[-1], "table": gate.table.name, "row": gate.table.name_of(found.row)}
-    row |= {"column": None, "figure": None, "limit": None, "holds": "pass", "worst_normal": None}
-    return row | {"changed": None, "lacks": None, "skipped": found.row.get("skipped")} | more
+    return dict.fromkeys(COLUMNS) | row | {"holds": "pass", "skipped": found.row.get("skipped")} | more
 
 
 def _held(gate: Gate, found: Found, limit: Limit) -> Row:

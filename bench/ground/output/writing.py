@@ -12,23 +12,24 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from ....reports import tables
 from ....reports.charts import plots
 from ..machine.systems.files import is_closed_pipe, moved_over
 from ..machine.systems.processes import is_running
 from .errors import UsageError
+from .replacing import PLOTS, check_alike, check_replaceable
 
 # Of a run's rows, facts and tables.
-OWN_SUFFIXES = (".json", ".jsonl", ".csv", ".parquet")
+RUN, OWN_SUFFIXES = "run.json", (".json", ".jsonl", ".csv", ".parquet")
 NOT_PAGES = (".pdf", ".png", ".svg", ".md", ".csv", ".json")
 FILE_SUFFIXES = (*NOT_PAGES, ".jpg", ".jpeg", ".exr", ".html", ".parquet", ".txt")
 
 
-def check_writable(path: Path, makes_folder: bool = False) -> None:
+def check_writable(path: Path, makes_folder: bool = False, mark: bytes = b"") -> None:
     """Raises UsageError where a file of this name cannot be written; asked before anything is measured.
 
     Args:
         makes_folder: whether a folder that is not there will be made.
+        mark: what a file that is there must have, see `check_replaceable`.
     """
     try:
         if path.is_dir():
@@ -36,6 +37,7 @@ def check_writable(path: Path, makes_folder: bool = False) -> None:
         if is_special(path):
             return
         _check_own(target_of(path))
+        check_replaceable(path, mark)
         # Asked of what it will be called while it is written, so that a name that is too long is noticed.
         partial_of(path).exists()
     except OSError as error:
@@ -48,7 +50,7 @@ def check_writable(path: Path, makes_folder: bool = False) -> None:
 
 def _check_own(path: Path) -> None:
     """Raises UsageError where a file is one of a run's own, which nothing but the run writes."""
-    is_own = path.suffix in OWN_SUFFIXES and (path.parent / "run.json").exists() and path.exists()
+    is_own = path.suffix in OWN_SUFFIXES and (path.parent / RUN).exists() and path.exists()
     if is_own:
         raise UsageError(f"{path} belongs to the run in its folder; name another file")
 
@@ -96,13 +98,16 @@ def clear_away(path: Path) -> None:
 
 
 @contextmanager
-def whole_file(path: Path) -> Iterator[Path]:
+def whole_file(path: Path, is_checked: bool = False) -> Iterator[Path]:
     """A name to write to that becomes `path` when all is well and vanishes otherwise.
 
     Missing folders are made. A link's target is written, not the link.
 
+    Args:
+        is_checked: whether the caller knows that a file that is there may be replaced.
+
     Raises:
-        UsageError: it cannot be written.
+        UsageError: it cannot be written, or another kind of file has its name.
     """
     path = target_of(path)
     partial = path if is_special(path) else partial_of(path)
@@ -111,6 +116,9 @@ def whole_file(path: Path) -> Iterator[Path]:
         clear_away(path)
         yield partial
         if partial != path:
+            # Files of a run are replaced as it goes on, also those of earlier versions, which had no marks.
+            if path.exists() and not (is_checked or any((folder / RUN).exists() for folder in path.parents[:2])):
+                check_alike(path, partial)
             moved_over(partial, path)
     except OSError as error:
         raise UsageError(f"cannot write {path}: {error.strerror or error}") from error
@@ -135,8 +143,8 @@ def check_is_folder(path: Path | None, what: str) -> None:
 def check_plot(path: Path | None) -> None:
     """Raises UsageError or PlotError where a plot of this name cannot be written; None will do."""
     if path:
-        check_writable(path)
         plots.check_format(path)
+        check_writable(path, mark=PLOTS[path.suffix.lower()])
 
 
 def save_plot(path: Path, figure: Any) -> None:
@@ -161,10 +169,10 @@ def abandon_output() -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def write_text(make: Callable[[], str], output: Path | None) -> None:
+def write_text(make: Callable[[], str], output: Path | None, is_checked: bool = False) -> None:
     """Text to a file, or to standard output; it is made once it is known that the file can be written.
 
-    Raises UsageError.
+    Raises UsageError; `is_checked` as in `whole_file`.
     """
     if output:
         check_writable(output)
@@ -172,36 +180,8 @@ def write_text(make: Callable[[], str], output: Path | None) -> None:
     if not output:
         say(text)
         return
-    with whole_file(output) as partial:
+    with whole_file(output, is_checked) as partial:
         partial.write_text(text, encoding="utf-8", newline="\n")
-
-
-def write(
-    rows: Sequence[dict[str, Any]],
-    format: str,
-    output: Path | None,
-    expendable: Sequence[str] = (),
-    by: str | None = None,
-    lead: str = "",
-    total: str = "",
-) -> None:
-    """Rows to a file, or to standard output; a table that does not fit the terminal spares `expendable` columns.
-
-    For people, rows that differ in column `by` are tables of their own, `lead` is what stands above the table, and
-    `total` is the line below it.
-    """
-    if output is None:
-        width = shutil.get_terminal_size((120, 40)).columns
-        say(tables.written(rows, format, width, expendable, by, lead, total))
-        return
-    check_writable(output)
-    with whole_file(output) as partial:
-        if format == "parquet":
-            tables.write_parquet(rows, partial)
-        else:
-            partial.write_text(
-                tables.written(rows, format, by=by, lead=lead, total=total), encoding="utf-8", newline="\n"
-            )
 
 
 def files_of(folder: Path) -> dict[str, Path]:

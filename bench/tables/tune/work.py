@@ -18,6 +18,7 @@ from ...ground.machine.systems.people import command_line
 from ...ground.options.counts import check_seed, checked_count
 from ...ground.options.storage_names import storages_named
 from ...ground.output.errors import UsageError, tell
+from ...ground.output.replacing import ARRAY
 from ...ground.output.writing import check_writable, whole_file
 from ...subjects.codecs.names import check_twin
 from ...subjects.codecs.tuned_names import MARK
@@ -95,7 +96,7 @@ def _steps(options: TuneOptions, outputs: TuneOutputs) -> list[Step]:
     if table and set(str(table)) & {MARK, ","}:
         raise UsageError(f"--table: {table} could not be named after best_fit:table=; a name without {MARK} and comma")
     if table:
-        check_writable(table)
+        check_writable(table, mark=ARRAY)
     require_jax()
     tuning = Tuning(chosen, _halves(chosen, options), options, table)
     key: Row = {"codec": chosen.codec.name, "normals": tuning.halves.held_out.name, "error": options.error}

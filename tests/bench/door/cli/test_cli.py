@@ -232,19 +232,20 @@ def test_a_run_that_fails_in_the_end_keeps_its_rows_and_no_half_of_a_table(run, 
 
 def test_a_file_that_fails_keeps_the_old_one(run, tmp_path, monkeypatch):
     path = tmp_path / "rows.csv"
-    path.write_text("precious")
+    path.write_text("encoding,storage\nprecious,rg8\n")
+    before = path.read_text()
     monkeypatch.setattr(
         tables, "written", lambda *_, **__: (_ for _ in ()).throw(OSError(28, "No space left on device"))
     )
     status, _, err = run(*QUICK, "--backend", "jax", "--format", "csv", "-o", str(path))
     assert status == 2 and "No space left" in err
-    assert {p.name for p in tmp_path.iterdir()} == {"rows.csv", ".rows.csv.rows"} and path.read_text() == "precious"
+    assert {p.name for p in tmp_path.iterdir()} == {"rows.csv", ".rows.csv.rows"} and path.read_text() == before
 
 
 def test_a_link_is_written_through_and_a_pipe_stays_a_pipe(run, tmp_path):
     """What is not a plain file keeps its nature: the target of a link is replaced, a pipe is written to."""
     target, link, pipe = tmp_path / "target.csv", tmp_path / "link.csv", tmp_path / "pipe"
-    target.write_text("old")
+    target.write_text("kind,name\nold,old\n")
     link.symlink_to(target)
     assert run("list", "--format", "csv", "-o", str(link))[0] == 0
     assert link.is_symlink() and "octahedral" in target.read_text()

@@ -220,7 +220,7 @@ def test_what_is_measured_is_not_written_over(run, tmp_path, option, name):
     before = (tmp_path / name).read_bytes()
     words = ("--normals", str(tmp_path / "frame.npy"), "--encoding", f"{tmp_path / 'mine.glsl'},xy")
     status, out, err = run("quality", *words, option, str(tmp_path / name))
-    assert (status, out, err.count("\n")) == (2, "", 1) and "is one of the files that are measured" in err
+    assert (status, out, err.count("\n")) == (2, "", 1) and f"{name}: this is an input of the command" in err
     assert (tmp_path / name).read_bytes() == before
 
 

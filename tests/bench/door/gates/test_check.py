@@ -390,7 +390,9 @@ def test_what_is_no_baseline_is_said_in_a_line(run, tmp_path, words, said):
     path.write_text(f'[[gate]]\nencoding = "xy"\nstorage = "rg8"\nnormals = "axes"\n{words}\n')
     for more in ([], ["--write-baseline"]) if "no gate" not in said else (["--write-baseline"],):
         status, out, err = run("check", str(path), *more)
-        assert (status, out) == (2, "") and said in err
+        # Gates that name themselves are not written over.
+        written = "gates.toml: this is an input of the command" if more and "not a baseline" in said else said
+        assert (status, out) == (2, "") and written in err
 
 
 def test_figures_of_any_table_are_compared_with_a_baseline(run, tmp_path):

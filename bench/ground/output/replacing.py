@@ -1,0 +1,83 @@
+"""Which files may be replaced: those that normalbench wrote, unless the command reads them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from types import MappingProxyType
+
+from .errors import UsageError
+
+# How much is read of either end of a file, in bytes.
+MOST = 1 << 16
+PAGE, ARRAY = b'<meta name="generator" content="normalbench">', b"\x93NUMPY"
+PNG, SVG, PDF = b"Software\0normalbench", b"<dc:title>normalbench</dc:title>", b"/Creator (normalbench)"
+# What a file of normalbench has near one of its ends, and what that file is called. The first mark decides.
+MARKS: Mapping[bytes, str] = MappingProxyType(
+    {
+        PAGE: "page",
+        ARRAY: "NumPy array",
+        PNG: "picture",
+        SVG: "picture",
+        PDF: "picture",
+        b'\ntitle = "normalbench budget, ': "layout",
+        b"keepPicture(": "script",
+        b"## normalbench: ": "report",
+    }
+)
+# By the ending of a plot's name.
+PLOTS: Mapping[str, bytes] = MappingProxyType({".png": PNG, ".svg": SVG, ".pdf": PDF})
+# What gives the files that this command reads; see `bench/door/cli/app.py`.
+reads: list[Callable[[], Iterable[Path]]] = []
+
+
+def check_replaceable(path: Path, mark: bytes = b"") -> None:
+    """Raises UsageError where a file that is there is an input of the command, or has not the mark of what replaces it.
+
+    Raises OSError as well.
+
+    Args:
+        mark: one of MARKS; empty for any file.
+    """
+    if not path.is_file():
+        return
+    if any(other.exists() and path.samefile(other) for files in reads for other in files()):
+        raise UsageError(f"{path}: this is an input of the command; name another file")
+    old = _ends(path)
+    if mark not in old and not is_empty(old):
+        raise not_ours(path, MARKS[mark])
+
+
+def check_alike(path: Path, new: Path) -> None:
+    """Raises UsageError where a file must not be replaced by a new one: see `check_replaceable`. Without a mark, two
+    files are alike in their first bytes, and two texts in their first line. Raises OSError as well."""
+    old, ends = _ends(path), _ends(new)
+    mark = next((mark for mark in MARKS if mark in ends), b"")
+    check_replaceable(path, mark)
+    if not (mark or is_empty(old) or _beginning(old) == _beginning(ends)):
+        raise not_ours(path, "file")
+
+
+def not_ours(path: Path, what: str) -> UsageError:
+    """What is said of a file that normalbench did not write."""
+    return UsageError(f"{path}: it is not a {what} of normalbench; name another file or delete it")
+
+
+def is_empty(data: bytes) -> bool:
+    """Whether nothing is lost with a file of this content."""
+    return not data.strip()
+
+
+def _ends(path: Path) -> bytes:
+    """Both ends of a file: matplotlib writes what made a PDF at its end."""
+    with path.open("rb") as file:
+        first = file.read(MOST)
+        file.seek(max(file.seek(0, 2) - MOST, len(first)))
+        return first + file.read()
+
+
+def _beginning(data: bytes) -> bytes:
+    """What two files of one kind have in common: their first bytes, of JSON its bracket, of a text its first line."""
+    if b"\0" in data:
+        return data[:4]
+    return data[:1] if data[:1] in (b"{", b"[") else data.partition(b"\n")[0]

@@ -1,0 +1,103 @@
+"""Rows as a file, which replaces nothing but rows of normalbench."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+from collections.abc import Collection, Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+from ...reports import tables
+from ..ground.output.replacing import MOST, is_empty, not_ours
+from ..ground.output.writing import check_writable, say, whole_file
+from ..tables.registry import TABLES
+
+# How a line of a table for people is split into its columns.
+BETWEEN = re.compile(r"\s*\|\s*|\s{2,}")
+# How texts without the columns of a table begin: those of `doctor` and `history`.
+BEGINS = re.compile(rb"\d+ findings?\n|nothing is likely wrong\n|\d+ runs?, from |(\| )?commit +(\| )?date ")
+# Which share of the names in a header must be columns: another version may have others.
+KNOWN_SHARE = 0.75
+
+
+def check_rows(path: Path | None, columns: Iterable[str] = ()) -> None:
+    """Raises UsageError where rows cannot be written to a file, or the file holds something else; None will do.
+
+    Args:
+        columns: what the file may have as well, where the rows belong to no table.
+    """
+    if path is None:
+        return
+    check_writable(path)
+    data = path.read_bytes() if path.is_file() else b""
+    known = [[column.name for column in (*table.columns, *table.also)] for table in TABLES.values()]
+    if not (is_empty(data) or _is_table(data, [*known, list(columns)])):
+        raise not_ours(path, "table")
+
+
+def _is_table(data: bytes, known: Sequence[Sequence[str]]) -> bool:
+    """Whether the content of a file is rows, in any format, by the columns that tables have."""
+    names = _columns_of(data)
+    is_for_programs = any(names[:1] == columns[:1] and _are_columns(names, columns) for columns in known)
+    begin = [_beginnings(columns) for columns in known]
+    is_for_people = any(_are_columns(names, columns) for names in _lines_of(data) for columns in begin)
+    return is_for_programs or is_for_people or bool(BEGINS.match(data)) or data.strip() == b"[]"
+
+
+def _columns_of(data: bytes) -> list[str]:
+    """The columns of a file for programs, all of them in their order; none of what is damaged."""
+    try:
+        if data.startswith(b"PAR1"):
+            return tables.parquet_columns(data)
+        if data.startswith(b"["):
+            return list(json.loads(data)[0])
+    except (ValueError, TypeError, LookupError, RecursionError):
+        return []
+    return data.partition(b"\n")[0].decode(errors="replace").strip().split(",")
+
+
+def _lines_of(data: bytes) -> list[list[str]]:
+    """The cells of each line of a text for people, which has no headings; their notes have some."""
+    lines = [] if re.search(rb"^#", data, re.M) else data[:MOST].decode(errors="replace").splitlines()
+    return [[cell.replace(" ", "_") for cell in BETWEEN.split(line.strip()) if cell] for line in lines]
+
+
+def _beginnings(columns: Iterable[str]) -> set[str]:
+    """What the first line of a header may have of each column: where it is narrow, the first words."""
+    words = [column.split("_") for column in columns]
+    return {"_".join(several[:count]) for several in words for count in range(1, len(several) + 1)}
+
+
+def _are_columns(names: Sequence[str], columns: Collection[str]) -> bool:
+    """Whether nearly all names are of these columns."""
+    return len(names) > 1 and sum(name in columns for name in names) >= KNOWN_SHARE * len(names)
+
+
+def write(
+    rows: Sequence[dict[str, Any]],
+    format: str,
+    output: Path | None,
+    expendable: Sequence[str] = (),
+    by: str | None = None,
+    lead: str = "",
+    total: str = "",
+) -> None:
+    """Rows to a file, or to standard output; a table that does not fit the terminal spares `expendable` columns.
+
+    For people, rows that differ in column `by` are tables of their own, `lead` is what stands above the table, and
+    `total` is the line below it.
+    """
+    if output is None:
+        width = shutil.get_terminal_size((120, 40)).columns
+        say(tables.written(rows, format, width, expendable, by, lead, total))
+        return
+    check_rows(output, dict.fromkeys(column for row in rows for column in row))
+    with whole_file(output, is_checked=True) as partial:
+        if format == "parquet":
+            tables.write_parquet(rows, partial)
+        else:
+            partial.write_text(
+                tables.written(rows, format, by=by, lead=lead, total=total), encoding="utf-8", newline="\n"
+            )
