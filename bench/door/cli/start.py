@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 from pathlib import Path
 from typing import NoReturn
 
 
 def program() -> NoReturn:
     """The command line as a process of its own."""
+    open_missing_streams()
     # Python's way is an exception, which in the midst of an import is a traceback, or the end of a library in C++.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     from ...ground.machine.system import prepare
@@ -27,6 +29,18 @@ def program() -> NoReturn:
     from .app import program as run
 
     run()
+
+
+def open_missing_streams() -> None:
+    """Open what goes nowhere in place of standard streams that are closed, for child processes too: the next file
+    would take their numbers. Python prints what is for a closed standard error to standard output."""
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:
+            # It takes the lowest number that is free.
+            os.set_inheritable(os.open(os.devnull, os.O_RDWR), True)
+    sys.stderr = sys.stderr or Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 # until the process ends
 
 
 def _takes_files(folder: Path) -> bool:

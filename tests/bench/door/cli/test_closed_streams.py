@@ -1,0 +1,80 @@
+"""Standard input, output or error may be closed when the program starts: nothing else takes their places."""
+
+import itertools
+import os
+import subprocess
+import sys
+from functools import partial
+
+import numpy as np
+import pytest
+
+ROW = ("quality", "--encoding", "octahedral", "--storage", "rg8", "--backend", "jax", "--count", "1000")
+CLOSED = [closed for count in (1, 2, 3) for closed in itertools.combinations((0, 1, 2), count)]
+
+
+def started(closed, *words, **more):
+    """A finished process of the program, which starts with some of its standard streams closed."""
+    command = [sys.executable, "-m", "normalbench", *words]
+    closing = partial(_close, closed)
+    return subprocess.run(command, capture_output=True, text=True, timeout=300, preexec_fn=closing, **more)
+
+
+def _close(numbers):
+    for number in numbers:
+        os.close(number)
+
+
+def test_messages_do_not_go_into_rows(tmp_path):
+    """The count of a file is told to change nothing."""
+    np.save(tmp_path / "f.npy", np.eye(3, dtype=np.float32))
+    words = (*ROW, "--normals", "f.npy", "--format", "csv")
+    usual, closed = started((), *words, cwd=tmp_path), started((2,), *words, cwd=tmp_path)
+    assert "--count has no effect" in usual.stderr
+    assert (closed.returncode, closed.stdout) == (0, usual.stdout)
+
+
+@pytest.mark.parametrize("closed", CLOSED)
+def test_rows_in_a_file_are_whole_whatever_is_closed(tmp_path, closed):
+    done = started(closed, "list", "-o", "rows.csv", cwd=tmp_path)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    assert started((), "list", "--format", "csv").stdout == (tmp_path / "rows.csv").read_text()
+
+
+@pytest.mark.parametrize("closed", [closed for closed in CLOSED if 1 in closed])
+def test_a_closed_output_is_refused_where_something_would_be_printed(closed):
+    done = started(closed, "list")
+    said = "" if 2 in closed else "normalbench: standard output is closed; name a file with -o\n"
+    assert (done.returncode, done.stdout, done.stderr) == (2, "", said)
+
+
+@pytest.mark.parametrize("closed", CLOSED)
+def test_a_wrong_word_has_its_status_whatever_is_closed(closed):
+    done = started(closed, "list", "nothing")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.count("\n") == (2 not in closed), done.stderr
+
+
+def test_children_have_the_three_streams(tmp_path):
+    """A compiler's messages would go into the first file that it opens."""
+    program = (
+        "import os, subprocess, sys\n"
+        "from normalbench.bench.door.cli.start import open_missing_streams\n"
+        "open_missing_streams()\n"
+        "print('lost', file=sys.stderr)\n"
+        'child = \'import os; [os.fstat(number) for number in range(3)]; open("made", "w").close()\'\n'
+        "sys.exit(subprocess.run([sys.executable, '-c', child]).returncode)\n"
+    )
+    closing = partial(_close, range(3))
+    done = subprocess.run([sys.executable, "-c", program], preexec_fn=closing, cwd=tmp_path, timeout=300)
+    assert done.returncode == 0 and (tmp_path / "made").exists()
+
+
+def test_a_users_encoder_is_measured_without_streams(tmp_path):
+    """It is tried in a process of its own."""
+    (tmp_path / "mine.glsl").write_text(
+        "vec2 mine_encode(vec3 n, vec3 view) { return n.xy; }\n"
+        "vec3 mine_decode(vec2 e, vec3 view) { return vec3(e, sqrt(max(1.0 - dot(e, e), 0.0))); }\n"
+    )
+    done = started((0, 1, 2), "doctor", "mine.glsl", "-o", "said.txt", cwd=tmp_path)
+    assert done.returncode == 0 and (tmp_path / "said.txt").read_text().startswith("nothing is likely wrong\n")
