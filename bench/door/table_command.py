@@ -7,6 +7,7 @@ import shutil
 import sys
 import tempfile
 import time
+from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import fields, replace
 from pathlib import Path
@@ -125,7 +126,13 @@ def _plot(table: Table, done: Measured) -> None:
         with whole_file(path) as partial:
             draw.write(charts, (partial, path.suffix[1:].lower()))
     elif not table.lacking(done):
-        raise UsageError("--plot: there is nothing to draw; see why above")
+        raise UsageError(f"--plot: nothing to plot: {_why_nothing(table, done.rows)}")
+
+
+def _why_nothing(table: Table, rows: Sequence[Row]) -> str:
+    """Why there is no chart of rows: the first reason that a row gives, or that they have too few figures."""
+    few = f"{len(rows)} row{'s' * (len(rows) != 1)} with too few figures for a chart; ask for more: {table.example}"
+    return next((row["skipped"] for row in rows if row.get("skipped")), few)
 
 
 def _bring(table: Table, outputs: Any, folder: Path) -> None:
@@ -145,4 +152,4 @@ def _write_page(table: Table, done: Measured, folder: Path, target: Path) -> Non
     facts |= {"request": {"tables": table.name}}
     steps = [{"table": table.name, "key": {}, "rows": rows}]
     shown = Done(facts, steps, whole={table.name: rows})
-    say(f"\nThe page: {write_report(folder, shown, target, charts=None)}\n")
+    say(f"\nThe page: {write_report(folder, shown, target, charts=None, name=target.stem)}\n")

@@ -19,6 +19,7 @@ OTHER_WORDS: Mapping[str, Mapping[str, str]] = MappingProxyType(
             "d32sfloat": "depth32f",
             "unorm:24": "packed24",
         },
+        "attribute": {"basecolour": "basecolor"},
         "encoding": {"oct": "octahedral", "hemioct": "hemi_octahedral"},
         "family": {
             "gcn4": "polaris10",

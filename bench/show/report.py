@@ -105,11 +105,13 @@ def write_report(
     charts: str | None = CHARTS,
     pictures_beside: bool = False,
     drawn: Mapping[str, str] = NOTHING,
+    name: str = "",
 ) -> Path:
     """The page, and beside it a folder of its charts unless `charts` is None, and one of its pictures if asked for.
 
     Args:
         drawn: charts that are there already, as `draw_ahead` gives them.
+        name: what the page is called; empty for the name of the folder.
 
     Returns:
         the page's path.
@@ -123,7 +125,7 @@ def write_report(
     for one in (beside, target.parent / pictures):
         if one:
             check_folder(one)
-    run, gallery, specs = drawn_page(gathered(folder, done), beside, pictures, drawn)
+    run, gallery, specs = drawn_page(gathered(folder, done, name), beside, pictures, drawn)
     _write_beside(target.parent / pictures, gallery.files)
     with whole_file(target) as partial:
         files = {path.name for path in folder.iterdir()} if target.parent.resolve() == folder.resolve() else set()
@@ -214,8 +216,9 @@ def _write_chart(drawing: drawings.Drawing, folder: Path) -> None:
         drawings.write(drawing, (vectors, "svg"), (pixels, "png"))
 
 
-def gathered(folder: Path, done: Done) -> Found:
-    """Everything that a page shows of a run; nothing is measured."""
+def gathered(folder: Path, done: Done, name: str = "") -> Found:
+    """Everything that a page shows of a run, which is called by its folder unless `name` is given; nothing is
+    measured."""
     done = _cleaned(done)
     # In the order of the page, whichever was measured first.
     tables = {name: done.tables[name] for name in TABLES if name in done.tables}
@@ -224,7 +227,7 @@ def gathered(folder: Path, done: Done) -> Found:
     if facts.get("sources") != sources():
         remarks.append(f"{_other_version(facts)} Measure it again: {_command(facts)}.")
     found = Found(
-        name=str(plain_text(folder.resolve().name)),
+        name=str(plain_text(name or folder.resolve().name)),
         facts=facts,
         tables=tables,
         steps=len(done.steps),

@@ -12,6 +12,7 @@ from typing import Any
 from ...ground.choose import names_a_file, unknown_name
 from ...ground.options.option import checked_options, fields_of
 from ...ground.output.errors import UsageError, noting_what_is_left_out
+from ...ground.spelling import spelled
 from ...measures.metrics.totals import Worst
 from ...run.measuring import Nothing, asked
 from ...run.measuring import measured as find_measured
@@ -54,9 +55,10 @@ def table_named(name: Any) -> Table:
     """A table by its name. Raises UsageError."""
     if not isinstance(name, str):
         raise UsageError(f"unknown table {name!r}; known: {', '.join(TABLES)}")
-    if name not in TABLES:
+    known = spelled("table", name, TABLES)
+    if known is None:
         raise unknown_name("table", [name], TABLES)
-    return TABLES[name]
+    return TABLES[known]
 
 
 def measured(table: Table, values: Mapping[str, Any], usual: Mapping[str, Any] | None = None) -> list[Found]:

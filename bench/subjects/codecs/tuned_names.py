@@ -13,6 +13,7 @@ from ....encodings.codecs.variants import MARK, TABLE, known_settings, settings_
 from ...ground.choose import unknown_name
 from ...ground.output.arrays import DamagedError, read_npy
 from ...ground.output.errors import UsageError
+from ...ground.spelling import spelled
 
 
 def tuned(word: str) -> Encoding:
@@ -21,9 +22,10 @@ def tuned(word: str) -> Encoding:
     Raises:
         UsageError: an unknown encoding or parameter, a value that is none or out of range, a file that is not a table.
     """
-    name = word.partition(MARK)[0]
-    if name not in ENCODINGS:
-        raise UsageError(f"{word}: {unknown_name('encoding', [name], ENCODINGS)}")
+    said = word.partition(MARK)[0]
+    name = spelled("encoding", said, ENCODINGS)
+    if name is None:
+        raise UsageError(f"{word}: {unknown_name('encoding', [said], ENCODINGS)}")
     encoding = ENCODINGS[name]
     try:
         _, values = settings_in(word)

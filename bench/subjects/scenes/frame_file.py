@@ -16,6 +16,7 @@ from ....gbuffer.scenes.files.source import SceneFileError, checked_address, fil
 from ...ground.choose import unknown_name
 from ...ground.options.option import KINDS, Reading, fields_of
 from ...ground.output.errors import UsageError
+from ...ground.spelling import spelled
 from ..normals.pixel_files import READERS
 
 ENDING = ".json"
@@ -85,8 +86,8 @@ def as_keys(text: str) -> str:
 def read_frame_file(path: Path) -> FrameFile:
     """A description. Raises UsageError, in one line, for what is missing in it or not known."""
     found = _document(path)
-    _check_names(path, "", found, KNOWN)
-    said = {name: value for name, value in found.items() if value is not None}
+    said = {spelled("attribute", name, KNOWN) or name: value for name, value in found.items() if value is not None}
+    _check_names(path, "", said, KNOWN)
     if {"roughness", "smoothness"} <= set(said):
         raise UsageError(f"{path}: roughness and smoothness are one quantity; leave one out")
     lacking = [name for name in NEEDED if name not in said and not (name == "roughness" and "smoothness" in said)]

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
 from ...ground.output.errors import UsageError
+from ...ground.spelling import spelled
 from .attributes import EMISSION, MOST_PART, SEEN, Attribute, exact_bits, motion
 
 # Attributes of bits that come back as they are, with the word that a layout has for them.
@@ -29,6 +31,13 @@ KNOWN = (
     *(f"{name}:BITS" for name in EXACT),
     *(f"{name}:{STENCIL}" for name in IN_STENCIL),
 )
+# What words are made of, here and in the options that name what is held.
+NAMES = dict.fromkeys(name for word in (*KNOWN, *EXACT, "depth", "all", "none") for name in word.split(":"))
+
+
+def as_known(words: str) -> str:
+    """Words of attributes, joined in any way, with each name as it is known here."""
+    return re.sub(r"[^,+:]+", lambda match: spelled("attribute", match[0].strip(), NAMES) or match[0], words)
 
 
 def attributes_held(words: str, speed: float) -> list[Attribute]:

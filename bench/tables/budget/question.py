@@ -13,13 +13,14 @@ from ...ground.machine.devices import require_device
 from ...ground.options.counts import MOST_INSTRUCTIONS, checked_numbers, in_range
 from ...ground.options.targets import checked_target
 from ...ground.output.errors import UsageError
+from ...ground.spelling import spelled
 from ...measures.metrics.images import require_flip
 from ...subjects.codecs.layout_names import layouts_named
 from ...subjects.environments.scenes_under import scenes_under
 from ...subjects.scenes.scene_names import scene_makers_named
 from .attributes import EMISSION, UP_TO_PIXELS, Attribute
 from .bins import BINS, WEBGPU, WEBGPU_BYTES, Bin
-from .contract import MOTION, PACKED, attributes_held, held_in_stencil, names_held
+from .contract import MOTION, PACKED, as_known, attributes_held, held_in_stencil, names_held
 from .cost import check_compilers, families_counted
 from .rates import CLASSES, Stage
 from .readers import MOST, Readers, check_held, read_readers
@@ -32,6 +33,8 @@ MOST_BYTES, MOST_TARGETS = 64, 7
 LEAST_LIMIT, MOST_LIMIT = 4, 40
 TILES = (16, 32, 64)
 WEB, TILE = "webgpu", "tile"
+# Options that name attributes.
+OF_ATTRIBUTES = ("hold", "blend", "read_alone", "readers")
 # What belongs together because it is read together.
 ONE_BYTE = frozenset({"id", "flags"})
 
@@ -81,6 +84,8 @@ class Question:
 def question(options: BudgetOptions) -> Question:
     """What is asked for. Raises UsageError for what cannot be asked."""
     device = require_device()
+    named = {name: as_known(getattr(options, name)) for name in OF_ATTRIBUTES if getattr(options, name)}
+    options = replace(options, **named)
     sizes = checked_numbers("--bytes", options.bytes, int, 1, MOST_BYTES)
     in_range("--targets", options.targets, 1, MOST_TARGETS)
     in_range("--overdraw", options.overdraw, 0.0, MOST)
@@ -149,8 +154,9 @@ def _limits(options: BudgetOptions) -> tuple[bool, int | None]:
     """Whether WebGPU's limit holds, and the bytes of a tile's pixel. Raises UsageError for a limit that is none."""
     webgpu, tile = False, None
     for word in filter(None, map(str.strip, (options.limit or "").split(","))):
-        name, _, size = word.partition(":")
-        if word == WEB:
+        said, _, size = word.partition(":")
+        name = spelled("limit", said, (WEB, TILE))
+        if name == WEB and not size:
             webgpu = True
         elif name == TILE and size.isdigit() and int(size) in TILES:
             tile = int(size)

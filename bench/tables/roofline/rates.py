@@ -10,6 +10,7 @@ from types import MappingProxyType
 from ...ground.choose import unknown_name
 from ...ground.options.gpu_families import FAMILIES
 from ...ground.output.errors import UsageError
+from ...ground.spelling import spelled
 
 
 @dataclass(frozen=True)
@@ -89,7 +90,9 @@ def gpus_named(words: str) -> dict[str, Rates]:
 
 def _named_rates(word: str) -> tuple[str, Rates]:
     """A GPU's word and its rates: of a known GPU, or of a family with settings."""
-    name, *settings = word.split(":")
+    said, *settings = word.split(":")
+    name = spelled("family", said, (*GPUS, *FAMILIES)) or said
+    word = ":".join([name, *settings])
     found = [_setting(word, setting) for setting in settings]
     changed = dict(found)
     if len(changed) < len(found):

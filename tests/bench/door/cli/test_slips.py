@@ -13,6 +13,7 @@ import pytest
 import typer
 
 from normalbench.bench.door.cli.app import _is_delicate, app
+from normalbench.bench.door.table_command import _why_nothing
 from normalbench.bench.ground.options.counts import whole_number
 from normalbench.bench.tables.registry import TABLES
 from normalbench.reports import tables
@@ -222,6 +223,14 @@ def test_what_is_measured_is_not_written_over(run, tmp_path, option, name):
     status, out, err = run("quality", *words, option, str(tmp_path / name))
     assert (status, out, err.count("\n")) == (2, "", 1) and f"{name}: this is an input of the command" in err
     assert (tmp_path / name).read_bytes() == before
+
+
+def test_a_plot_of_nothing_says_why():
+    """It pointed to a line above, which is there only where a row says why it has no figures."""
+    table = TABLES["budget"]
+    few = f"1 row with too few figures for a chart; ask for more: {table.example}"
+    assert _why_nothing(table, [{"layout": "mine", "skipped": None}]) == few
+    assert _why_nothing(table, [{"layout": "mine", "skipped": "it has no normals"}]) == "it has no normals"
 
 
 def test_there_are_forty_slips():

@@ -1,0 +1,93 @@
+"""Names of every kind are matched without capitals, hyphens and underscores."""
+
+import json
+
+import pytest
+
+from normalbench.bench.door.gates.measured import table_named
+from normalbench.bench.ground.choose import choose
+from normalbench.bench.ground.options import listing
+from normalbench.bench.ground.options.effect_names import effects_named
+from normalbench.bench.ground.options.light_names import light_buffers_named
+from normalbench.bench.ground.options.option import Reading
+from normalbench.bench.ground.options.storage_names import roundings_named, storages_named
+from normalbench.bench.subjects.codecs.layout_names import layouts_named
+from normalbench.bench.subjects.codecs.user_encodings import encodings_named
+from normalbench.bench.subjects.environments.environment_names import environment_named
+from normalbench.bench.subjects.normals.normal_names import normal_sets_named
+from normalbench.bench.subjects.scenes.frame_file import read_frame_file
+from normalbench.bench.subjects.scenes.scene_names import scene_makers_named
+from normalbench.bench.tables.budget.contract import as_known
+from normalbench.bench.tables.families_named import families_named
+from normalbench.bench.tables.roofline.rates import gpus_named
+from normalbench.gbuffer.pipelines import PIPELINES
+
+
+def names(values):
+    return [getattr(value, "name", value) for value in values]
+
+
+# By kind of name: what reads it, as it may be typed, and what it is.
+READ = {
+    "encoding": (lambda word: names(encodings_named(word)), "Hemi-Octahedral", ["hemi_octahedral"]),
+    "encoding with a setting": (
+        lambda word: names(encodings_named(word)),
+        "Octahedral:axis=y",
+        names(encodings_named("octahedral:axis=y")),
+    ),
+    "storage": (lambda word: names(storages_named(word)), "RG8-Snorm", ["rg8_snorm"]),
+    "rounding": (roundings_named, "Truncate-Half", ["truncate_half"]),
+    "set of normals": (lambda word: names(normal_sets_named(word, 10, 0, Reading())), "SPHERE", ["sphere"]),
+    "scene": (lambda word: names(scene_makers_named(word)), "Studio", ["studio"]),
+    "environment": (lambda word: environment_named(word).name, "Studio", environment_named("studio").name),
+    "layout": (lambda word: names(layouts_named(word)), "Unreal-4", ["unreal4"]),
+    "light buffer": (lambda word: names(light_buffers_named(word)), "RGBA-16F", names(light_buffers_named("rgba16f"))),
+    "effect": (lambda word: [one.name for one in effects_named(word)], "GTAO", ["gtao"]),
+    "pipeline": (lambda word: names(choose("pipeline", word, PIPELINES)), "For-Ward", ["forward"]),
+    "family": (families_named, "NAVI_21", ["navi21"]),
+    "GPU": (lambda word: [*gpus_named(word)], next(iter(gpus_named("all"))).upper(), [next(iter(gpus_named("all")))]),
+    "table": (lambda word: table_named(word).name, "Quality", "quality"),
+    "list": (lambda word: listing.listing(word), "Light-s", listing.listing("lights")),
+    "attribute": (as_known, "base_color", "basecolor"),
+    "attribute with a hyphen": (as_known, "base-color", "basecolor"),
+    "attribute in British": (as_known, "Base_Colour", "basecolor"),
+    "attributes with bits": (as_known, "Normal, base_color,ID:4,MOTION:Packed", "normal,basecolor,id:4,motion:packed"),
+    "attributes read together": (as_known, "2,Base_Color+Roughness,All", "2,basecolor+roughness,all"),
+    "what is no attribute": (as_known, "normal,colour", "normal,colour"),
+}
+
+
+@pytest.mark.parametrize("kind", READ)
+def test_a_name_is_known_however_it_is_spelled(kind):
+    read, typed, known = READ[kind]
+    assert read(typed) == known, f"{typed}: {read(typed)}, not {known}"
+
+
+@pytest.mark.parametrize("key", ["basecolor", "base_color", "base-color", "BaseColor", "base_colour"])
+def test_a_captured_frame_has_a_base_colour_however_it_is_spelled(tmp_path, key):
+    entry = {"file": "a.npy"}
+    (tmp_path / "a.npy").touch()
+    said = {"fov": 60, "near": 0.1, "far": 100, "depth": entry, "normal": entry, "roughness": 0.5, key: [1, 1, 1]}
+    (tmp_path / "gbuffer.json").write_text(json.dumps(said))
+    assert read_frame_file(tmp_path / "gbuffer.json").entries["basecolor"] == [1, 1, 1]
+
+
+@pytest.mark.parametrize("option", ["--hold", "--blend", "--read-alone", "--readers"])
+def test_options_of_attributes_take_base_color(run, option):
+    """What is wrong is said after the names were read."""
+    words = {"--hold": "normal,base_color,roughness,metalness,specular", "--readers": "base_color+tangent"}
+    status, _, err = run("budget", option, words.get(option, "base_color,tangent"))
+    said = {"--hold": "--hold: occlusion is missing", "--readers": "--readers base_color+tangent: unknown"}
+    wanted = said.get(option, f"{option} tangent: not held")
+    assert status == 2 and wanted in err.replace("basecolor", "base_color"), err
+
+
+@pytest.mark.parametrize("file", ["spheres.html", "out/spheres.html"])
+def test_a_page_is_called_after_its_file(run, tmp_path, monkeypatch, file):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "out").mkdir()
+    words = ("--storage", "rg8", "--backend", "jax", "--count", "1000", "--encoding", "octahedral")
+    assert run("quality", *words, "--report", file)[0] == 0
+    text = (tmp_path / file).read_text()
+    assert "<title>normalbench: spheres</title>" in text, text[text.index("<title>") :][:80]
+    assert "normalbench-" not in text[: text.index("</header>")]
