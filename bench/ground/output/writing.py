@@ -116,6 +116,7 @@ def whole_file(path: Path, is_checked: bool = False) -> Iterator[Path]:
         clear_away(path)
         yield partial
         if partial != path:
+            check_replaceable(path)
             # Files of a run are replaced as it goes on, also those of earlier versions, which had no marks.
             if path.exists() and not (is_checked or any((folder / RUN).exists() for folder in path.parents[:2])):
                 check_alike(path, partial)

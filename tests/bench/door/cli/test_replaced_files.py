@@ -9,7 +9,11 @@ import typer
 from PIL import Image
 
 from normalbench.bench.door.cli.app import app
+from normalbench.bench.door.cli.inputs import keep_inputs
 from normalbench.bench.door.cli.typed import _takes
+from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.ground.output.replacing import reads
+from normalbench.bench.ground.output.writing import whole_file
 from normalbench.bench.keep.row_files import check_rows
 from normalbench.bench.tables.registry import TABLES
 from normalbench.reports.charts import motion, pictures
@@ -116,6 +120,21 @@ def test_code_does_not_replace_a_users_shader_in_its_folder(run, folder):
     status, _, err = run("code", "octahedral", "--storage", "rgb10a2", "--to", "hlsl", "-o", "out")
     assert status == 2 and "octahedral_rgb10a2.hlsl: it is not a file of normalbench" in err, err
     assert path.read_text() == "// Mine.\n"
+
+
+@pytest.mark.parametrize("is_run", [True, False])
+def test_an_input_in_a_folder_is_not_replaced(folder, is_run):
+    """In the folder of a run everything else may be."""
+    if is_run:
+        (folder / "run.json").write_text("{}")
+    keep_inputs(["--encoding", "other.glsl,mine.glsl"], typer.main.get_command(app).commands["quality"].params)
+    with (
+        pytest.raises(UsageError, match="mine.glsl: this is an input of the command"),
+        whole_file(folder / "mine.glsl") as partial,
+    ):
+        partial.write_text(SHADER.splitlines()[0] + "\n")
+    assert (folder / "mine.glsl").read_text() == SHADER
+    reads.clear()
 
 
 AGAIN = {
