@@ -1,10 +1,8 @@
 """Standard input, output or error may be closed when the program starts: nothing else takes their places."""
 
 import itertools
-import os
 import subprocess
 import sys
-from functools import partial
 
 import numpy as np
 import pytest
@@ -15,14 +13,14 @@ CLOSED = [closed for count in (1, 2, 3) for closed in itertools.combinations((0,
 
 def started(closed, *words, **more):
     """A finished process of the program, which starts with some of its standard streams closed."""
-    command = [sys.executable, "-m", "normalbench", *words]
-    closing = partial(_close, closed)
-    return subprocess.run(command, capture_output=True, text=True, timeout=300, preexec_fn=closing, **more)
+    return without_streams(closed, [sys.executable, "-m", "normalbench", *words], **more)
 
 
-def _close(numbers):
-    for number in numbers:
-        os.close(number)
+def without_streams(closed, command, **more):
+    """A finished process. A shell closes its streams: JAX warns of a fork of this process."""
+    closing = " ".join(f"{number}>&-" for number in closed)
+    words = ["sh", "-c", f'exec "$@" {closing}', "sh", *command]
+    return subprocess.run(words, capture_output=True, text=True, timeout=300, **more)
 
 
 def test_messages_do_not_go_into_rows(tmp_path):
@@ -65,8 +63,7 @@ def test_children_have_the_three_streams(tmp_path):
         'child = \'import os; [os.fstat(number) for number in range(3)]; open("made", "w").close()\'\n'
         "sys.exit(subprocess.run([sys.executable, '-c', child]).returncode)\n"
     )
-    closing = partial(_close, range(3))
-    done = subprocess.run([sys.executable, "-c", program], preexec_fn=closing, cwd=tmp_path, timeout=300)
+    done = without_streams(range(3), [sys.executable, "-c", program], cwd=tmp_path)
     assert done.returncode == 0 and (tmp_path / "made").exists()
 
 
