@@ -44,6 +44,8 @@ from normalbench.gbuffer.gl.device import NoDeviceError, device
 CACHE = Path(__file__).parents[1] / ".pytest_cache"
 # What a process of the tests may hold on to between two tests, in bytes.
 LARGE = 1_400_000_000
+# By how much more than that, or than what was left the last time, before memory is given back again: it takes seconds.
+GROWN = 300_000_000
 pytest_plugins = ["pytester"]
 jax.config.update("jax_numpy_rank_promotion", "raise")
 jax.config.update("jax_numpy_dtype_promotion", "strict")
@@ -81,13 +83,21 @@ def pytest_collection_finish():
     have_few_heaps()
 
 
+@pytest.fixture(scope="session")
+def held():
+    """What this process may hold before memory is given back, in bytes; it changes each time."""
+    return [LARGE]
+
+
 @pytest.fixture(autouse=True)
-def memory_is_given_back():
+def memory_is_given_back(held):
     """A command keeps what it freed for its own next step; a process of thousands of tests would grow to gigabytes."""
     yield
-    for give_back in (give_back_what_is_freed, give_back_what_a_table_needed):
-        if _resident_bytes() > LARGE:
-            give_back()
+    if _resident_bytes() > held[0]:
+        for give_back in (give_back_what_is_freed, give_back_what_a_table_needed):
+            if _resident_bytes() > LARGE:
+                give_back()
+        held[0] = max(LARGE, _resident_bytes() + GROWN)
 
 
 def _resident_bytes() -> int:

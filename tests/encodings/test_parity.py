@@ -5,6 +5,7 @@ import pytest
 from mutants import mutants
 from parity.comparison import Comparison
 from parity.kinds import PARITY
+from slowly import a_tenth
 
 from normalbench.encodings.catalogue import BY_KIND
 from normalbench.gbuffer.gl import shader
@@ -88,8 +89,11 @@ def swaps() -> list:
     return tried
 
 
+EACH = "encodings/test_parity.py::test_swapping_two_arguments_is_noticed"
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("kind, encoding, file, text", swaps())
+@pytest.mark.parametrize("kind, encoding, file, text", a_tenth(EACH, swaps()))
 def test_swapping_two_arguments_is_noticed(gl, monkeypatch, kind, encoding, file, text):
     """The comparison is strict enough: no swap of two arguments in any GLSL function of an encoding goes unseen."""
     original, parity = shader.read_shader, PARITY[kind]

@@ -2,11 +2,11 @@
 
 from dataclasses import replace
 from functools import cache
-from itertools import accumulate
+from itertools import accumulate, product
 
 import numpy as np
 import pytest
-from slowly import all_but
+from slowly import a_tenth, all_but
 
 from normalbench.bench.ground.angles import angles_deg
 from normalbench.bench.tables.quality.measure import round_trip
@@ -159,9 +159,11 @@ def test_a_presets_fields_take_all_bits_of_their_formats(name):
         assert taken == sum(bits), f"{name}, {target.format}: {target.holds}"
 
 
+EACH = "gbuffer/test_engine_layouts.py::test_every_engines_layout_renders"
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ENGINES)
-@pytest.mark.parametrize("pipeline", ["deferred", "hybrid"])
+@pytest.mark.parametrize("pipeline, name", a_tenth(EACH, product(["deferred", "hybrid"], ENGINES)))
 def test_every_engines_layout_renders(gl, pipeline, name):
     """The image is finite, lit, and near the one from 32-bit floats. Materials that are whole are of metal or not."""
     layout = LAYOUTS[name]

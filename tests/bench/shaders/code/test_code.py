@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from languages import require_runner
+from slowly import a_tenth
 
 import normalbench as nb
 from normalbench.bench.door import code_command
@@ -78,8 +79,11 @@ def pairs() -> list:
     return [pytest.param(*pair, marks=[pytest.mark.slow] * slow) for pair, slow in zip(every, is_slow, strict=True)]
 
 
+EACH = "bench/shaders/code/test_code.py::test_the_code_of_a_codec_gives_the_catalogues_texels"
+
+
 @pytest.mark.usefixtures("gl")
-@pytest.mark.parametrize("name, language", pairs())
+@pytest.mark.parametrize("name, language", a_tenth(EACH, pairs()))
 def test_the_code_of_a_codec_gives_the_catalogues_texels(language, name, tmp_path):
     """2^16 hard and random normals: texels, numbers that come back, and render targets, in each language."""
     require_runner(language)

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from languages import require_runner
+from slowly import a_tenth
 
 from normalbench.bench.shaders.code.emit import LANGUAGES
 from normalbench.bench.shaders.code.files import code_of, stem_of
@@ -61,8 +62,11 @@ def pairs() -> list:
     return [pytest.param(*one, marks=[] if one[-1] in ("c", "python") else [pytest.mark.slow]) for one in every]
 
 
+EACH = "bench/shaders/code/test_code_kinds.py::test_the_code_of_a_kind_gives_the_catalogues_texels"
+
+
 @pytest.mark.usefixtures("gl")
-@pytest.mark.parametrize("kind, name, storage, language", pairs())
+@pytest.mark.parametrize("kind, name, storage, language", a_tenth(EACH, pairs()))
 def test_the_code_of_a_kind_gives_the_catalogues_texels(kind, name, storage, language, tmp_path):
     """2^16 values: texels, numbers that come back, and render targets."""
     require_runner(language)

@@ -3,12 +3,14 @@
 import json
 import re
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 import pytest
 from languages import require_runner
 from pasted import LONGEST, loops_without_unrolling, names_in
+from slowly import a_tenth
 
 from normalbench.bench.door import gbuffer_command
 from normalbench.bench.ground.output.errors import UsageError
@@ -178,9 +180,11 @@ def test_it_packs_and_unpacks_as_the_renderer_does(name, language, layouts):
     assert found.differing <= max(TIES[name] * FEW, 2 * (TIES[name] > 0)), found.says
 
 
+MILLIONS = "bench/shaders/code/test_whole_layouts.py::test_it_packs_and_unpacks_as_the_renderer_does"
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("language", FAST)
-@pytest.mark.parametrize("name", TIES)
+@pytest.mark.parametrize("name, language", a_tenth(MILLIONS, product(TIES, FAST)))
 def test_a_million_surfaces_are_packed_as_the_renderer_packs_them(name, language, layouts):
     """None differs where no curve has a power; else a few do, by a step where they lie next to a tie."""
     require_runner(language)
