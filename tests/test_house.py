@@ -158,6 +158,35 @@ def test_one_folder_hands_text_to_compilers():
     assert making == set()
 
 
+# Who takes JSON apart besides `encodings/codecs/files.py`: of each, what it reads was written by this program.
+OWN_JSON = {
+    "bench/door/gates/baseline.py": "rows that pytest's workers send",
+    "bench/ground/machine/systems/linux_forks.py": "what a fork is asked",
+    "bench/ground/output/cache.py": "the user's own cache, with a digest",
+    "bench/keep/journal.py": "lines with infinite figures, which the schema judges",
+    "bench/keep/plain.py": "rows on their way",
+    "bench/measures/metrics/totals.py": "totals on their way",
+    "bench/shaders/code/run/essl.py": "the answer of a child",
+    "bench/shaders/isa/child.py": "what a child is asked",
+    "bench/shaders/isa/driver_files.py": "files of drivers that are installed",
+    "bench/shaders/isa/nvidia/child.py": "what a child is asked",
+    "bench/shaders/isa/process.py": "the answer of a child",
+    "bench/shaders/languages/translated.py": "the answer of a child",
+    "bench/subjects/codecs/kinds/named.py": "the answer of a child",
+    "bench/subjects/codecs/user_encodings.py": "the answer of a child",
+    "bench/subjects/normals/pixel_files.py": "the answer of a child",
+    "bench/tables/cost/recorded.py": "counts that come with the program",
+    "bench/tables/pick/choices.py": "a column of the program's rows",
+}
+
+
+def test_one_reader_takes_files_of_json_and_toml_apart():
+    """It judges their numbers, which Python reads as infinite, as NaN, or not at all."""
+    words = re.compile(r"\b(?:json|tomllib)\.loads?\(")
+    found = {str(path.relative_to(ROOT)) for path in SOURCES if words.search(path.read_text())}
+    assert found - {"encodings/codecs/files.py"} == set(OWN_JSON)
+
+
 def test_a_folder_of_the_renderer_is_read_at_a_glance():
     """A pass beside its shaders counts as one thing; no folder holds more than thirteen."""
     for folder in (path for path in (ROOT / "gbuffer").rglob("*") if path.is_dir() and path.name != "__pycache__"):

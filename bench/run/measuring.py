@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 import os
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -12,6 +11,7 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import Any, Protocol
 
+from ...encodings.codecs.files import parsed_json
 from ..ground.machine.lost import require_living_device
 from ..ground.machine.settings import settings
 from ..ground.options.option import Reading, fields_of
@@ -223,13 +223,13 @@ def companions(word: str | Path) -> list[Path]:
 def _parts_of_gltf(path: Path) -> list[Path]:
     """The files that a glTF file's buffers and pictures are in; none of a file that cannot be read."""
     # It imports NumPy, which start-up does without.
-    from ...gbuffer.scenes.files.source import SceneFileError, checked_address
+    from ...gbuffer.scenes.files.source import checked_address
 
     try:
-        document = json.loads(path.read_bytes())
+        document = parsed_json(path.read_bytes())
         parts = [part for key in ("buffers", "images") for part in document.get(key, ())]
         named = [checked_address(path, part["uri"], "its parts") for part in parts if "uri" in part]
-    except (ValueError, TypeError, AttributeError, KeyError, RecursionError, SceneFileError):
+    except (ValueError, TypeError, AttributeError, KeyError):
         return []
     return [path.parent / os.path.relpath(one, path.parent.resolve()) for one in named if one and one.is_file()]
 

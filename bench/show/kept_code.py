@@ -12,7 +12,7 @@ from typing import Annotated, Any, NamedTuple
 from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, with_config
 from typing_extensions import TypedDict
 
-from ...encodings.codecs.files import file_bytes
+from ...encodings.codecs.files import file_bytes, parsed_json
 from ..ground.output.writing import whole_file
 
 FILE = "code.json"
@@ -91,8 +91,8 @@ def write_code(folder: Path, languages: Mapping[str, str], codecs: Mapping[str, 
 def read_code(folder: Path) -> dict[str, Any]:
     """The codes of a run; empty where it keeps none, or its file is damaged."""
     try:
-        kept = KEPT.validate_python(json.loads(file_bytes(folder / FILE, MOST_BYTES)))
-    except (OSError, ValueError, RecursionError, ValidationError):
+        kept = KEPT.validate_python(parsed_json(file_bytes(folder / FILE, MOST_BYTES)))
+    except (OSError, ValueError, ValidationError):
         return {}
     texts = (places for one in kept["codecs"].values() for places in one["texts"].values())
     return kept if all(at < len(kept["pieces"]) for places in texts for at in places) else {}

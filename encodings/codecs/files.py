@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import errno
 import json
+import math
 import os
 import re
 import stat
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -30,6 +31,11 @@ REASONS: Mapping[int, str] = MappingProxyType(
     }
 )
 TOO_DEEP = "it is nested too deep"
+# Whole numbers of more letters may be larger than any float; Python reads none of thousands of digits.
+LONG_NUMBER = 308
+# How many letters of a place in a document are shown, whose names may have any length.
+SHOWN_PLACE = 200
+TOO_LONG = re.compile(r"(?<![\w.])[-+]?\d[\d_]{4300,}")
 
 
 class FileError(OSError):
@@ -96,17 +102,24 @@ def file_toml(path: Path) -> dict[str, Any]:
 
     Raises:
         FileError: see file_bytes.
-        ValueError: it is not TOML, or is nested too deep.
+        ValueError: it is not TOML, is nested too deep, or has a number that is not finite.
     """
     text = file_text(path)
     try:
-        return tomllib.loads(text)
+        document = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise ValueError(_not_toml(str(error))) from error
     except ValueError as error:
-        raise ValueError("a number has too many digits") from error
+        raise ValueError(_too_many_digits(text)) from error
     except RecursionError as error:
         raise ValueError(TOO_DEEP) from error
+    return _with_finite_numbers(document)
+
+
+def _too_many_digits(text: str) -> str:
+    long = TOO_LONG.search(text)
+    where = f"line {text.count(chr(10), 0, long.start()) + 1}: " if long else ""
+    return f"{where}a number has too many digits; write a smaller one"
 
 
 # What tomllib says of a key or a table that stands twice.
@@ -126,21 +139,59 @@ def file_json(path: Path) -> Any:
 
     Raises:
         FileError: see file_bytes.
-        ValueError: it is not JSON, or is nested too deep.
+        ValueError: see parsed_json.
     """
-    text = file_text(path)
+    return parsed_json(file_text(path))
+
+
+Pairs = Callable[[list[tuple[str, Any]]], dict[str, Any]]
+
+
+def parsed_json(data: str | bytes, pairs: Pairs | None = None) -> Any:
+    """What JSON holds that others wrote: all its numbers are finite.
+
+    Args:
+        pairs: makes an object from its names and values; what it raises passes through.
+
+    Raises:
+        ValueError: it is not JSON, is nested too deep, or has a number that is not finite; with its place.
+    """
     try:
-        return json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise ValueError(not_json(error)) from error
+        text = data if isinstance(data, str) else data.decode("utf-8-sig")
+        return _with_finite_numbers(json.loads(text, object_pairs_hook=pairs, parse_int=_whole))
+    except UnicodeDecodeError as error:
+        raise ValueError("it is not text in UTF-8") from error
+    except json.JSONDecodeError as error:
+        raise ValueError(f"line {error.lineno}, column {error.colno}: this is not JSON") from error
+    except RecursionError as error:
+        raise ValueError(TOO_DEEP) from error
 
 
-def not_json(error: ValueError | RecursionError) -> str:
-    """What is wrong with JSON, from what the library raised."""
-    if isinstance(error, RecursionError):
-        return TOO_DEEP
-    is_placed = isinstance(error, json.JSONDecodeError)
-    return f"line {error.lineno}, column {error.colno}: this is not JSON" if is_placed else "it is not JSON"
+def _whole(digits: str) -> int | float:
+    """A whole number; infinity for one that no float holds, which may have more digits than Python reads."""
+    return int(digits) if len(digits) <= LONG_NUMBER else float(digits)
+
+
+def _with_finite_numbers(document: Any) -> Any:
+    """A document as it is. Raises ValueError where one of its numbers is NaN or larger than a float can be."""
+    left = [("", document)]
+    while left:
+        place, value = left.pop()
+        if isinstance(value, dict):
+            left += [(f"{place}.{name}" if place else name, inner) for name, inner in value.items()]
+        elif isinstance(value, list):
+            left += [(f"{place}[{index}]", inner) for index, inner in enumerate(value)]
+        elif isinstance(value, int | float) and not _is_finite(value):
+            raise ValueError(f"{place[:SHOWN_PLACE] or 'it'} is not a finite number; write one below 1e308")
+    return document
+
+
+def _is_finite(value: float) -> bool:
+    """Whether a float can be this number, which may be a whole one of any size."""
+    try:
+        return math.isfinite(value)
+    except OverflowError:
+        return False
 
 
 def called(name: str) -> str:

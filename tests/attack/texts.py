@@ -18,6 +18,7 @@ from written import some_normals
 from normalbench.bench.door.gates.baseline import Baseline, read_baseline
 from normalbench.bench.door.gates.gates import checked, read_gates
 from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.subjects.scenes.frame_file import read_frame_file
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.registry import TABLES
 from normalbench.gbuffer.layouts.layout import read_layout
@@ -70,10 +71,24 @@ def based(path: Path) -> None:
     Baseline(path, False).differences({"table": "quality", "key": {"seed": 1}, "row": {"psnr_db": 1.5}}, {})
 
 
+FRAME = json.dumps(
+    {
+        "fov": 60,
+        "near": 0.1,
+        "far": 100,
+        "view_matrix": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]],
+        "depth": {"file": "list.npy", "channel": "0", "depth_unit": 1.0},
+        "normal": {"file": "list.npy", "channels": "0,1,2", "nan_share": 0.1, "unpack": False},
+        "basecolor": [0.5, 0.25, 1],
+        "roughness": {"file": "list.npy", "scale": 2},
+    }
+)
+
 TEXTS = {
     "gates": ("a.toml", GATES, gated, UsageError),
     "layout": ("a.toml", LAYOUT, read_layout, LayoutError),
     "baseline": ("a.json", BASELINE, based, (UsageError, AssertionError)),
+    "frame": ("a.json", FRAME, read_frame_file, UsageError),
 }
 
 
@@ -86,7 +101,7 @@ def texts(kind: str, folder: Path) -> Attack:
 
     def case(seed: int) -> str:
         rng = np.random.default_rng(seed)
-        change = revalued if kind == "baseline" and seed % 2 else mutated
+        change = revalued if path.suffix == ".json" and seed % 2 else mutated
         path.write_bytes(change(text.encode(), rng))
         try:
             read(path)

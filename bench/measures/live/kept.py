@@ -11,7 +11,7 @@ from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, with_confi
 from typing_extensions import TypedDict
 
 from ....encodings.codecs.codec import Codec
-from ....encodings.codecs.files import file_bytes
+from ....encodings.codecs.files import file_bytes, parsed_json
 from ....gbuffer.gl.device import NoDeviceError
 from ....gbuffer.gl.shader import ShaderError
 from ...ground.output.writing import files_of, whole_file
@@ -126,11 +126,11 @@ def read_live(folder: Path) -> tuple[list[Record], dict[str, str]]:
         if path.suffix != ".json":
             continue
         try:
-            record = json.loads(file_bytes(path, MOST_BYTES))
+            record = parsed_json(file_bytes(path, MOST_BYTES))
             if isinstance(record, dict) and isinstance(record.get("left_out"), str):
                 left_out[f"{record.get('encoding')} {record.get('storage')}"] = record["left_out"]
             else:
                 found.append(_current_record(KEPT.validate_python(record)))
-        except (OSError, ValueError, RecursionError, ValidationError):
+        except (OSError, ValueError, ValidationError):
             left_out[name] = "its file is damaged"
     return found, left_out

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import math
 import os
 import re
 from collections.abc import Iterator, Mapping
@@ -12,6 +10,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from ....encodings.codecs.files import parsed_json
 from ....gbuffer.scenes.files.source import SceneFileError, checked_address, file_bytes
 from ...ground.choose import unknown_name
 from ...ground.options.option import KINDS, Reading, fields_of
@@ -116,11 +115,11 @@ def _named_files(frame: FrameFile) -> Iterator[Path]:
 
 def _document(path: Path) -> dict[str, Any]:
     try:
-        found = json.loads(file_bytes(path, MOST_BYTES))
+        found = parsed_json(file_bytes(path, MOST_BYTES))
     except SceneFileError as error:
         raise UsageError(str(error)) from error
-    except (ValueError, RecursionError) as error:
-        raise UsageError(f"{path}: not JSON: {error}") from error
+    except ValueError as error:
+        raise UsageError(f"{path}: {error}") from error
     if not isinstance(found, dict):
         raise UsageError(f'{path}: it describes no frame; write {{"depth": {{"file": "depth.exr"}}, ...}}')
     return found
@@ -140,7 +139,7 @@ def _how(name: str) -> str:
 
 
 def _number(path: Path, name: str, value: object) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+    if isinstance(value, bool) or not isinstance(value, int | float):
         raise UsageError(f"{path}: {name} is {value!r}; it must be a number")
     return float(value)
 

@@ -6,7 +6,6 @@ A file is one JSON object in UTF-8. `FORMAT` counts its versions.
 from __future__ import annotations
 
 import hashlib
-import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -26,7 +25,7 @@ from pydantic import (
     model_validator,
 )
 
-from ....encodings.codecs.files import file_bytes, not_json
+from ....encodings.codecs.files import file_bytes, parsed_json
 from ....reports.page.found import plain_text
 from ...ground.output.errors import UsageError
 from .names import browser_name
@@ -214,29 +213,15 @@ def _parsed(data: bytes) -> Any:
         text = data.decode("utf-8")
     except UnicodeDecodeError as error:
         raise ValueError(f"byte {error.start + 1}: it is not text in UTF-8") from None
-    try:
-        return json.loads(text, object_pairs_hook=_object_without_repeats, parse_constant=_no_constant)
-    except _SaidError:
-        raise
-    except (ValueError, RecursionError) as error:
-        raise ValueError(not_json(error)) from None
-
-
-class _SaidError(ValueError):
-    """What is wrong with a file, in words."""
+    return parsed_json(text, _object_without_repeats)
 
 
 def _object_without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     made = dict(pairs)
     if len(made) < len(pairs):
         twice = Counter(name for name, _ in pairs).most_common(1)[0][0]
-        raise _SaidError(f"{_short_text(twice)} is given twice in one object")
+        raise ValueError(f"{_short_text(twice)} is given twice in one object")
     return made
-
-
-def _no_constant(name: str) -> Any:
-    """Raises: JSON has no NaN and no infinity."""
-    raise _SaidError(f"{name} is not a number of JSON; write null where nothing was measured")
 
 
 def _checked_file(found: Any) -> DeviceFile:

@@ -6,8 +6,6 @@ count that is too large.
 
 from __future__ import annotations
 
-import json
-import math
 import struct
 from functools import cached_property
 from pathlib import Path
@@ -15,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from ....encodings.codecs.files import not_json
+from ....encodings.codecs.files import parsed_json
 from .gltf_packed import DRACO, MESHOPT, unpacked_view
-from .source import MAX_BYTES, MAX_VERTICES, SceneFileError, checked_address, file_bytes, resource
+from .source import MAX_BYTES, MAX_VERTICES, TOO_LARGE, SceneFileError, checked_address, file_bytes, resource
 
 GLB_MAGIC, GLB_JSON, GLB_BINARY = 0x46546C67, 0x4E4F534A, 0x004E4942
 COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
@@ -58,9 +56,9 @@ class Gltf:
         self._binary: bytes | None = None
         text = self._json_chunk(data) if data[:4] == struct.pack("<I", GLB_MAGIC) else data
         try:
-            self.json = json.loads(text.decode("utf-8-sig"), parse_constant=_no_constant)
-        except (ValueError, RecursionError) as error:
-            raise self.error("its JSON", f"cannot be read ({not_json(error)})") from error
+            self.json = parsed_json(text)
+        except ValueError as error:
+            raise self.error("its JSON", f"cannot be read ({error})") from error
         if not isinstance(self.json, dict):
             raise self.error("its JSON", "is not an object")
         self._buffers: dict[int, bytes] = {}
@@ -313,12 +311,7 @@ def meant_numbers(stored: np.ndarray, is_normalised: bool) -> np.ndarray:
 
 
 def _is_number(value: object) -> bool:
-    return type(value) in (int, float) and math.isfinite(min(max(value, -1e300), 1e300)) and abs(value) < 1e15  # pyright: ignore
-
-
-def _no_constant(name: str) -> float:
-    """Raises: JSON has no NaN and no infinity."""
-    raise ValueError(f"{name} is no JSON")
+    return type(value) in (int, float) and abs(value) < TOO_LARGE  # pyright: ignore
 
 
 def _hashable_or_none(value: object) -> Any:

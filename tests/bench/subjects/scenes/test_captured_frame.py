@@ -146,11 +146,22 @@ def test_what_is_wrong_is_one_line(tmp_path, changes, said):
     assert all(part in line for part in said), line
 
 
+@pytest.mark.parametrize("number", ["9" * 310, "-" + "9" * 5000, "1e999", "NaN", "-Infinity"])
+def test_a_number_that_no_float_holds_is_one_line_with_its_place(run, tmp_path, number):
+    path = frame(tmp_path, roughness={"file": "roughness.npy", "scale": 7.25})
+    path.write_text(path.read_text().replace("7.25", number))
+    status, out, err = run("budget", "--bytes", "12", "--scene", str(path))
+    said = "roughness.scale is not a finite number; write one below 1e308"
+    assert (status, out, err) == (2, "", f"normalbench: {path}: {said}\n")
+
+
 @pytest.mark.parametrize("text", ["[]", "{", '"depth"', "\udcff"])
 def test_what_is_no_description_is_one_line(tmp_path, text):
     path = tmp_path / "a.json"
     path.write_bytes(text.encode("utf-8", "surrogateescape"))
-    with pytest.raises(UsageError, match=r"a\.json: (not JSON|it describes no frame)"):
+    with pytest.raises(
+        UsageError, match=r"a\.json: (line 1, column 2: this is not JSON|it is not text in UTF-8|it describes no frame)"
+    ):
         read(path)
 
 

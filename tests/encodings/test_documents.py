@@ -1,0 +1,53 @@
+"""Documents that others wrote, in JSON and in TOML: each number of them is finite, or is refused with its place."""
+
+import pytest
+
+from normalbench.encodings.codecs.files import file_toml, parsed_json
+
+TOO_LARGE = ("9" * 310, "-" + "9" * 310, "9" * 5000, "1e999", "-1e999")
+JSON = (*TOO_LARGE, "NaN", "Infinity", "-Infinity")
+TOML = ("9" * 310, "1e999", "nan", "-inf", "0x" + "f" * 257, "0b" + "1" * 1025)
+
+
+@pytest.mark.parametrize("number", JSON)
+def test_json_names_the_place_of_a_number_that_is_not_finite(number):
+    with pytest.raises(ValueError) as refusal:
+        parsed_json(f'{{"a": [1, {{"b c": {number}}}], "d": 2}}')
+    assert str(refusal.value) == "a[1].b c is not a finite number; write one below 1e308", number[:20]
+
+
+@pytest.mark.parametrize("number", TOML)
+def test_toml_names_the_place_of_a_number_that_is_not_finite(number, tmp_path):
+    path = tmp_path / "a.toml"
+    path.write_text(f"[[gate]]\nx = 1\n[[gate]]\nx = {number}\n")
+    with pytest.raises(ValueError) as refusal:
+        file_toml(path)
+    assert str(refusal.value) == "gate[1].x is not a finite number; write one below 1e308", number[:20]
+
+
+@pytest.mark.parametrize("digits", ["9" * 5000, "-" + "9_9" * 5000])
+def test_toml_names_the_line_of_a_number_that_python_does_not_read(digits, tmp_path):
+    path = tmp_path / "a.toml"
+    path.write_text(f"x = 1\ny = [\n{digits}]\n")
+    with pytest.raises(ValueError) as refusal:
+        file_toml(path)
+    assert str(refusal.value) == "line 3: a number has too many digits; write a smaller one"
+
+
+@pytest.mark.parametrize(
+    "text, number", [("9" * 308, int("9" * 308)), ("1e308", 1e308), ("-0", 0), ("1e-400", 0.0), ("true", True)]
+)
+def test_json_keeps_the_numbers_that_a_float_holds(text, number):
+    assert parsed_json(text) == number
+
+
+def test_a_long_name_does_not_make_a_long_line():
+    with pytest.raises(ValueError) as refusal:
+        parsed_json(f'{{"{"n" * 100_000}": NaN}}')
+    assert len(str(refusal.value)) < 260
+
+
+@pytest.mark.parametrize("data, said", [(b"\xff", "it is not text in UTF-8"), ("[" * 9999, "it is nested too deep")])
+def test_what_is_not_json_is_said(data, said):
+    with pytest.raises(ValueError, match=said):
+        parsed_json(data)
