@@ -88,15 +88,16 @@ def is_numeric(rows: Sequence[dict[str, Any]], column: str) -> bool:
 
 
 def to_json(rows: Sequence[dict[str, Any]]) -> str:
-    """A list of flat rows."""
-    return json.dumps([{k: _plain(v) for k, v in row.items()} for row in rows], indent=1) + "\n"
+    """A list of flat rows, in which every control character is an escape of JSON."""
+    text = json.dumps([{k: _plain(v) for k, v in row.items()} for row in rows], indent=1)
+    return text.replace("\x7f", "\\u007f") + "\n"
 
 
 def to_csv(rows: Sequence[dict[str, Any]]) -> str:
     """A header and a line for each row."""
     import pandas as pd
 
-    made = [{name: _no_formula(value) for name, value in row.items()} for row in rows]
+    made = [{_no_formula(name): _no_formula(value) for name, value in row.items()} for row in rows]
     return pd.DataFrame(made, dtype=object).to_csv(index=False, lineterminator="\n")
 
 
@@ -213,13 +214,13 @@ def to_terminal(rows: Sequence[dict[str, Any]], width: int, expendable: Sequence
     widths = _widths(shown, columns)
     for column, needed in zip(columns, widths, strict=True):
         side = "right" if is_numeric(shown, column) else "left"
-        table.add_column(column.replace("_", " "), justify=side, width=needed, overflow="fold")
+        table.add_column(escape(column.replace("_", " ")), justify=side, width=needed, overflow="fold")
     for row in shown:
         table.add_row(*(escape(text_of(row[column])) for column in columns))
     stream = StringIO()
-    # Two colons around a letter are no emoji: octahedral:B:...
     wide = max(width, sum(widths) + GAP * len(columns))
-    console = Console(file=stream, width=wide, highlight=False, emoji=False)
+    # Two colons around a letter are no emoji: octahedral:B:... Colours would be escapes, which are shown as text.
+    console = Console(file=stream, width=wide, highlight=False, emoji=False, color_system=None)
     console.print(table)
     left_out = [column for column in shown[0] if column not in columns]
     notes = [caption, f"not shown in this width: {', '.join(left_out)}" if left_out else ""]
@@ -254,12 +255,12 @@ def written(
         to_markdown(group, total) if format == "markdown" else to_terminal(group, width, expendable, total)
         for group in groups.values()
     )
-    return "\n".join([*_lead(lead, format), *shown])
+    return visible("\n".join([*_lead(lead, format), *shown]))
 
 
 def _lead(lead: str, format: str) -> list[str]:
     """What stands above a table, with an empty line below it; in Markdown each of its lines is a paragraph."""
     if not lead:
         return []
-    lines = [markdown_sentence(line) if format == "markdown" else visible(line) for line in lead.split("\n")]
+    lines = [markdown_sentence(line) if format == "markdown" else line for line in lead.split("\n")]
     return [("\n\n" if format == "markdown" else "\n").join(lines) + "\n"]

@@ -33,8 +33,8 @@ from normalbench.reports.charts import draw, pareto, plots, wire
 from normalbench.reports.page import page
 from normalbench.reports.page.markdown import LONGEST
 
-HOSTILE = "<script>alert(1)</script>\"'><img src=x onerror=alert(2)>$\\frac{`|\n@everyone [a](http://evil.example)\u202e\ud800"
-FORBIDDEN = ("<script>alert", "<img src=x", "\u202e")
+HOSTILE = "<script>alert(1)</script>\"'><img src=x onerror=alert(2)>$\\frac{`|\n@everyone [a](http://evil.example)\u202e\ud800\x1b[2J"
+FORBIDDEN = ("<script>alert", "<img src=x", "\u202e", "\x1b")
 
 
 def quality_row(encoding: str, **more) -> dict:

@@ -1,9 +1,15 @@
 """Names from users' files stay text: in Markdown, in a spreadsheet, on a terminal."""
 
+import csv
+import io
+import json
 import re
 
 import pytest
+from rich.console import Console
 
+from normalbench.bench.ground.output.progress import progress
+from normalbench.bench.ground.output.writing import say
 from normalbench.reports import tables
 from normalbench.reports.page import live, page
 
@@ -12,8 +18,8 @@ HOSTILE = "<script src=//x>[a](http://b) |`@c\x1b[2J"
 
 @pytest.mark.parametrize("text", ["=1+1", "+1+2", "-1+2", "-A1", "@SUM(A1)", "\t=1"])
 def test_no_cell_of_csv_is_a_formula(text):
-    (_, line) = tables.to_csv([{"name": text, "figure": -1.5}]).splitlines()
-    assert line.lstrip('"').startswith("'") and line.endswith(",-1.5")
+    for line in tables.to_csv([{text: text, "figure": -1.5}]).splitlines():
+        assert line.lstrip('"').startswith("'") and line.endswith((",figure", ",-1.5")), line
 
 
 @pytest.mark.parametrize("text", ["-1", "-0.52032965", "17", "+0.0362", "-1.2e-05", "-inf", "+20.1 %"])
@@ -32,6 +38,39 @@ def test_a_terminal_gets_no_control_characters():
     out = tables.to_terminal([{"name": HOSTILE, "n": 1}, {"name": "b", "n": 2}], 100)
     assert "\x1b" not in out and "\\x1b[2J" in out
     assert tables.visible("a\u202eb\x07\n") == "a\\u202eb\\x07\n"
+
+
+@pytest.mark.parametrize("format", ["table", "markdown"])
+def test_no_line_around_a_table_has_control_characters(format, monkeypatch):
+    """The lead, the line below and the names of columns; colours are not asked for either."""
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    rows = [{"name": "a", HOSTILE: 1.0}, {"name": "b", HOSTILE: 2.0}]
+    text = tables.written(rows, format, 100, lead=HOSTILE, total=HOSTILE)
+    assert text.count("\\x1b[2J") >= 2 and not tables.CONTROL.search(text), text
+
+
+def test_what_is_printed_has_no_control_characters(capsys):
+    """In every format; JSON and CSV that are read back have the name."""
+    row = {"name": f"{HOSTILE}\x7f", "figure": 1.5}
+    for way in ("table", "json", "csv", "markdown"):
+        say(tables.written([row], way))
+        out = capsys.readouterr().out
+        assert not tables.CONTROL.search(out), (way, out)
+        if way == "json":
+            assert json.loads(out) == [row]
+    text = tables.to_csv([row])
+    assert next(csv.DictReader(io.StringIO(text)))["name"] == row["name"], text
+
+
+@pytest.mark.parametrize("name", ["[/red].glsl", "[red]a.glsl", "a\x1b[2Jb.glsl"])
+def test_a_bar_shows_names_as_they_are(name, monkeypatch):
+    """Square brackets are no markup, and a terminal gets no escapes of a name."""
+    shown = io.StringIO()
+    made = Console(file=shown, force_terminal=True, width=200)
+    monkeypatch.setattr("rich.console.Console", lambda **_: made)
+    with progress(1) as tick:
+        tick(name)
+    assert tables.visible(name) in shown.getvalue() and "\x1b[2J" not in shown.getvalue(), shown.getvalue()
 
 
 def test_what_is_code_stays_code():

@@ -286,15 +286,20 @@ def description(targets, camera, has_depth):
     return said
 
 
+def say(text):
+    """A line to standard output, in which control characters of a capture's names are visible."""
+    print("".join(letter if letter.isprintable() or letter == "\n" else repr(letter)[1:-1] for letter in text))
+
+
 def say_description(folder, said, targets):
     """What was guessed, what people have to write, and the command."""
     where = folder / "gbuffer.json"
     held = [f"{name} ({one['file']} {one.get('channel') or one['channels']})" for name, one in guessed(targets).items()]
     if held:
-        print(f"{where}: guessed by the targets' names: {', '.join(held)}")
+        say(f"{where}: guessed by the targets' names: {', '.join(held)}")
     lacks = [name for name in said if said[name] is None and name != "view_matrix"]
     if lacks:
-        print(
+        say(
             f"{where}: null stands for what is not known: {', '.join(lacks)}. "
             'Write {"file": "FILE.exr", "channel": "R"}, or "channels": "R,G,B" for a colour'
         )
@@ -443,7 +448,7 @@ class Saving:
 
     def write(self, name, texture, channels, says=""):
         write_exr(self.folder / name, texture.width, texture.height, channels)
-        print(f"{name}: {self.names[int(texture.resourceId)]}, {texture.format.Name()}{says}")
+        say(f"{name}: {self.names[int(texture.resourceId)]}, {texture.format.Name()}{says}")
 
     def depth(self):
         """The mask of what is covered; None where the draw has no depth buffer."""
@@ -487,7 +492,7 @@ class Saving:
             try:
                 kept[name] = self.target(self.textures[number], file_name(name, at, kept), mask)
             except ValueError as why:
-                print(f"{name} is left out: {why}")
+                say(f"{name} is left out: {why}")
         return kept
 
     def matrices(self):
@@ -495,7 +500,7 @@ class Saving:
         for name, rows in self.found.items():
             lines = [" ".join(f"{value:.9g}" for value in row) for row in rows]
             write_text(self.folder / file_of_matrix(name), "\n".join(lines))
-            print(f"{file_of_matrix(name)}: {name}, by rows")
+            say(f"{file_of_matrix(name)}: {name}, by rows")
         return self.found
 
 
@@ -510,8 +515,8 @@ def save(controller, rd, folder, event=None):
     kept = {"event": saving.action.eventId, "targets": targets, "matrices": matrices, "commands": lines}
     write_text(folder / "gbuffer.json", json.dumps({**said, "capture": kept}, indent=1))
     if not any(one["normals"] for one in targets.values()):
-        print("No target holds unit normals. If one holds a code, write what your shader decodes into a float target.")
-    print("\n".join([*lines, say_description(folder, said, targets)]))
+        say("No target holds unit normals. If one holds a code, write what your shader decodes into a float target.")
+    say("\n".join([*lines, say_description(folder, said, targets)]))
 
 
 def opened(rd, path):

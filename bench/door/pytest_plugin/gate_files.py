@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from ....reports.tables import visible
 from ...ground.output.errors import UsageError
 from ..gates.gates import Gate, read_gates
 from .session import Normalbench, session_of
@@ -20,7 +21,7 @@ class GateFile(pytest.File):
         try:
             gates = read_gates(self.path)
         except UsageError as error:
-            raise self.CollectError(str(error)) from error
+            raise self.CollectError(visible(str(error))) from error
         for number, gate in enumerate(gates, 1):
             yield GateItem.from_parent(self, name=f"gate {number}", gate=gate)
 
@@ -56,7 +57,7 @@ class GateItem(pytest.Item):
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
         if isinstance(excinfo.value, AssertionError | UsageError):
-            return str(excinfo.value)
+            return visible(str(excinfo.value))
         return super().repr_failure(excinfo, style)
 
     def reportinfo(self) -> tuple[Path, int | None, str]:

@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from threading import Event, Thread
 from typing import Any
 
+from ....reports.tables import visible
 from .errors import tell_together
 
 EVERY = 8  # seconds between two lines where there is no bar
@@ -50,7 +51,7 @@ class Bar:
 
     def _move(self, steps: int, under_way: str) -> None:
         self._done, self._under_way = self._done + steps, under_way
-        self._bar.update(self._task, advance=steps, description=under_way)
+        self._bar.update(self._task, advance=steps, description=visible(under_way))
 
     def says(self) -> str:
         """How far it is."""
@@ -67,7 +68,9 @@ def _shown(steps: int, tables: int = 0) -> Iterator[Bar]:
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
     console = Console(stderr=True)
-    columns = (BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(), TextColumn("{task.description}"))
+    # Names of files are no markup.
+    under_way = TextColumn("{task.description}", markup=False)
+    columns = (BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(), under_way)
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
         yield Bar(bar, steps, tables)
 

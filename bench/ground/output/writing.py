@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from ....reports import tables
 from ....reports.charts import plots
 from ..machine.systems.files import is_closed_pipe, moved_over
 from ..machine.systems.processes import is_running
@@ -155,9 +156,12 @@ def save_plot(path: Path, figure: Any) -> None:
 
 
 def say(text: str) -> None:
-    """Text to standard output; a reader that has seen enough and gone is no error."""
+    """Text to standard output, which leaves the terminal as it is whatever names of files hold.
+
+    A reader that has seen enough and gone is no error.
+    """
     try:
-        sys.stdout.write(text)
+        sys.stdout.write(tables.visible(text))
         sys.stdout.flush()
     except OSError as error:
         if not is_closed_pipe(error):

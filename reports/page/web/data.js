@@ -140,7 +140,7 @@ class DataTable {
 
   csv() {
     const line = (texts) => `${texts.map(quotedInCsv).join(",")}\n`;
-    return [line(this.data.columns.map(({ name }) => name)), ...this.rows().map((row) => line(this.data.columns.map((column) => csvText(column, row))))].join("");
+    return [line(this.data.columns.map(({ name }) => safeInSheets(name))), ...this.rows().map((row) => line(this.data.columns.map((column) => csvText(column, row))))].join("");
   }
 
   markdown() {

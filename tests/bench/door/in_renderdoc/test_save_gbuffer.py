@@ -153,6 +153,11 @@ def test_normals_are_in_the_space_in_which_they_face_the_camera():
                 assert found["space"] == said["space"] and np.array_equal(found["view_matrix"], said["view_matrix"])
 
 
+def test_names_of_a_capture_leave_the_terminal_as_it_is(capsys):
+    script.say("lit \x1b[2J\r\u202e.exr\nübrig")
+    assert capsys.readouterr().out == "lit \\x1b[2J\\r\\u202e.exr\nübrig\n"
+
+
 def test_what_targets_hold_is_guessed_by_names_that_leave_no_doubt():
     def target(form="R8G8B8A8_UNORM", channels="RGBA", file="a.exr"):
         return {"file": file, "format": form, "channels": channels, "normals": ""}
