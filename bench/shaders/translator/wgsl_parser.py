@@ -565,10 +565,11 @@ class WgslParser(Parser):
         self._at -= 1
         if token.text in GENERIC and self._text_ahead(1) == "(":
             self._at += 2
-            values = self._all_alike(self._arguments())
-            element = scalar_of(values[0].kind)
+            values = self._arguments()
             if token.text == "array":
-                return Elements(f"{element}[{len(values)}]", values)
+                return self._array_of(values, token)
+            values = self._all_alike(values)
+            element = scalar_of(values[0].kind)
             size = int(token.text[3])
             kind = f"mat{size}" if token.text.startswith("mat") else vector(element, size)
             return self._constructed(kind, values)
@@ -576,11 +577,33 @@ class WgslParser(Parser):
         self._take("(")
         values = self._arguments()
         if "[" in kind:
-            scalar = scalar_of(kind.partition("[")[0])
-            return Elements(kind, [self._converted(value, scalar) for value in values] or self._zero_elements(kind))
+            return self._typed_array(kind, values, token)
         if kind in self._structs:
             return Construct(kind, self._field_values(kind, values))
         return self._constructed(kind, values or [Literal("int", "0")])
+
+    def _typed_array(self, kind: str, values: list[Expression], token: Token) -> Expression:
+        element, _, length = kind.partition("[")
+        if values and len(values) != int(length.rstrip("]")):
+            raise self._error(f"{len(values)} values of an array of {length.rstrip(']')}", token.place)
+        values = [self._converted(value, scalar_of(element)) for value in values]
+        return Elements(kind, values or self._zero_elements(kind))
+
+    def _array_of(self, values: list[Expression], token: Token) -> Expression:
+        """An array whose elements are of the type that its values have."""
+        if len({value.kind for value in values}) > 1:
+            values = self._all_alike(values)
+        kinds = sorted({value.kind for value in values})
+        if len(kinds) != 1:
+            said = f"an array of {', '.join(kinds) or 'nothing'}; its elements have one type"
+            raise self._error(said, token.place)
+        return Elements(self._array_kind(kinds[0], Literal("int", str(len(values)))), values)
+
+    def _array_kind(self, kind: str, length: Expression) -> str:
+        """As in GLSL. Raises TranslationError for an array of arrays."""
+        if "[" in kind:
+            raise self._error("an array of arrays is not read; write one array, with the index computed")
+        return super()._array_kind(kind, length)
 
     def _field_values(self, kind: str, values: list[Expression]) -> list[Expression]:
         kinds = self._structs[kind].kinds.values()
