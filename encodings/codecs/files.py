@@ -59,7 +59,7 @@ def file_bytes(path: Path, most: int) -> bytes:
     try:
         return _bytes(path, most)
     except OSError as error:
-        raise FileError(error.errno, REASONS.get(error.errno or 0, error.strerror)) from error
+        raise FileError(error.errno, reason_of(error)) from error
     except ValueError as error:
         raise ValueError("no file can have this name") from error
 
@@ -76,6 +76,11 @@ def _bytes(path: Path, most: int) -> bytes:
     if data.startswith(LFS):
         raise OSError(errno.EINVAL, LFS_POINTER)
     return data
+
+
+def reason_of(error: OSError) -> str:
+    """Why the system does not give a file, for messages that name the file themselves."""
+    return REASONS.get(error.errno or 0, error.strerror or str(error))
 
 
 def why_no_file(path: Path) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from functools import cache, lru_cache, wraps
 from pathlib import Path
 from typing import TypeVar
@@ -175,7 +176,10 @@ def _lines(path: Path) -> list[Parsed]:
 def _beside(path: Path, file: str) -> Path:
     """The file that a shader at `path` includes, its path resolved."""
     near = path.parent / file
-    return (near if near.is_file() else Path(shaders().get(file, near))).resolve()
+    with suppress(OSError):  # of a name that is too long, which whoever reads it says
+        if near.is_file():
+            return near.resolve()
+    return Path(shaders().get(file, near)).resolve()
 
 
 def read_shader(path: Path) -> str:

@@ -385,8 +385,10 @@ def main() -> int:
         _say("interrupted")
         return INTERRUPTED
     except OSError as error:
-        abandon_output()
-        _say(f"cannot write: {error.strerror or error}")
+        # Standard output has no name.
+        if error.filename is None:
+            abandon_output()
+        _say(f"{error.filename or 'cannot write'}: {error.strerror or error}")
         return UsageError.exit_code
 
 

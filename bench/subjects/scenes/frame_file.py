@@ -10,7 +10,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from ....encodings.codecs.files import parsed_json
+from ....encodings.codecs.files import parsed_json, reason_of
 from ....gbuffer.scenes.files.source import SceneFileError, checked_address, file_bytes
 from ...ground.choose import unknown_name
 from ...ground.options.option import KINDS, Reading, fields_of
@@ -20,6 +20,8 @@ from ..normals.pixel_files import READERS
 
 ENDING = ".json"
 MOST_BYTES = 2**20
+# How many letters of a name are shown that no file can have.
+SHOWN = 60
 # What is said of each kind of entry, and of what kind it is. Words that options have mean what these mean.
 OF_NORMALS = ("channels", "unpack", "curve", "normalise", "space", "mask", "nan_share")
 DEPTH: Mapping[str, type] = MappingProxyType({"file": str, "channel": str, "depths_are": str, "depth_unit": float})
@@ -200,8 +202,11 @@ def _beside(path: Path, name: str, address: str) -> Path:
     """A file next to a description or below it. Raises UsageError where it is elsewhere, or not there."""
     try:
         found = checked_address(path, address, name)
+        is_there = found is not None and found.is_file()
     except SceneFileError as error:
         raise UsageError(str(error)) from error
-    if found is None or not found.is_file():
+    except OSError as error:
+        raise UsageError(f"{path}: {name}: {address[:SHOWN]}...: {reason_of(error)}") from error
+    if found is None or not is_there:
         raise UsageError(f"{path}: {name}: no file {address}; files are named from the folder of {path.name}")
     return path.parent / os.path.relpath(found, path.parent.resolve())

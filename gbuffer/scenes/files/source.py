@@ -45,7 +45,9 @@ def file_bytes(path: Path, most: int = MAX_BYTES) -> bytes:
         return files.file_bytes(path, most)
     except SceneFileError:
         raise
-    except (OSError, ValueError) as error:
+    except OSError as error:
+        raise SceneFileError(f"{path}: {files.reason_of(error)}") from error
+    except ValueError as error:
         raise SceneFileError(f"{path}: {error}") from error
 
 

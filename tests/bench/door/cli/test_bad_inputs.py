@@ -256,3 +256,34 @@ def test_a_long_limit_takes_no_time(text):
                 assert limit("x", side + text) is None or math.isinf(limit("x", side + text).value)
             except UsageError as error:
                 assert len(str(error)) < 100
+
+
+LONG = "d" * 5000
+FRAME = {"fov": 60, "near": 0.1, "far": 9, "depth": {"file": f"{LONG}.exr"}, "normal": {"file": "n.exr"}}
+BUFFERS = {"asset": {"version": "2.0"}, "buffers": [{"uri": f"{LONG}.bin", "byteLength": 36}]}
+POINTS = {
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "nodes": [{"mesh": 0}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "command"),
+    [
+        ("a.json", json.dumps(FRAME | {"basecolor": [1, 1, 1], "roughness": 1}), "budget --bytes 12 --scene a.json"),
+        ("a.gltf", json.dumps(BUFFERS | POINTS), "quality --backend jax --normals a.gltf#vertices"),
+        ("a.obj", f"mtllib {LONG}.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "quality --backend jax --normals a.obj"),
+        ("a.toml", f"[[gate]]\nnormals = '{LONG}.png'\npsnr_db = 'at least 1'\n", "check a.toml"),
+        ("a", "", f"quality --backend jax --normals {LONG}.ply"),
+        ("a", "", f"history {LONG} {LONG}"),
+    ],
+)
+def test_a_name_that_is_too_long_is_said_to_be(run, tmp_path, monkeypatch, name, text, command):
+    """And not that something could not be written; the end of the line is not cut off."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / name).write_text(text)
+    status, out, err = run(*command.split())
+    assert (status, out) == (2, "") and "write" not in err, err
+    assert err.endswith(("its name is too long\n", "File name too long\n")) and err.count("\n") == 1, err
