@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from ...reports.tables import text_of
 from ..tables.registry import TABLES
-from ..tables.table import Row
+from ..tables.table import Role, Row, Table
 from .comparison import (
     GONE,
     LITTLE,
@@ -64,14 +64,21 @@ def _row_names(done: Done) -> set[tuple]:
 
 
 def _rows_of_each(before: Done, after: Done) -> Counter[str]:
-    """How many rows either run has of each encoding; of those that say why they have no figures, none."""
-    found: dict[tuple, str] = {}
-    for done in (before, after):
-        for name, rows in done.tables.items():
-            table = TABLES[name]
-            named = named_rows(table, rows).items()
-            found |= {(name, *key): _subject(name, row) for key, row in named if not gives_reason(table, row)}
-    return Counter(found.values())
+    """How many rows there are of each encoding, without those that give the same reason for having no figures in both
+    runs."""
+    counts = Counter[str]()
+    for name in dict.fromkeys([*before.tables, *after.tables]):
+        table = TABLES[name]
+        ours, theirs = (named_rows(table, done.tables.get(name, ())) for done in (before, after))
+        for key, row in {**ours, **theirs}.items():
+            pair = [rows.get(key, {}) for rows in (ours, theirs)]
+            is_known = all(gives_reason(table, each) for each in pair) and len(set(_reasons(table, pair))) == 1
+            counts[_subject(name, row)] += not is_known
+    return counts
+
+
+def _reasons(table: Table, rows: Sequence[Row]) -> list[tuple]:
+    return [tuple(row.get(column.name) for column in table.of_role(Role.REASON)) for row in rows]
 
 
 def _subject(table: str, keys: Mapping[str, object]) -> str:

@@ -28,7 +28,7 @@ def compare_command(before: Path, after: Path, fail_on: str, format: str, output
     Returns:
         the exit status: 1 where something changed that `fail_on` names.
     """
-    ours, theirs = read_to_show(before), read_to_show(after)
+    ours, theirs = (read_to_show(folder, needs_rows=True) for folder in (before, after))
     changes = compared(ours, theirs)
     if ours.facts.get("machine") != theirs.facts.get("machine"):
         tell("the machines differ; times are not compared")

@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 from itertools import pairwise
 from pathlib import Path
 
-from ..ground.output.errors import UsageError
+from ..ground.output.errors import UsageError, leave_out
 from ..tables.table import Row
 from .commit import short_name
 from .runs import RUN, Done, Shared, read_to_show
@@ -57,14 +57,19 @@ class Past:
 
 
 def past_runs(folders: Sequence[Path]) -> list[Past]:
-    """The runs in some folders, by their commits, and those of one commit by their own dates.
+    """The runs in some folders, by their commits, and those of one commit by their own dates. Those
+    without rows are left out, unless all are.
 
     Raises:
         UsageError: a folder has no run, or a run cannot be read.
     """
     shared = Shared()
     found = dict.fromkeys(run for folder in folders for run in _run_folders(folder))
-    return sorted((_past(run, read_to_show(run, shared)) for run in found), key=lambda past: past.order)
+    runs = sorted((_past(run, read_to_show(run, shared)) for run in found), key=lambda past: past.order)
+    for past in runs:
+        if not past.done.steps:
+            leave_out(f"{past.name}: it has no rows")
+    return [past for past in runs if past.done.steps] or runs
 
 
 def _run_folders(folder: Path) -> list[Path]:

@@ -142,13 +142,16 @@ def read_run(folder: Path, shared: Shared | None = None) -> Done:
     return Done(facts, whole, _damage_text(folder, facts), parts, identified=identified)
 
 
-def read_to_show(folder: Path, shared: Shared | None = None) -> Done:
+def read_to_show(folder: Path, shared: Shared | None = None, needs_rows: bool = False) -> Done:
     """A results folder that people look at: what is amiss with its rows is said on standard error.
 
     Raises:
-        UsageError: as `read_run`.
+        UsageError: as `read_run`; or it has no rows, and needs some.
     """
     done = read_run(folder, shared)
+    if needs_rows and not done.steps:
+        why = done.damage or f"{folder} has no rows: none of its steps was finished"
+        raise UsageError(f"{why}; measure it again, or name another run")
     for line in filter(None, (done.damage, done.left_out and f"{folder}: {done.left_out}")):
         tell(line)
     return done

@@ -13,7 +13,7 @@ from contributing import a_copy_of_the_rooms
 
 from normalbench.bench.ground.machine.settings import settings
 from normalbench.bench.keep import compare_command
-from normalbench.bench.keep.change_lines import in_short, total, what_matters
+from normalbench.bench.keep.change_lines import in_short, sentences, total, what_matters
 from normalbench.bench.keep.comparison import compared, mann_whitney, measured_otherwise
 from normalbench.bench.keep.runs import Done, read_run
 
@@ -118,6 +118,10 @@ def test_new_rows_and_rows_that_are_gone_are_not_said_in_one_line():
     ]
 
 
+def step_of_quality(row: dict) -> dict:
+    return {"table": "quality", "key": {}, "rows": [row]}
+
+
 def quality_of(**psnr: float) -> Done:
     """Encodings in rg8, by their error."""
     rows = [{"encoding": name, "storage": "rg8", "psnr_db": db, "angle_max_deg": 90 / db} for name, db in psnr.items()]
@@ -177,6 +181,15 @@ def test_the_first_line_says_which_encoding_changed_in_how_many_rows_and_by_how_
     assert what_matters(before, before, []) == []
 
 
+def test_rows_that_are_gone_are_counted_among_those_that_there_were():
+    """Also those that gave a reason for having no figures, which had been left out of the second number."""
+    rows = [{"encoding": "xy", "storage": storage, "psnr_db": 40.0, "skipped": None} for storage in ("rg8", "rgba8")]
+    rows[1] |= {"psnr_db": None, "skipped": "no GL device"}
+    before, other = Done(MACHINE, [step_of_quality(row) for row in rows]), quality_of(xyz=40.0)
+    said = sentences(before, other, compared(before, other))
+    assert said[0].startswith("xy: gone in all 2 rows"), said
+
+
 def test_encodings_that_changed_are_five_sentences_and_a_number():
     names = [f"code{number}" for number in range(7)]
     before, after = (quality_of(**{name: db - at for at, name in enumerate(names)}) for db in (60.0, 50.0))
@@ -187,20 +200,20 @@ def test_encodings_that_changed_are_five_sentences_and_a_number():
 
 def test_runs_that_share_no_row_say_so_first(run, monkeypatch):
     runs = {"before": quality_of(xy=40.0), "after": quality_of(xyz=44.0)}
-    monkeypatch.setattr(compare_command, "read_to_show", lambda folder: runs[folder.name])
+    monkeypatch.setattr(compare_command, "read_to_show", lambda folder, **_: runs[folder.name])
     for kind in ("table", "markdown"):
         assert run("compare", "before", "after", "--format", kind)[1].startswith("the runs share no row\n")
 
 
 def test_a_spreadsheet_gets_numbers_as_they_are(run, monkeypatch):
-    monkeypatch.setattr(compare_command, "read_to_show", lambda folder: broken_fold()[folder.name == "after"])
+    monkeypatch.setattr(compare_command, "read_to_show", lambda folder, **_: broken_fold()[folder.name == "after"])
     out = run("compare", "before", "after", "--format", "csv")[1]
     assert "-inf" in out and "-44.4" in out and "+0.035" in out and "'" not in out
 
 
 def test_columns_that_all_lines_share_are_not_below_the_table_as_its_total(run, monkeypatch):
     runs = {"before": quality_of(xy=40.0, xyz=45.0), "after": quality_of(xy=39.0, xyz=44.0)}
-    monkeypatch.setattr(compare_command, "read_to_show", lambda folder: runs[folder.name])
+    monkeypatch.setattr(compare_command, "read_to_show", lambda folder, **_: runs[folder.name])
     for kind in ("table", "markdown"):
         status, out, _ = run("compare", "before", "after", "--format", kind)
         *above, last = out.splitlines()
@@ -219,7 +232,7 @@ def test_settings_from_outside_are_facts_of_a_run_and_named_where_they_differ(ru
     assert settings()["XLA_FLAGS"] == flags and not any("CACHE" in name for name in settings())
     set_here = {"setting XLA_FLAGS": flags}
     runs = {"one": Done({"machine": {"python": "3"}}, []), "two": Done({"machine": {"python": "3"} | set_here}, [])}
-    monkeypatch.setattr(compare_command, "read_to_show", lambda folder: runs[folder.name])
+    monkeypatch.setattr(compare_command, "read_to_show", lambda folder, **_: runs[folder.name])
     status, _, err = run("compare", "one", "two")
     assert status == 0
     assert f"figures may differ because settings do: XLA_FLAGS was not set and is {flags}" in err, err
@@ -325,3 +338,29 @@ def test_two_runs_of_one_commit_are_the_same_and_an_altered_constant_shows_in_it
 def test_what_is_no_run_is_one_line(run, tmp_path):
     status, out, err = run("compare", str(tmp_path), str(tmp_path))
     assert (status, out) == (2, "") and "is not a results folder" in err and err.count("\n") == 1
+
+
+EMPTIED = {"lines": 2, "digest": "of the rows", "finished": True}
+
+
+@pytest.mark.parametrize(
+    ("facts", "rows", "said"),
+    [
+        (EMPTIED, "", "empty/rows.jsonl has 0 of the 2 lines that it had when the run finished"),
+        (EMPTIED, '{"table": "quality", "key"', "empty/rows.jsonl has 0 of the 2 lines"),
+        ({"finished": False}, "", "empty has no rows: none of its steps was finished"),
+    ],
+)
+def test_a_run_without_rows_is_not_compared(run, tmp_path, monkeypatch, facts, rows, said):
+    """In one line that says why; a history leaves it out."""
+    monkeypatch.chdir(tmp_path)
+    for name, text in (("empty", rows), ("whole", json.dumps(step_of_quality({"encoding": "xy"})) + "\n")):
+        Path(name).mkdir()
+        Path(name, "run.json").write_text(json.dumps(facts if name == "empty" else {"finished": False}))
+        Path(name, "rows.jsonl").write_text(text)
+    for words in (("whole", "empty"), ("empty", "whole")):
+        status, out, err = run("compare", *words)
+        assert (status, out, err.count("\n")) == (2, "", 1), err
+        assert err.startswith(f"normalbench: {said}") and "measure it again" in err, err
+    status, out, err = run("history", "whole", "empty")
+    assert status == 0 and "gone" not in out and "left out: empty: it has no rows" in err, (out, err)
