@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from types import MappingProxyType
 from typing import Any
 
@@ -23,6 +25,9 @@ CODES = ("oct", "hemi", "sphere", "stereo", "uv", "packed", "encoded")
 NORMALS = ("norm", "nrm", "oct", "unitvec", "direction")
 # A word in that of one of colours, depths and the like.
 OF_COLOURS = {"color", "colour", "rgb", "rgbe", "rgbm", "radiance", "irradiance", "luminance", "hdr", "depth", "albedo"}
+
+# Encoders times decoders of a file that are tried with each other; to look through more takes seconds.
+MOST_PAIRED = 10_000
 
 OF_OTHERS = "{} is of {}, not of {}: `{}` measures it"
 
@@ -197,8 +202,9 @@ def pair_of(
         NoPairError: none fits.
         SeveralPairsError: several do; the message names them.
     """
-    pairs = [pair for pair in _fitting(found) if asked in (None, (pair.encode.name, pair.decode.name))]
-    packed = [pair for pair in packed_pairs(found) if asked in (None, (pair.encode.name, pair.decode.name))]
+    some = [one for one in found if not asked or one.name in asked]
+    pairs = [pair for pair in _fitting(some) if asked in (None, (pair.encode.name, pair.decode.name))]
+    packed = [pair for pair in packed_pairs(some) if asked in (None, (pair.encode.name, pair.decode.name))]
     if asked:
         return _asked(found, asked, [*pairs, *packed])
     mine = [pair for pair in pairs if pair.encode.name in own and pair.decode.name in own]
@@ -213,6 +219,10 @@ def pair_of(
         return best[0]
     if names:
         raise SeveralPairsError(file, names)
+    if too_many(*_sides(found)):
+        encoders, decoders = map(len, _sides(found))
+        said = f"{encoders} functions may encode and {decoders} may decode, and no two are named alike"
+        raise NoPairError(f"{said}; name two: {file}:ENCODE:DECODE")
     if other := _of_something_else(found, file):
         raise NoPairError(other)
     wanted = "float2 (or float3) ENCODE(float3 n) and float3 DECODE(float2 code)"
@@ -220,17 +230,29 @@ def pair_of(
 
 
 def _fitting(found: Sequence[Function]) -> Iterator[Pair]:
-    for encode in (one for one in found if one.may_encode):
-        for decode in (one for one in found if one.may_decode and one.given[0] == encode.result):
-            if encode.name != decode.name:
-                yield Pair(encode, decode)
+    """The pairs whose types fit; where these would be too many, of names alone that are the same otherwise."""
+    encoders, decoders = _sides(found)
+    needs_name = too_many(encoders, decoders)
+    for encode, decode in itertools.product(encoders, decoders):
+        is_named = not needs_name or stem(encode.name) == stem(decode.name)
+        if is_named and decode.given[0] == encode.result and encode.name != decode.name:
+            yield Pair(encode, decode)
+
+
+def _sides(found: Sequence[Function]) -> tuple[list[Function], list[Function]]:
+    return [one for one in found if one.may_encode], [one for one in found if one.may_decode]
+
+
+def too_many(encoders: Sequence[Function], decoders: Sequence[Function]) -> bool:
+    """Whether not each encoder is tried with each decoder."""
+    return len(encoders) * len(decoders) > MOST_PAIRED
 
 
 def packed_pairs(found: Sequence[Function]) -> list[Pair]:
     """The pairs whose code is one value of 32 bits, of an encoder and a decoder by their names."""
-    some = [Pair(one, other) for one in found if one.packs for other in found if other.unpacks]
-    alike = [pair for pair in some if pair.encode.kind == pair.decode.takes]
-    return [pair for pair in _by_name(alike) if stem(pair.encode.name) == stem(pair.decode.name)]
+    sides = [one for one in found if one.packs], [one for one in found if one.unpacks]
+    alike = (both for both in itertools.product(*sides) if stem(both[0].name) == stem(both[1].name))
+    return _by_name([Pair(one, other) for one, other in alike if one.kind == other.takes])
 
 
 def _asked(found: Sequence[Function], asked: tuple[str, str], pairs: Sequence[Pair]) -> Pair:
@@ -297,6 +319,7 @@ def _ways(name: str) -> tuple[list[str], list[str]] | None:
     return None
 
 
+@cache
 def role(name: str) -> str:
     """What a function is by its name: "encode", "decode", or empty."""
     if ways := _ways(name):
@@ -309,6 +332,7 @@ def role(name: str) -> str:
     return "encode" if any(word in lower for word in ENCODES) else ""
 
 
+@cache
 def stem(name: str) -> str:
     """A function's name without what says that it encodes or decodes."""
     if ways := _ways(name):

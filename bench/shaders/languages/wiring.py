@@ -15,7 +15,19 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from .pairs import NORMAL, NORMALS, PACKED, Function, NoPairError, Pair, Place, role, speaks_of_others, stem
+from .pairs import (
+    NORMAL,
+    NORMALS,
+    PACKED,
+    Function,
+    NoPairError,
+    Pair,
+    Place,
+    role,
+    speaks_of_others,
+    stem,
+    too_many,
+)
 
 # A function's name with what it is given and gives.
 TEXT = re.compile(r"(?P<name>(?:\w+::)*\w+)(?:\((?P<bound>[^()]*)\))?(?:->(?P<made>[\w.]+|\([^()]*\)))?")
@@ -255,9 +267,16 @@ def candidates(found: Sequence[Function]) -> list[tuple[Wiring, Wiring]]:
     """The ways in which functions whose names say so may be an encoder and its decoder, the likeliest first."""
     encoders = [one for one in found if role(one.name) == "encode" and one.parameters]
     decoders = [one for one in found if role(one.name) == "decode" and one.parameters]
-    both = [(one, other) for one in encoders for other in decoders if not speaks_of_others(Pair(one, other))]
-    both = [pair for pair in both if stem(pair[0].name) == stem(pair[1].name)] or both
+    alike = [(one, other) for one in encoders for other in decoders if stem(one.name) == stem(other.name)]
+    both = _of_normals(alike)
+    if not both and not too_many(encoders, decoders):
+        both = _of_normals([(one, other) for one in encoders for other in decoders])
     return [wirings for one, other in both for wirings in sorted(_wirings(one, other), key=_is_of_other_names)]
+
+
+def _of_normals(pairs: Sequence[tuple[Function, Function]]) -> list[tuple[Function, Function]]:
+    """Those pairs whose names do not say that they are of something else."""
+    return [pair for pair in pairs if not speaks_of_others(Pair(*pair))]
 
 
 def _is_of_other_names(wirings: tuple[Wiring, Wiring]) -> bool:
