@@ -7,10 +7,13 @@ from pathlib import Path
 
 import pytest
 from attack import translations
-from attack.kind import MEASURED
+from attack.kind import MEASURED, REFUSED
 from attack.trying import KINDS, ODD, one
 from languages import require_runner
 
+from normalbench.bench.ground.compilers import tools
+from normalbench.bench.ground.output.errors import MissingError
+from normalbench.bench.shaders.code.emit import LANGUAGES
 from normalbench.bench.shaders.languages import translated
 
 FEW = [kind for kind in KINDS if kind.few]
@@ -58,6 +61,23 @@ def test_programs_mean_the_same_in_every_language(seed, tmp_path, monkeypatch):
     monkeypatch.setattr(translated, "_by_child", translated._by_child)
     ended, why = one(translations.translations(tmp_path), translations.KINDS[0], seed)
     assert ended == MEASURED, why
+
+
+@pytest.mark.usefixtures("gl")
+def test_what_a_machine_lacks_is_left_out_of_the_attack_and_said(monkeypatch, tmp_path):
+    """Without clang no program is written in Metal's language, whichever seed it has."""
+    path_of = tools.path_of
+    monkeypatch.setattr(tools, "path_of", lambda tool: raised("no clang") if tool == tools.CLANG else path_of(tool))
+    monkeypatch.setattr(translated, "_by_child", translated._by_child)
+    written, left_out = translations.written_here()
+    assert "msl" not in written and left_out == ["left out: programs written in Metal: no clang"], left_out
+    seed = [*LANGUAGES].index("msl") * len(translations.GIVEN)
+    ended, why = one(translations.translations(tmp_path), translations.KINDS[0], seed)
+    assert ended in (MEASURED, REFUSED), why
+
+
+def raised(why):
+    raise MissingError(why)
 
 
 def _is_known(path: Path, folder: Path) -> bool:

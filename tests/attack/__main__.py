@@ -21,6 +21,7 @@ HERE = Path(__file__).parent
 for folder in (HERE.parent, HERE.parent / "inputs"):
     sys.path.insert(0, str(folder))
 
+from attack.translations import TRANSLATION, written_here  # noqa: E402 # likewise
 from attack.trying import ODD, Chunk, chunks_of, limit_of  # noqa: E402 # the folders above hold it
 
 Results = dict[str, dict[str, int]]
@@ -30,6 +31,8 @@ def main() -> int:
     """Exit status."""
     asked = _asked()
     chunks = [chunk for chunk in chunks_of(asked.cases, asked.seed) if _is_named(chunk, asked.only)]
+    if any(chunk.kind == TRANSLATION for chunk in chunks):
+        print(*written_here()[1], sep="\n", file=sys.stderr)
     done = _read(asked.results)
     left = [chunk for chunk in chunks if chunk.name not in done]
     for chunk, counts, said in _each(left):

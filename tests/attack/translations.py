@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.ground.output.errors import MissingError, UsageError
 from normalbench.bench.shaders.code.emit import LANGUAGES
 from normalbench.bench.shaders.code.files import code_of
+from normalbench.bench.shaders.code.run import runner
 from normalbench.bench.shaders.code.verify import agreement
 from normalbench.bench.shaders.languages import translated
 from normalbench.bench.shaders.languages.child import answer
@@ -15,14 +16,27 @@ from normalbench.bench.subjects.codecs.first_look import first_look
 from normalbench.bench.subjects.codecs.user_encodings import read_encoding
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
+from normalbench.gbuffer.gl.device import NoDeviceError
 
 from .kind import MEASURED, REFUSED, Attack, Kind, one_line
 from .programs import Program
 
+TRANSLATION = "translation"
 GIVEN = ("glsl", "hlsl", "slang", "wgsl")
 # How many normals may lie next to a seam.
 SEAMS = 1e-3
-WRITTEN = tuple(LANGUAGES)
+
+
+def written_here() -> tuple[list[str], list[str]]:
+    """The languages that this machine runs, and a line with the reason for each other one."""
+    found, left_out = [], []
+    for name, language in LANGUAGES.items():
+        try:
+            runner(name).how()
+            found.append(name)
+        except (MissingError, NoDeviceError) as error:
+            left_out.append(f"left out: programs written in {language.title}: {error}")
+    return found, left_out
 
 
 def translated_here(word: Path, by: str, kind: str) -> dict[str, object]:
@@ -36,6 +50,7 @@ def translated_here(word: Path, by: str, kind: str) -> dict[str, object]:
 def translations(folder: Path) -> Attack:
     """A program that is measured as it is meant, and written in another language, or refused in one line."""
     translated._by_child = translated_here
+    written, _ = written_here()
 
     def case(seed: int) -> str:
         language = GIVEN[seed % len(GIVEN)]
@@ -48,7 +63,7 @@ def translations(folder: Path) -> Attack:
             assert said.isprintable() and len(said) < 2000, said
             return REFUSED
         encoding = read_encoding(path, "no twin", found.get("biased", False), found.get("by", ""))
-        codec, to = Codec(encoding, STORAGES["rg16"], "nearest"), WRITTEN[seed // len(GIVEN) % len(WRITTEN)]
+        codec, to = Codec(encoding, STORAGES["rg16"], "nearest"), written[seed // len(GIVEN) % len(written)]
         try:
             code = code_of(codec, to, "p")
         except UsageError as error:
@@ -65,4 +80,4 @@ def translations(folder: Path) -> Attack:
     return case
 
 
-KINDS = (Kind("translation", translations, 600, 0, seconds=30.0, chunk=20),)
+KINDS = (Kind(TRANSLATION, translations, 600, 0, seconds=30.0, chunk=20),)
