@@ -15,6 +15,7 @@ from ...encodings.codecs.kind import CURVE, FRAME, MOTION, NORMAL, Kind
 from ...gbuffer.gl.device import NoDeviceError
 from ...gbuffer.gl.shader import ShaderError
 from ..ground.choose import choose, unknown_name
+from ..ground.machine.memory import require_memory
 from ..ground.machine.systems.people import command_line
 from ..ground.options.code import CodeOptions
 from ..ground.options.storage_names import roundings_named
@@ -53,6 +54,7 @@ def code_command(options: CodeOptions, format: str, output: Path | None) -> int:
     Raises:
         UsageError: a name is not known, nothing fits, or something cannot be written.
     """
+    require_memory()
     _check_prefix(options.prefix)
     options = replace(options, **in_names(asdict(options) | {"of": _of_named(options.of)}))
     languages = choose("language", options.to, {name: name for name in LANGUAGES})

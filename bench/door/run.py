@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from ..ground.choose import choose
-from ..ground.machine.memory import give_back_what_a_table_needed, have_few_heaps, keep_what_is_imported
+from ..ground.machine.memory import give_back_what_a_table_needed, have_few_heaps, keep_what_is_imported, require_memory
 from ..ground.options.option import fields_of
 from ..ground.output.errors import MissingError, UsageError, leave_out, noting_what_is_left_out, tell, told
 from ..ground.output.progress import progress_of_all, spoken
@@ -125,6 +125,7 @@ def run_command(request: Any, output: Path | None, on: str | None = None, commit
     Returns:
         the exit status: 1 where a row fails.
     """
+    require_memory()
     have_few_heaps()
     # It imports what it needs while this process does, and finds out what there is to measure.
     with spoken(), _second(request, on) as second:

@@ -13,6 +13,7 @@ from typing import Any, Protocol
 
 from ...encodings.codecs.files import parsed_json
 from ..ground.machine.lost import require_living_device
+from ..ground.machine.memory import require_memory
 from ..ground.machine.settings import settings
 from ..ground.options.option import Reading, fields_of
 from ..ground.output.errors import UsageError
@@ -111,6 +112,7 @@ def asked(table: Table, options: Any, outputs: Any = None) -> Asked:
         UsageError: an option that cannot be.
         MissingError: this machine lacks what the table needs.
     """
+    require_memory()
     outputs = table.outputs() if outputs is None else outputs
     steps = table.work.steps(options, outputs)
     if isinstance(options, Reading):

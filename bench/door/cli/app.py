@@ -23,6 +23,7 @@ from typer.exceptions import Abort, TyperException
 
 from ....encodings.codecs.files import CatalogueError
 from ....reports.charts.plots import PlotError
+from ...ground.machine.memory import lack_of_memory, require_memory
 from ...ground.machine.systems import alarm
 from ...ground.options.code import CodeOptions
 from ...ground.options.option import Sources
@@ -150,6 +151,7 @@ def doctor(
     Without a file: versions, cores, the GL device and how it rounds. With one: what its encode and decode do to
     directions before any storage.
     """
+    require_memory()
     if file is None and plot is None and not any((storage, domain, *sources.values())):
         from ...keep.machine import examine
 
@@ -384,6 +386,13 @@ def main() -> int:
     except (KeyboardInterrupt, Abort):
         _say("interrupted")
         return INTERRUPTED
+    except (MemoryError, ImportError, RuntimeError) as error:
+        # Without memory neither libraries nor threads start.
+        why = lack_of_memory()
+        if not (why or isinstance(error, MemoryError)):
+            raise
+        _say(why or f"not enough memory: {str(error) or 'the system gives no more'}; measure less at once")
+        return MissingError.exit_code
     except OSError as error:
         # Standard output has no name.
         if error.filename is None:

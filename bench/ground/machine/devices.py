@@ -14,11 +14,14 @@ from ....gbuffer.gl.device import Device, NoDeviceError, device
 from ..output import cache
 from ..output.errors import MissingError
 from ..output.kept_arrays import kept_arrays
+from .memory import require_memory
 from .systems.system_files import processor_lines
 
 
 def require_jax() -> None:
-    """Raises MissingError where JAX has no device to compute on, as an unknown JAX_PLATFORMS leaves it."""
+    """Raises MissingError where JAX has no device to compute on, as an unknown JAX_PLATFORMS leaves it, or no
+    memory."""
+    require_memory()
     keep_programs()
     try:
         jax.devices()

@@ -1,4 +1,4 @@
-"""How this process's memory is given back. Imports nothing heavy."""
+"""Whether this process has memory enough, and how it is given back. Imports nothing heavy."""
 
 from __future__ import annotations
 
@@ -6,14 +6,34 @@ import atexit
 import gc
 import sys
 
+from ..output.errors import MissingError
 from .systems.files import c_function
+from .systems.processes import most_addresses
 
+# Bytes of addresses. On two cores JAX alone started with 1.6 GB, `quality` by OpenGL with 2.0 and `budget` with 2.5.
+LEAST = 2_500_000_000
 # mallopt's names in glibc's malloc.h; by itself glibc has up to eight heaps for each core, each with its own holes.
 M_ARENA_MAX, ARENAS = -8, 2
 # By itself glibc gives back what a chunk of normals needed, and the system clears it anew for the next, which takes a
 # quarter of the time. The first is the most that mallopt takes in 64 bits.
 M_MMAP_THRESHOLD, LARGEST_IN_HEAPS = -3, 2**25
 M_TRIM_THRESHOLD, KEPT = -1, 2**30
+
+
+def require_memory() -> None:
+    """Raise MissingError where JAX and a graphics driver would not start for want of addresses: their libraries end the
+    process then, without a line of ours."""
+    if why := lack_of_memory():
+        raise MissingError(why)
+
+
+def lack_of_memory() -> str:
+    """That this process is limited to too little memory, and what to do; empty where it is not."""
+    most = most_addresses()
+    if most is None or most >= LEAST:
+        return ""
+    limit = f"this process is limited to {most / 1e9:.2g} GB of addresses, and JAX and OpenGL need {LEAST / 1e9:g} GB"
+    return f"not enough memory: {limit}; raise the limit: ulimit -v {LEAST // 1000}"
 
 
 def have_few_heaps() -> None:

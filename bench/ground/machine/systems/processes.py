@@ -85,6 +85,10 @@ if sys.platform == "win32":
         """Whether there is a process of a number."""
         return windows.is_running(process)
 
+    def most_addresses() -> int | None:
+        """The bytes that this process may have addresses for: there is no such limit."""
+        return None
+
     def on_fork(call: Callable[[], None]) -> None:
         """Have a function called in processes that are forked from this one: none is."""
 
@@ -132,6 +136,11 @@ else:
     def limit_addresses(most: int) -> None:
         """Limit all memory that this process has addresses for, in bytes."""
         _limit({resource.RLIMIT_AS: most})
+
+    def most_addresses() -> int | None:
+        """The bytes that this process may have addresses for; None where nothing limits them."""
+        most = resource.getrlimit(resource.RLIMIT_AS)[0]
+        return None if most == resource.RLIM_INFINITY else most
 
     def _limit(limits: Mapping[int, int]) -> None:
         """Set limits by their numbers; none becomes higher than it was."""
