@@ -145,6 +145,8 @@ def check_is_folder(path: Path | None, what: str) -> None:
 def check_plot(path: Path | None) -> None:
     """Raises UsageError or PlotError where a plot of this name cannot be written; None will do."""
     if path:
+        # A folder is said to be one, whatever its name ends in.
+        check_writable(path)
         plots.check_format(path)
         check_writable(path, mark=PLOTS[path.suffix.lower()])
 

@@ -25,13 +25,13 @@ function changed(state, change) {
   return next;
 }
 
-// What A is unless a reader chooses it: the answer. And B: the next one that is not A.
-const usualA = (state) => answersTo(state)[0] ?? DEFAULTS.a;
+// What A is unless a reader chooses it: the answer, or an encoding of the user's own. And B: the next one that is not A.
+const usualA = (state) => (answersTo(DEFAULTS)[0] === DEFAULTS.a ? answersTo(state)[0] : null) ?? DEFAULTS.a;
 const usualB = (state) => [...answersTo(state), DEFAULTS.b, DEFAULTS.a].find((name) => name !== state.a) ?? "";
 
 function followed(state) {
   const next = { ...state, a: picked.has("a") ? state.a : usualA(state) };
-  return { ...next, b: picked.has("b") && state.b !== next.a ? state.b : usualB(next) };
+  return { ...next, b: picked.has("b") && !(state.b && state.b === next.a) ? state.b : usualB(next) };
 }
 
 // The address of a state, less what is as usual.
