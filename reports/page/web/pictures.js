@@ -526,7 +526,7 @@ class Viewer {
   // A stands to the left and B to the right, where there are pictures of them.
   take(state) {
     const note = this.one("[data-lacking]"), missing = CODECS.filter((side) => state[side] && this.find(state[side]) < 0);
-    const lines = missing.map((side) => [`The page has no picture of ${side.toUpperCase()}, ${state[side]}. To add it, run: `, element("code", {}, this.commandFor(state[side], note.dataset.run)), " "]);
+    const lines = missing.map((side) => [`The page has no picture of ${side.toUpperCase()}, ${state[side]}. To see one, run: `, element("code", {}, this.commandFor(state[side], note.dataset.run)), element("br", {})]);
     note.replaceChildren(...lines.flat());
     const shown = () => SIDES.map((side) => this.side(side).selectedOptions[0].textContent), before = shown();
     for (const [at, side] of SIDES.entries()) this.choose(this.side(side), state[CODECS[at]]);
