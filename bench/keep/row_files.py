@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import re
 import shutil
 from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
+from ...encodings.codecs.files import parsed_json
 from ...reports import tables
 from ..ground.output.replacing import MOST, is_empty, not_ours
 from ..ground.output.writing import check_writable, say, whole_file
@@ -52,8 +52,8 @@ def _columns_of(data: bytes) -> list[str]:
         if data.startswith(b"PAR1"):
             return tables.parquet_columns(data)
         if data.startswith(b"["):
-            return list(json.loads(data)[0])
-    except (ValueError, TypeError, LookupError, RecursionError):
+            return list(parsed_json(data)[0])
+    except (ValueError, TypeError, LookupError):
         return []
     return data.partition(b"\n")[0].decode(errors="replace").strip().split(",")
 
