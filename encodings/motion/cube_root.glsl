@@ -4,7 +4,7 @@
 
 float cube_root_root(float share) {
     // s^(1/3) = 2^(log2(s) / 3)
-    return share < TINY ? 0.0 : exp2_of(log2_of(max(share, TINY)) * (1.0 / 3.0));
+    return share >= TINY ? exp2_of(log2_of(max(share, TINY)) * (1.0 / 3.0)) : 0.0;
 }
 
 vec2 cube_root_encode_motion(vec2 motion, float range) {

@@ -9,6 +9,6 @@ vec2 log_encode_motion(vec2 motion, float range) {
 
 vec2 log_decode_motion(vec2 e, float range) {
     // v = sign(c) (2^(|c| log2(1 + k)) - 1) range / k
-    vec2 x = abs(e) * MOTION_LOG_OCTAVES;
+    vec2 x = min(abs(e) * MOTION_LOG_OCTAVES, MOTION_LOG_MOST);
     return sign_not_zero(e) * (vec2(exp2_of(x.x), exp2_of(x.y)) - 1.0) * (range / MOTION_LOG_K);
 }

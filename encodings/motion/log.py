@@ -9,10 +9,12 @@ from pathlib import Path
 
 from ..codecs.motion_codec import MotionEncoding
 from ..elementary import CONSTANTS, exp2_of, log2_of
-from ..vec import Vec2, maximum, sign_not_zero
+from ..vec import Vec2, maximum, minimum, sign_not_zero
 
 OCTAVES = 11.0
 K = 2.0**OCTAVES - 1.0
+# 2^127 is the largest power of two that float32 has.
+MOST = 127.0
 
 
 def encode(motion: Vec2, range) -> Vec2:
@@ -25,7 +27,7 @@ def encode(motion: Vec2, range) -> Vec2:
 def decode(e: Vec2, range) -> Vec2:
     """The motion of two numbers."""
     # v = sign(c) (2^(|c| log2(1 + k)) - 1) range / k
-    x = abs(e) * OCTAVES
+    x = Vec2(*(minimum(share * OCTAVES, MOST) for share in abs(e)))
     return sign_not_zero(e) * (Vec2(exp2_of(x.x), exp2_of(x.y)) - 1.0) * (range / K)
 
 
@@ -40,5 +42,5 @@ ENCODING = MotionEncoding(
     ulps=(3, 6),
     ulps_reason="a logarithm of up to 11 within two of its own units, over 11; a power of two within two of its own "
     "units, a difference and two products",
-    constants={"MOTION_LOG_OCTAVES": OCTAVES, "MOTION_LOG_K": K, **CONSTANTS},
+    constants={"MOTION_LOG_OCTAVES": OCTAVES, "MOTION_LOG_K": K, **CONSTANTS, "MOTION_LOG_MOST": MOST},
 )

@@ -88,7 +88,11 @@ def limit(column: str, text: Any) -> Limit | None:
         return None
     if not NUMBER.fullmatch(match[2]):
         raise UsageError(f"{column}: {match[2][:40]} is not a number")
-    return Limit(column, match[1].lower(), float(match[2]))
+    value = float(match[2])
+    # Infinity itself is a limit: an exact row has that PSNR. Digits of it are a slip that would hold nothing.
+    if math.isinf(value) and "inf" not in match[2].lower():
+        raise UsageError(f"{column}: {match[2][:40]} is not a finite number; write one below 1e308")
+    return Limit(column, match[1].lower(), value)
 
 
 def not_a_limit(column: str, value: Any) -> UsageError:

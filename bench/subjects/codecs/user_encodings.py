@@ -86,14 +86,14 @@ def encodings_named(names: str) -> list[Encoding]:
     rest = [word for word in words if word in files or not names_an_encoder(word)]
     if complaints and not rest:
         raise complaints[0]
-    for error in complaints:
-        leave_out(str(error))
     tuned = {word: tuned_names.tuned(word) for word in rest if tuned_names.MARK in word and word not in files}
     # A word may have a comma of its own.
     whole = {word: word.replace(",", ";") for word in files}
     known = {whole.get(word, word): one for word, one in {**ENCODINGS, **files, **tuned, **own}.items()}
     picked = choose("encoding", ",".join(whole.get(word, word) for word in rest), known)
     # At last: an error is one line alone.
+    for error in complaints:
+        leave_out(str(error))
     for line in notes:
         tell(line)
     return picked

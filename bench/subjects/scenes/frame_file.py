@@ -43,6 +43,8 @@ ENTRIES: Mapping[str, Mapping[str, type]] = MappingProxyType(
         "emission": COLOUR,
     }
 )
+# Of a 32-bit float.
+LARGEST = 3.4e38
 CAMERA = ("fov", "near", "far")
 # What a script says of the capture is not read.
 KNOWN = (*CAMERA, "view_matrix", *ENTRIES, "capture")
@@ -143,6 +145,8 @@ def _how(name: str) -> str:
 def _number(path: Path, name: str, value: object) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise UsageError(f"{path}: {name} is {value!r}; it must be a number")
+    if abs(value) > LARGEST:
+        raise UsageError(f"{path}: {name} is {float(value):g}; write a number that a 32-bit float holds, below 3.4e38")
     return float(value)
 
 

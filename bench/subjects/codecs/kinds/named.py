@@ -60,13 +60,14 @@ def own_codes_named(kind: Kind, names: str, catalogue: Mapping[str, T], what: st
     rest = [word for word in words if word in files or not names_an_encoder(word)]
     if complaints and not rest:
         raise complaints[0]
-    for error in complaints:
-        leave_out(str(error))
     # A word may have a comma of its own.
     whole = {word: word.replace(",", ";") for word in files}
     known = {whole.get(word, word): one for word, one in {**catalogue, **files, **given_in(names)}.items()}
     asked = ",".join(whole.get(word, word) for word in rest)
     chosen = choose(what or f"{kind.name} encoding", asked, known)
+    # At last: an error is one line alone.
+    for error in complaints:
+        leave_out(str(error))
     for line in notes:
         tell(line)
     return chosen
@@ -80,6 +81,7 @@ def light_codecs_named(names: str) -> list[LightCodec]:
     words = split_names(names)
     own = [word for word in words if names_an_encoder(word)]
     others = [word for word in words if not names_an_encoder(word)]
+    buffers = light_buffers_named(",".join(others)) if others else []
     try:
         files = own_codes_named(LIGHT, ",".join(own), LIGHT_ENCODINGS, "light buffer") if own else []
     except (UsageError, MissingError) as error:
@@ -88,7 +90,7 @@ def light_codecs_named(names: str) -> list[LightCodec]:
         leave_out(str(error))
         files = []
     made = [LightCodec(encoding, LIGHT_STORAGES[encoding.storages[0]]) for encoding in files]
-    return [*(light_buffers_named(",".join(others)) if others else []), *made]
+    return [*buffers, *made]
 
 
 def _read_all(

@@ -241,7 +241,7 @@ def test_limits_are_read_or_refused(text):
     try:
         found = limit("psnr_db", text)
     except UsageError as error:
-        assert str(error).startswith("psnr_db: ") and str(error).endswith("is not a number")
+        assert str(error).startswith("psnr_db: ") and "is not a " in str(error)
         return
     if found:
         assert found.side in ("at least", "at most") and not math.isnan(found.value)

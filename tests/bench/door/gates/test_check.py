@@ -216,6 +216,7 @@ def test_limits_hold_at_their_very_value_and_not_for_what_is_no_number():
         ("[[gate]]\ncount = " + "9" * 5000, "a number has too many digits"),
         ('[[gate]]\npsnr_db = "at least many"', "gate 1: psnr_db: many is not a number"),
         ('[[gate]]\npsnr_db = "at least nan"', "nan is not a number"),
+        ('[[gate]]\nangle_max_deg = "at most 1e999"', "1e999 is not a finite number; write one below 1e308"),
         ('[[gate]]\npsnr_db = "at least 1 2"', "1 2 is not a number"),
         ('[[gate]]\npsnr_db = "at least 1"\nreading = "x"', "unknown option 'reading'"),
         ('[[gate]]\npsnr_db = "at least 1"\nnormalise = 1', "normalise is 1; it must be true or false"),

@@ -93,6 +93,13 @@ def test_what_is_wrong_with_one_spares_the_others(run, tmp_path, text, said):
     assert err.startswith("normalbench: left out: ") and said in err and err.count("\n") == 1
 
 
+@pytest.mark.parametrize("words", ["quality --normals axes --encoding", "depth --depth", "lights --light-buffer"])
+def test_an_unknown_name_next_to_a_file_that_is_left_out_is_one_line(run, tmp_path, words):
+    """What is left out is said once the command goes on."""
+    status, _, err = run(*words.split(), f"{tmp_path / 'missing.glsl'},nothing")
+    assert status == 2 and err.startswith("normalbench: unknown ") and err.count("\n") == 1, err
+
+
 @pytest.mark.usefixtures("gl", "slang")
 def test_hlsl_in_a_glsl_file_is_read_as_hlsl(run, tmp_path):
     text = "float2 OctEncode(float3 n) { return n.xy; }\n"

@@ -136,6 +136,9 @@ def pixels_of(path: Path) -> PixelSurfaces:
         ({"fov": 0}, ("fov is 0", "1 to 175")),
         ({"near": 10, "far": 1}, ("near is 10 and far is 1", "reversed_window")),
         ({"far": "infinite"}, ("far is 'infinite'", "a number")),
+        ({"basecolor": [1e300, 0, 0]}, ("basecolor is 1e+300", "a 32-bit float holds")),
+        ({"roughness": {"file": "roughness.npy", "scale": -1e39}}, ("roughness: scale is -1e+39", "a 32-bit float")),
+        ({"view_matrix": [1, 0, 0, 0, 1, 0, 0, 0, 10**300]}, ("view_matrix is 1e+300", "a 32-bit float")),
     ],
 )
 def test_what_is_wrong_is_one_line(tmp_path, changes, said):
