@@ -161,7 +161,7 @@ def test_constraints_change_the_answer_the_count_and_the_address(browser, run, t
     """By the keyboard; what the run asked for itself is in no address, and a button brings it back."""
     assert run("report", str(answered_run(tmp_path / "run")))[0] == 0
     page = Opened(browser, tmp_path / "run/report.html")
-    page.page.locator(".constraints").wait_for()
+    page.says("[data-left]", "codes are left")
     left, codes = page.page.locator("[data-left]"), page.page.locator("[data-codes] tbody tr")
     assert left.text_content() == "2 of 2 codes are left" and codes.count() == 2
     assert page.page.locator(".reply:visible .lead").all_text_contents() == ["rg8, on sphere: take fine."]
@@ -179,7 +179,7 @@ def test_constraints_change_the_answer_the_count_and_the_address(browser, run, t
     assert page.page.locator(".reply:visible .lead").all_text_contents() == ["rgb10a2, on sphere: take xy."]
     # A copied address shows the same.
     other = Opened(browser, tmp_path / "run/report.html", fragment=page.page.evaluate("location.hash"))
-    other.page.locator(".constraints").wait_for()
+    other.says("[data-left]", "codes are left")
     for one in (page, other):
         assert one.page.locator("[data-left]").text_content() == "1 of 2 codes are left"
         assert one.page.locator("[data-limit=most]").input_value() == "6"
@@ -203,7 +203,7 @@ def test_a_follows_the_answer_until_a_reader_chooses_it(browser, run, tmp_path):
     """So that the card, and the code to copy in it, are the answer's. What a reader chose stands in the address."""
     assert run("report", str(answered_run(tmp_path / "run")))[0] == 0
     page = Opened(browser, tmp_path / "run/report.html")
-    page.page.locator(".constraints").wait_for()
+    page.says("[data-left]", "codes are left")
     most, sides = page.page.locator("[data-limit=most]"), "[state.a, state.b]"
     assert page.page.evaluate(sides) == ["fine rg8", "xy rg8"]
     most.fill("6")
@@ -218,7 +218,7 @@ def test_a_follows_the_answer_until_a_reader_chooses_it(browser, run, tmp_path):
     assert page.page.evaluate(sides) == ["fine rg8", "xy rg8"] and page.said == []
     page.context.close()
     copied = Opened(browser, tmp_path / "run/report.html", fragment=address)
-    copied.page.locator(".constraints").wait_for()
+    copied.says("[data-left]", "codes are left")
     assert copied.page.evaluate(sides) == ["fine rg8", "xy rg8"]
     copied.context.close()
 
@@ -231,7 +231,7 @@ def test_half_of_the_sphere_is_a_question_of_its_own(browser, run, tmp_path):
     rows += [rows[0] | half, pick_row("hemi_octahedral", 0.1, 90) | {"domain": "hemisphere"} | half]
     assert run("report", str(a_run(tmp_path / "run", {"pick": rows}, request={"tables": "pick"})))[0] == 0
     page = Opened(browser, tmp_path / "run/report.html")
-    page.page.locator(".constraints").wait_for()
+    page.says("[data-left]", "codes are left")
     of, on = (page.page.locator(f"[data-part={name}]") for name in ("of", "on"))
     assert on.locator("option").all_text_contents() == ["sphere", "hemisphere: normals with z >= 0"]
     on.select_option("hemisphere: normals with z >= 0")
