@@ -117,9 +117,11 @@ def whole_file(path: Path, is_checked: bool = False) -> Iterator[Path]:
         clear_away(path)
         yield partial
         if partial != path:
-            check_replaceable(path)
             # Files of a run are replaced as it goes on, also those of earlier versions, which had no marks.
-            if path.exists() and not (is_checked or any((folder / RUN).exists() for folder in path.parents[:2])):
+            is_known = is_checked or any((folder / RUN).exists() for folder in path.parents[:2])
+            if is_known or not path.exists():
+                check_replaceable(path)
+            else:
                 check_alike(path, partial)
             moved_over(partial, path)
     except OSError as error:
@@ -146,9 +148,8 @@ def check_plot(path: Path | None) -> None:
     """Raises UsageError or PlotError where a plot of this name cannot be written; None will do."""
     if path:
         # A folder is said to be one, whatever its name ends in.
-        check_writable(path)
+        check_writable(path, mark=PLOTS.get(path.suffix.lower(), b""))
         plots.check_format(path)
-        check_writable(path, mark=PLOTS[path.suffix.lower()])
 
 
 def save_plot(path: Path, figure: Any) -> None:

@@ -106,7 +106,7 @@ const titleUnder = (title, mixing) => (mixing && title.endsWith(" error") ? `${t
 
 class Choose {
   constructor(root, { constants, questions, found }) {
-    Object.assign(this, { root, constants, questions, title: found });
+    Object.assign(this, { root, constants, questions, title: found, answers: new Map() });
     this.control = Object.fromEntries(Array.from(root.querySelectorAll("[data-limit]"), (one) => [one.dataset.limit, one]));
     for (const [key, one] of Object.entries(this.control)) one.addEventListener("input", () => this.take(key, one));
     this.parts = Array.from(root.querySelectorAll("[data-part]"));
@@ -139,10 +139,14 @@ class Choose {
     return this.questions.find(({ where }) => where === state.for) ?? this.questions[0];
   }
 
-  // The codecs of the answer that the page has, the best one first.
+  // The codecs of the answer that the page has, the best one first. A state changes with each move of a drag; what it asks does not.
   answersTo(state) {
-    const question = this.questionOf(state), { fit } = answerOf(question, askedOf(question, state), this.constants);
-    return fit.map(({ codec }) => codec).filter((codec) => known.codecs.includes(codec));
+    const asked = JSON.stringify(CONSTRAINTS.map((key) => state[key]));
+    if (!this.answers.has(asked)) {
+      const question = this.questionOf(state), { fit } = answerOf(question, askedOf(question, state), this.constants);
+      this.answers.set(asked, fit.map(({ codec }) => codec).filter((codec) => known.codecs.includes(codec)));
+    }
+    return this.answers.get(asked);
   }
 
   show(state, before) {

@@ -537,8 +537,8 @@ class Viewer {
   choose(list, name) {
     const found = this.find(name), isOut = list.value === String(LACKING);
     list.querySelector(`[value="${LACKING}"]`)?.remove();
-    if (found < 0 && name) list.prepend(new Option(`${name}: no picture`, LACKING));
-    if (found >= 0 || name) list.value = found < 0 ? LACKING : found;
+    if (name && found < 0) list.prepend(new Option(`${name}: no picture`, LACKING));
+    if (name) list.value = found < 0 ? LACKING : found;
     else if (isOut) list.value = ORIGINAL;
   }
 
