@@ -9,11 +9,10 @@ import pytest
 from attack import translations
 from attack.kind import MEASURED, REFUSED
 from attack.trying import KINDS, ODD, one
-from languages import require_runner
+from languages import RUN, require_runner
 
 from normalbench.bench.ground.compilers import tools
 from normalbench.bench.ground.output.errors import MissingError
-from normalbench.bench.shaders.code.emit import LANGUAGES
 from normalbench.bench.shaders.languages import translated
 
 FEW = [kind for kind in KINDS if kind.few]
@@ -56,7 +55,7 @@ def test_what_is_damaged_is_measured_or_refused_in_a_line(kind, count, tmp_path,
 @pytest.mark.parametrize("seed", range(12))
 def test_programs_mean_the_same_in_every_language(seed, tmp_path, monkeypatch):
     """Of each language that is read three, each written in another one."""
-    for language in ("hlsl", "slang", "wgsl", "c", "msl"):
+    for language in ("hlsl", "slang", "wgsl", "c"):
         require_runner(language)
     monkeypatch.setattr(translated, "_by_child", translated._by_child)
     ended, why = one(translations.translations(tmp_path), translations.KINDS[0], seed)
@@ -65,15 +64,15 @@ def test_programs_mean_the_same_in_every_language(seed, tmp_path, monkeypatch):
 
 @pytest.mark.usefixtures("gl")
 def test_what_a_machine_lacks_is_left_out_of_the_attack_and_said(monkeypatch, tmp_path):
-    """Without clang no program is written in Metal's language, whichever seed it has."""
+    """Without a C compiler no program is written in C, whichever seed it has."""
     path_of = tools.path_of
-    # What another test has asked of clang is not asked again.
+    # What another test has asked of the compiler is not asked again.
     monkeypatch.setattr(tools, "version_text", tools.version_text.__wrapped__)
-    monkeypatch.setattr(tools, "path_of", lambda tool: raised("no clang") if tool == tools.CLANG else path_of(tool))
+    monkeypatch.setattr(tools, "path_of", lambda tool: raised("no cc") if tool == tools.C else path_of(tool))
     monkeypatch.setattr(translated, "_by_child", translated._by_child)
     written, left_out = translations.written_here()
-    assert "msl" not in written and left_out == ["left out: programs written in Metal: no clang"], left_out
-    seed = [*LANGUAGES].index("msl") * len(translations.GIVEN)
+    assert "c" not in written and left_out == ["left out: programs written in C: no cc"], left_out
+    seed = RUN.index("c") * len(translations.GIVEN)
     ended, why = one(translations.translations(tmp_path), translations.KINDS[0], seed)
     assert ended in (MEASURED, REFUSED), why
 

@@ -44,8 +44,8 @@ ROUNDED = (NORMAL, MOTION, CURVE, FRAME)
 ROUNDED_WORDS = "normals, motion, curves and tangent frames"
 # What the head of code says that was not run.
 NOT_COMPARED = "not in this run; the command below runs it and compares it with the catalogue"
-# What no compiler of its own runs here, and what is run in its place, the first that can be.
-WITNESSED, WITNESSES = ("msl",), ("c", "glsl")
+# What is run in place of a language that is not, the first that can be.
+WITNESSES = ("c", "glsl")
 
 
 def code_command(options: CodeOptions, format: str, output: Path | None) -> int:
@@ -204,12 +204,12 @@ def _why_not(code: Code, row: Row, made: Sequence[tuple[Code, Row]]) -> str:
     """Why a language is not written; empty where it is.
 
     All languages are written from one tree. Where the tree has been seen to be wrong in one, it is wrong in
-    all. What its own compiler does not run here, as Metal, is written where another language of the tree agrees.
+    all. What is not run here, as Metal, is written where another language of the tree agrees.
     """
     if row["verdict"] == DIFFERS:
         return row["says"]
     others = [(one.language, said) for one, said in made if one is not code]
-    if row["verdict"] == NOT_RUN or code.language in WITNESSED:
+    if row["verdict"] == NOT_RUN:
         others = others or [_witness(code)]
     wrong = [language for language, said in others if said["verdict"] == DIFFERS]
     return f"its translation is seen to be wrong in {wrong[0]}" if wrong else ""

@@ -14,7 +14,7 @@ from ..ground.output import cache
 from ..ground.output.errors import MissingError
 from ..measures.metrics.images import require_flip
 from ..measures.metrics.visibility import require_rays
-from ..shaders.code.run import c, msl, wgsl
+from ..shaders.code.run import c, wgsl
 from ..shaders.languages.language import require_language
 from ..subjects.codecs.half.compute import half_device
 from .machine import require_intel, require_mobile, require_nvidia, require_radeons, require_terascale
@@ -47,7 +47,6 @@ CAPABILITIES: Mapping[str, Callable[[], object]] = MappingProxyType(
         "quality by WGSL (wgpu and a Vulkan driver)": wgsl.device,
         "code in C, and fast rows of 2^26 normals and more (cc)": c.compiler,
         "code in C of your files (Landlock)": walls.require,
-        "code in Metal (clang++)": msl.compiler,
         "code in Slang (slangc)": lambda: tools.path_of(tools.SLANG),
         "rays (method_rms of effects)": require_rays,
         "encoders in HLSL": lambda: require_language("HLSL"),

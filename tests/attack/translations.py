@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from languages import RUN
+
 from normalbench.bench.ground.output.errors import MissingError, UsageError
 from normalbench.bench.shaders.code.emit import LANGUAGES
 from normalbench.bench.shaders.code.files import code_of
@@ -30,12 +32,12 @@ SEAMS = 1e-3
 def written_here() -> tuple[list[str], list[str]]:
     """The languages that this machine runs, and a line with the reason for each other one."""
     found, left_out = [], []
-    for name, language in LANGUAGES.items():
+    for name in RUN:
         try:
             runner(name).how()
             found.append(name)
         except (MissingError, NoDeviceError) as error:
-            left_out.append(f"left out: programs written in {language.title}: {error}")
+            left_out.append(f"left out: programs written in {LANGUAGES[name].title}: {error}")
     return found, left_out
 
 

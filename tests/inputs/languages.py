@@ -1,12 +1,15 @@
-"""Whether a machine can run files of a language; where CI is set, one that cannot fails the tests that need it."""
+"""The languages that files are run in; where CI is set, a machine that lacks what runs one fails its tests."""
 
 import os
 
 import pytest
 
 from normalbench.bench.ground.output.errors import MissingError
-from normalbench.bench.shaders.code.run import runner
+from normalbench.bench.shaders.code.emit import LANGUAGES
+from normalbench.bench.shaders.code.run import NEVER_RUN, runner
 from normalbench.gbuffer.gl.device import NoDeviceError
+
+RUN = [name for name in LANGUAGES if name not in NEVER_RUN]
 
 
 def require_runner(language: str) -> None:

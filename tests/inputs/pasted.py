@@ -2,16 +2,13 @@
 
 import re
 
-from normalbench.bench.shaders.code.emit import LANGUAGES
-
 # Letters.
 LONGEST = 24
 
 
-def names_in(body: str, language: str) -> set[str]:
-    """The names in a text without its comments, the names of files, and Python's mark of what is its own."""
-    mark = re.escape(LANGUAGES[language].mark)
-    return set(re.findall(r"\b_?([A-Za-z_]\w*)", re.sub(rf'{mark} .*|"[^"\n]*"', "", body)))
+def names_in(body: str) -> set[str]:
+    """The names in a text without its comments and the names of files."""
+    return set(re.findall(r"\b[A-Za-z_]\w*", re.sub(r'// .*|"[^"\n]*"', "", body)))
 
 
 def loops_without_unrolling(body: str) -> list[str]:

@@ -1,25 +1,23 @@
 """Whole G-buffer layouts on arrays: what their targets hold of surfaces, and the surfaces that come back.
 
-What runs is the code that `normalbench code --of layout --to python` writes.
+What runs is the code that `normalbench code --of layout --to glsl` writes, on the GL device.
 """
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Mapping, Sequence
 from functools import cache
-from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
-import jax.numpy as jnp
 import numpy as np
 
-from ....encodings.storages.rounding import store_texel
-from ....encodings.storages.storage import Storage
 from ....gbuffer.layouts.layout import Layout
 from ...ground.output.errors import UsageError
-from ...shaders.code.whole.emit import PREFIX, GBufferCode, gbuffer_code
+from ...shaders.code.whole.emit import GBufferCode, gbuffer_code
+from ...shaders.code.whole.fields import surface_leaves, target_leaves
+from ...shaders.code.whole.run import run
+from ...shaders.code.whole.surfaces import PLACES
+from ...shaders.code.whole.verify import stored_texels, written_texels
 from ...shaders.translator.tree import scalar_of, size_of
 from ...subjects.codecs.layout_names import layouts_named
 
@@ -27,7 +25,7 @@ CHANNELS = 4
 
 
 def pack(layout: Layout | str, surface: Mapping[str, Any], **settings: Any) -> tuple[np.ndarray, ...]:
-    """What the targets of a layout hold of surfaces: numbers as a shader reads them, or whole numbers.
+    """Return what the targets of a layout hold of surfaces: numbers as a shader reads them, or whole numbers.
 
     Args:
         layout: one of `normalbench list`, a TOML file, or a value.
@@ -40,56 +38,57 @@ def pack(layout: Layout | str, surface: Mapping[str, Any], **settings: Any) -> t
 
     Raises:
         UsageError: an unknown layout, a layout that is not written, or a field or a setting too many or too few.
+        NoDeviceError: there is no GL device.
     """
-    code, module = _code_of(layout)
+    code = _code_of(layout)
     kinds = {field.name: field.kind for field in code.texts.contents.fields}
     _check_names("surface", surface, kinds)
-    fields = (_array(surface[name], kind) for name, kind in kinds.items())
-    made = module[f"{PREFIX}_pack"](module[f"{PREFIX}_surface"](*fields), *_given(code, settings))
     shape = np.broadcast_shapes(*(_shape(surface[name], kind) for name, kind in kinds.items()))
-    storages = [target.storage for target in code.layout.targets]
-    return tuple(_stored(one, shape, storage) for one, storage in zip(made, storages, strict=True))
+    rows = np.concatenate([_rows(surface[name], kind, shape) for name, kind in kinds.items()], axis=1)
+    width = len(target_leaves(code.texts))
+    made = _ran(code, np.pad(rows, ((0, 0), (0, width))), settings, shape)[:, :width]
+    held = stored_texels(code.layout, written_texels(code, made))
+    return tuple(
+        _target(held[:, number], target.storage.is_integer, target.storage.channels, shape)
+        for number, target in enumerate(code.layout.targets)
+    )
 
 
 def unpack(layout: Layout | str, targets: Sequence[Any], **settings: Any) -> dict[str, np.ndarray]:
-    """The surfaces that come back from what targets hold; `pack` says what is given.
+    """Return the surfaces that come back from what targets hold; `pack` says what is given.
 
     Raises:
         UsageError: as `pack`, or another number of targets.
+        NoDeviceError: there is no GL device.
     """
-    code, module = _code_of(layout)
+    code = _code_of(layout)
     if len(targets) != len(code.texts.targets):
         raise UsageError(f"layout {code.layout.name} has {len(code.texts.targets)} targets, not {len(targets)}")
     kinds = [target.kind for target in code.texts.targets]
     # A target of one integer is one number of each pixel.
-    held = (np.asarray(one)[..., 0] if kind == "uint" else one for one, kind in zip(targets, kinds, strict=True))
-    texels = (_array(one, kind) for one, kind in zip(held, kinds, strict=True))
-    made = module[f"{PREFIX}_unpack"](module[f"{PREFIX}_targets"](*texels), *_given(code, settings))
-    shape = np.broadcast_shapes(*(np.shape(one)[:-1] for one in targets))
+    held = [np.asarray(one)[..., 0] if kind == "uint" else one for one, kind in zip(targets, kinds, strict=True)]
+    shape = np.broadcast_shapes(*(_shape(one, kind) for one, kind in zip(held, kinds, strict=True)))
+    rows = np.concatenate([_rows(one, kind, shape) for one, kind in zip(held, kinds, strict=True)], axis=1)
+    width = len(surface_leaves(code.texts))
+    made = _ran(code, np.pad(rows, ((0, 0), (width, 0))), settings, shape)[:, -width:]
     fields = code.texts.contents.fields
-    return {field.name: _broad(one, field.kind, shape) for field, one in zip(fields, made, strict=True)}
+    ends = np.cumsum([size_of(field.kind) for field in fields])[:-1]
+    parts = np.split(made, ends, axis=1)
+    return {field.name: _field(part, field.kind, shape) for field, part in zip(fields, parts, strict=True)}
 
 
-def _code_of(layout: Layout | str) -> tuple[GBufferCode, Mapping[str, Any]]:
+def _code_of(layout: Layout | str) -> GBufferCode:
     if isinstance(layout, str):
-        found = layouts_named(layout)
-        if len(found) != 1:
-            raise UsageError(f"{layout}: {len(found)} layouts; name one")
-        layout = found[0]
-    return _loaded(layout)
+        named = layouts_named(layout)
+        if len(named) != 1:
+            raise UsageError(f"{layout}: {len(named)} layouts; name one")
+        layout = named[0]
+    return _written(layout)
 
 
 @cache
-def _loaded(layout: Layout) -> tuple[GBufferCode, Mapping[str, Any]]:
-    """A layout's Python, and what it defines."""
-    code = gbuffer_code(layout, "python")
-    with tempfile.TemporaryDirectory(prefix="normalbench-") as folder:
-        for name, data in code.files([]).items():
-            (Path(folder) / name).write_bytes(data)
-        path = Path(folder) / code.name
-        module: dict[str, Any] = {"__name__": f"normalbench_layout_{layout.name}", "__file__": str(path)}
-        exec(compile(code.body, str(path), "exec"), module)
-    return code, MappingProxyType(module)
+def _written(layout: Layout) -> GBufferCode:
+    return gbuffer_code(layout, "glsl")
 
 
 def _check_names(what: str, given: Mapping[str, Any], wanted: Mapping[str, Any] | Sequence[str]) -> None:
@@ -100,13 +99,21 @@ def _check_names(what: str, given: Mapping[str, Any], wanted: Mapping[str, Any] 
         raise UsageError(f"{what} {' and '.join(wrong)}; it has {', '.join(wanted) or 'none'}")
 
 
-def _given(code: GBufferCode, settings: Mapping[str, Any]) -> list[np.ndarray]:
+def _ran(code: GBufferCode, rows: np.ndarray, settings: Mapping[str, Any], shape: tuple[int, ...]) -> np.ndarray:
+    """What both functions give of rows: uint32 of shape (count, numbers), the targets' first."""
     _check_names("settings", settings, code.settings)
-    return [_array(settings[name], "vec3" if name == "view" else "float") for name in code.settings]
+    besides = np.zeros((len(rows), max(place.stop for place in PLACES.values())), np.uint32)
+    for name, value in settings.items():
+        besides[:, PLACES[name]] = _rows(value, "vec3" if name == "view" else "float", shape)
+    # A device runs no empty group.
+    return run(code, rows, besides) if len(rows) else rows
 
 
-def _array(value: Any, kind: str) -> np.ndarray:
-    return np.asarray(value, np.uint32 if scalar_of(kind) == "uint" else np.float32)
+def _rows(value: Any, kind: str, shape: tuple[int, ...]) -> np.ndarray:
+    """A value of each pixel by its bits: uint32 of shape (count, numbers)."""
+    size, array = size_of(kind), np.asarray(value, np.uint32 if scalar_of(kind) == "uint" else np.float32)
+    whole = np.broadcast_to(array, (*shape, size) if size > 1 else shape)
+    return np.ascontiguousarray(whole).view(np.uint32).reshape(-1, size)
 
 
 def _shape(value: Any, kind: str) -> tuple[int, ...]:
@@ -114,19 +121,13 @@ def _shape(value: Any, kind: str) -> tuple[int, ...]:
     return np.shape(value)[: np.ndim(value) - (size_of(kind) > 1)]
 
 
-def _broad(made: Any, kind: str, shape: tuple[int, ...]) -> np.ndarray:
-    """What does not depend on the pixel is there once."""
-    return np.broadcast_to(_array(made, kind), (*shape, size_of(kind)) if size_of(kind) > 1 else shape)
+def _target(texels: np.ndarray, is_integer: bool, channels: int, shape: tuple[int, ...]) -> np.ndarray:
+    texels = np.ascontiguousarray(texels)
+    return (texels[:, :channels] if is_integer else texels.view(np.float32)).reshape(
+        *shape, channels if is_integer else CHANNELS
+    )
 
 
-def _stored(made: Any, shape: tuple[int, ...], storage: Storage) -> np.ndarray:
-    """What a target holds of what is written to it; 0 in channels that its format lacks."""
-    if storage.is_integer:
-        whole = _array(made, "uint")
-        whole = whole[..., None] if storage.channels == 1 else whole
-        return np.broadcast_to(whole, (*shape, storage.channels))
-    numbers = np.broadcast_to(_array(made, "vec4"), (*shape, CHANNELS))
-    found = np.zeros(numbers.shape, np.float32)
-    for channel in range(storage.channels):
-        found[..., channel] = np.asarray(store_texel(jnp.asarray(numbers[..., channel]), storage, channel))
-    return found
+def _field(rows: np.ndarray, kind: str, shape: tuple[int, ...]) -> np.ndarray:
+    rows = np.ascontiguousarray(rows).view(np.uint32 if scalar_of(kind) == "uint" else np.float32)
+    return rows.reshape(*shape, size_of(kind)) if size_of(kind) > 1 else rows.reshape(shape)

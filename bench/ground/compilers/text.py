@@ -88,7 +88,6 @@ _C_HEADS = re.compile(
     r'#include (<(math|stdbool|stddef|stdint|string)\.h>|"(code|\w+_tables)\.h")'
     "|#pragma STDC FP_CONTRACT OFF|#ifdef __clang__"
 )
-_METAL_HEADS = re.compile(r"#include <metal_stdlib>")
 _GLSL_HEADS = re.compile(
     r"#version (310 es|430|450)|#extension GL_EXT_(shader_explicit_arithmetic_types(_float16)?|shader_16bit_storage"
     r"|control_flow_attributes|samplerless_texture_functions) : require"
@@ -102,7 +101,6 @@ RULES: Mapping[str, Rules] = MappingProxyType(
         "glsl": Rules(heads=_GLSL_HEADS, words=None),
         "wgsl": Rules(marks="#\"'`\\"),
         "c": _NATIVE._replace(heads=_C_HEADS),
-        "msl": _NATIVE._replace(heads=_METAL_HEADS),
         "cuda": _NATIVE._replace(heads=re.compile(r"#pragma unroll"), words=("__constant__", "__forceinline__")),
     }
 )

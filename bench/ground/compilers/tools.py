@@ -21,7 +21,7 @@ from . import slang
 from .text import RefusedError, Text, judged
 
 GLSLANG, SPIRV_CROSS, SPIRV_OPT, SLANG = "glslangValidator", "spirv-cross", "spirv-opt", "slangc"
-C, CLANG, METAL = "cc", "clang++", "metal"
+C = "cc"
 # Slang's compiler as a library, which is no program.
 SLANG_LIBRARY = "slang-compiler"
 # What to install.
@@ -33,8 +33,6 @@ MISSING: Mapping[str, str] = MappingProxyType(
         SLANG: f"no Slang: {SLANG} is not there; install it (pip install --no-deps slangtorch)",
         SLANG_LIBRARY: slang.MISSING,
         C: f"no C compiler: {C} is not on the path; install it ({how_to_install('gcc')})",
-        CLANG: f"no clang: {CLANG} is not on the path; install it ({how_to_install('clang')})",
-        METAL: f"no Metal: {METAL} is not on the path; it comes with Xcode",
     }
 )
 # Python packages that have a tool in their folder bin.

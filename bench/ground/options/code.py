@@ -29,9 +29,7 @@ class CodeOptions(Sources):
     rounding: Annotated[str, Option("--rounding", "nearest, truncate, truncate_half; comma-separated, or all.")] = (
         "nearest"
     )
-    to: Annotated[str, Option("--to", "glsl, essl, hlsl, slang, wgsl, msl, c, python; comma-separated, or all.")] = (
-        "hlsl"
-    )
+    to: Annotated[str, Option("--to", "glsl, essl, hlsl, slang, wgsl, msl, c; comma-separated, or all.")] = "hlsl"
     prefix: Annotated[
         str,
         Option(

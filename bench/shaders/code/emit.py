@@ -19,7 +19,6 @@ from ..translator.glsl_parser import read_glsl
 from ..translator.glsl_writer import EsslWriter, GlslWriter
 from ..translator.hlsl_writer import HlslWriter
 from ..translator.msl_writer import MslWriter
-from ..translator.numpy_writer import NumpyWriter
 from ..translator.reduce import reduced
 from ..translator.tree import Program, TranslationError
 from ..translator.wgsl_writer import WgslWriter
@@ -39,7 +38,6 @@ class Language:
         ending: of its files.
         writer: what writes it from a tree.
         advice: what a file's reader must see to.
-        mark: what comments begin with.
         has_preprocessor: whether a file can be included twice, and is to be taken once.
     """
 
@@ -47,7 +45,6 @@ class Language:
     ending: str
     writer: type[Writer]
     advice: str
-    mark: str = "//"
     has_preprocessor: bool = True
 
 
@@ -62,14 +59,6 @@ LANGUAGES: Mapping[str, Language] = MappingProxyType(
             "Metal", ".metal", MslWriter, "For Metal 2 and later. Without -fno-fast-math the compiler rounds otherwise."
         ),
         "c": Language("C", ".h", CWriter, "For C99. Compile with -ffp-contract=off: fused products round otherwise."),
-        "python": Language(
-            "Python, NumPy",
-            ".py",
-            NumpyWriter,
-            "For NumPy 2 and later. Arrays have shape (..., 3).",
-            mark="#",
-            has_preprocessor=False,
-        ),
     }
 )
 

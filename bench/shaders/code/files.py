@@ -66,8 +66,7 @@ class Code:
 def commented(body: str, language: str, guard: str, head: Iterable[str]) -> str:
     """The text of a file under a comment of these paragraphs; one that is indented stays as it is. Languages with a
     preprocessor take the text once, however often it is included: `guard` says what it is."""
-    mark = LANGUAGES[language].mark
-    comment = "".join(in_a_comment(f"{mark} {line}").rstrip() + "\n" for said in head for line in _lines(said))
+    comment = "".join(in_a_comment(f"// {line}").rstrip() + "\n" for said in head for line in _lines(said))
     if not LANGUAGES[language].has_preprocessor:
         return f"{comment}\n{body}"
     name = f"{identifier(guard).upper()}_INCLUDED"
@@ -123,7 +122,7 @@ def code_of(codec: Any, language: str, prefix: str = "") -> Code:
         body = writer(prefix, texels, stem_of(codec)).program(program)
     except TranslationError as error:
         raise UsageError(_untranslatable_reason(codec, str(error))) from error
-    return Code(codec, language, prefix, folded(body, LANGUAGES[language].mark), interface)
+    return Code(codec, language, prefix, folded(body), interface)
 
 
 def _untranslatable_reason(codec: Any, said: str) -> str:

@@ -10,35 +10,36 @@ from ..translator.tokens import in_a_comment
 # Columns.
 WIDTH = 99
 INDENT = 4
-OPENING, CLOSING, QUOTES = "([{", ")]}", '"""'
+OPENING, CLOSING = "([{", ")]}"
+MARK = "//"
 COMMA, OPERATOR = re.compile(r",(?= )"), re.compile(r" (?=(?:[|?:+*/-]|&&|\|\|) )")
 BRACKET = re.compile(r"[({](?=\S)")
 
 
-def folded(text: str, mark: str) -> str:
-    """The text with long lines broken; comments begin with `mark`. Where that is Python's, only within brackets."""
-    return "".join(f"{one}\n" for line in text.splitlines() for one in _folded_line(line, mark))
+def folded(text: str) -> str:
+    """Return the text with long lines broken."""
+    return "".join(f"{part}\n" for line in text.splitlines() for part in _folded_line(line))
 
 
-def _folded_line(line: str, mark: str) -> list[str]:
+def _folded_line(line: str) -> list[str]:
     plain = line.lstrip()
     indent = " " * (len(line) - len(plain))
     if len(line) <= WIDTH:
         return [line]
-    if plain.startswith((f"{mark} ", QUOTES)):
-        again = f"{indent}{mark} " if plain.startswith(mark) else indent
+    if plain.startswith(f"{MARK} "):
+        again = f"{indent}{MARK} "
         parts = textwrap.wrap(plain, WIDTH, initial_indent=indent, subsequent_indent=again, break_on_hyphens=False)
-        return [*map(in_a_comment, parts)] if plain.startswith(mark) else parts
-    if plain.startswith("#") or f"  {mark} " in plain:
+        return [*map(in_a_comment, parts)]
+    if plain.startswith("#") or f"  {MARK} " in plain:
         return [line]
-    return list(_broken_lines(line, indent + " " * INDENT, least=mark == "#"))
+    return list(_broken_lines(line, indent + " " * INDENT))
 
 
-def _broken_lines(line: str, indent: str, least: int) -> list[str]:
-    """The lines of one that is broken where at least so many brackets are open."""
+def _broken_lines(line: str, indent: str) -> list[str]:
+    """The parts of a line that is too long."""
     found: list[str] = []
     depth = 0
-    while len(line) > WIDTH and (at := _best_break(line, depth, least)):
+    while len(line) > WIDTH and (at := _best_break(line, depth)):
         found.append(line[:at].rstrip())
         depth += _opened(line[:at])
         line = indent + line[at:].lstrip()
@@ -49,14 +50,14 @@ def _opened(text: str) -> int:
     return sum((letter in OPENING) - (letter in CLOSING) for letter in text)
 
 
-def _best_break(line: str, depth: int, least: int) -> int:
+def _best_break(line: str, depth: int) -> int:
     """Where a line is broken, behind a comma, before an operator or else behind a bracket: within as few
     brackets as there can be, and as late there; 0 where it cannot be."""
     begin = len(line) - len(line.lstrip())
     for pattern in (COMMA, OPERATOR, BRACKET):
         places = [one.end() for one in pattern.finditer(line[: WIDTH + 1], begin) if one.end() <= WIDTH]
         open_at = {at: depth + _opened(line[:at]) for at in places}
-        inside = [at for at in places if open_at[at] >= max(least, pattern is COMMA)]
+        inside = [at for at in places if open_at[at] >= (pattern is COMMA)]
         if inside:
             return min(inside, key=lambda at: (open_at[at], -at))
     return 0

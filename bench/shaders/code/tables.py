@@ -1,8 +1,7 @@
-"""Look-up tables beside a codec's code: as a texture file, as a header of C, and as a NumPy file."""
+"""Look-up tables beside a codec's code: as a texture file, and as a header of C."""
 
 from __future__ import annotations
 
-import io
 import struct
 import textwrap
 from collections.abc import Iterable, Mapping
@@ -86,18 +85,10 @@ def table_lines(tables: Mapping[str, np.ndarray]) -> list[str]:
     ]
 
 
-def npy(table: np.ndarray) -> bytes:
-    """A table as NumPy saves it."""
-    file = io.BytesIO()
-    np.save(file, kept(table))
-    return file.getvalue()
-
-
 def table_files(tables: Mapping[str, np.ndarray], language: str, stem: str, prefix: str) -> dict[str, bytes]:
     """What lies beside a file of a language, by name: `stem`, and a table's name without the prefix."""
     if not tables:
         return {}
     if language == "c":
         return {f"{stem}_tables.h": header(tables).encode()}
-    ending, made = ("npy", npy) if language == "python" else ("dds", dds)
-    return {f"{stem}_{name.removeprefix(f'{prefix}_')}.{ending}": made(table) for name, table in tables.items()}
+    return {f"{stem}_{name.removeprefix(f'{prefix}_')}.dds": dds(table) for name, table in tables.items()}

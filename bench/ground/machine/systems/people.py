@@ -17,7 +17,6 @@ if sys.platform == "win32":
         "spirv-cross": SDK,
         "mesa-vulkan-drivers": "the driver of the GPU's vendor",
         "gcc": "MSYS2: pacman -S mingw-w64-ucrt-x86_64-gcc",
-        "clang": "winget install LLVM.LLVM",
     }
 elif sys.platform == "darwin":
     ELSEWHERE = "only Linux has it"
@@ -26,7 +25,6 @@ elif sys.platform == "darwin":
         "spirv-tools": "brew install spirv-tools",
         "spirv-cross": "brew install spirv-cross",
         "gcc": "xcode-select --install",
-        "clang": "xcode-select --install",
         "mesa-vulkan-drivers": "it comes with macOS, where there is a GPU",
     }
 else:

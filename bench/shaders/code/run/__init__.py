@@ -4,9 +4,15 @@ from __future__ import annotations
 
 from importlib import import_module
 
+from ....ground.output.errors import MissingError
 from .interface import Runner
+
+# Languages that are written and never run here.
+NEVER_RUN = ("msl",)
 
 
 def runner(language: str) -> Runner:
-    """What runs files of a language, a key of `emit.LANGUAGES`."""
+    """Return what runs files of a language, a key of `emit.LANGUAGES`. Raises MissingError where nothing does."""
+    if language in NEVER_RUN:
+        raise MissingError("only Metal itself runs Metal's language")
     return import_module(f"{__name__}.{language}").RUNNER

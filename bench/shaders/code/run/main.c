@@ -2,7 +2,7 @@
 
        code FOLDER COUNT
 
-   What it runs may be anybody's: it limits itself. In C, and in C++ for Metal. */
+   What it runs may be anybody's: it limits itself. */
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,15 +15,9 @@
 #define RUN_MADE 24
 #endif
 
-#ifdef __cplusplus
-extern "C" {
-#endif
 void run_six(size_t count, const float *given, float *made, uint32_t *words);
 #ifdef RUN_TABLE_COUNT
 void run_set_table(size_t at, const float *texels, uint32_t width, uint32_t height);
-#endif
-#ifdef __cplusplus
-}
 #endif
 
 static void limit(int what, unsigned long long most) {

@@ -93,17 +93,17 @@ def gbuffer_code(layout: Layout, language: str, prefix: str = "") -> GBufferCode
         UsageError: the layout holds what is not written, or has what cannot be translated; one line.
         ShaderError: its GLSL cannot be read.
     """
-    texts, prefix, said = Texts(Contents(layout)), prefix or PREFIX, LANGUAGES[language]
+    texts, prefix = Texts(Contents(layout)), prefix or PREFIX
     made = layout.encoding.tables()
     tables = {table_name(name, prefix, layout.encoding.prefix): table for name, table in made.items()}
     texels = {name: texels_of(table) for name, table in tables.items()}
     try:
         program = _program(texts, prefix)
-        body = said.writer(prefix, texels, identifier(layout.name)).program(program)
+        body = LANGUAGES[language].writer(prefix, texels, identifier(layout.name)).program(program)
     except TranslationError as error:
         raise UsageError(f"layout {layout.name}: {error}") from error
     settings = tuple(one.name for one in program.function(f"{prefix}_pack").parameters[1:])
-    return GBufferCode(layout, language, prefix, folded(body, said.mark), texts, settings, tables)
+    return GBufferCode(layout, language, prefix, folded(body), texts, settings, tables)
 
 
 def _program(texts: Texts, prefix: str) -> Program:

@@ -15,7 +15,6 @@ from .....gbuffer.gl.device import device
 from .....gbuffer.gl.shader import ShaderError
 from ....ground.compilers import tools
 from ....ground.compilers.text import own
-from ....ground.machine import children
 from ...judged import judged_text
 from ..emit import LANGUAGES
 from ..kinds.normal import is_catalogues
@@ -27,7 +26,7 @@ from .surfaces import PLACES
 
 HERE = Path(__file__).parent
 GROUP = 64
-# Rows that are run at once: it bounds a run's memory, and the files that C and Python may write.
+# Rows that are run at once: it bounds a run's memory, and the files that C may write.
 BLOCK = 2**15
 MAIN = "run_main"
 # A number of a row and a vector of three, by language.
@@ -160,30 +159,7 @@ def _c(code: GBufferCode, rows: np.ndarray) -> np.ndarray:
         return np.fromfile(place / "made.bin", np.uint32).reshape(len(rows), -1)
 
 
-def _python(code: GBufferCode, rows: np.ndarray) -> np.ndarray:
-    with folder() as place:
-        _write_files(code, place, "code.py")
-        np.save(place / "given.npy", rows)
-        kinds = (_kinds((field.name, field.kind) for field in code.texts.contents.fields),)
-        kinds += (_kinds((target.name, target.kind) for target in code.texts.targets),)
-        kinds += (",".join("vec3" if name == "view" else "float" for name in code.settings),)
-        words = (str(place), code.prefix, *kinds)
-        run_apart(place / "code.py", children.python(f"{__package__}.python_child", *words))
-        return np.load(place / "made.npy")
-
-
-def _write_files(code: GBufferCode, place: Path, name: str) -> None:
-    """The file under a name, and its tables."""
-    for file, data in code.files([]).items():
-        (place / file).write_bytes(data)
-    (place / name).write_text(code.body, encoding="utf-8", newline="\n")
-
-
-def _kinds(named: Any) -> str:
-    return ",".join(kind for _, kind in named)
-
-
 RUNS: Mapping[str, Callable[[GBufferCode, np.ndarray], np.ndarray]] = MappingProxyType(
-    {"glsl": _glsl, "hlsl": _hlsl, "wgsl": _wgsl, "c": _c, "python": _python}
+    {"glsl": _glsl, "hlsl": _hlsl, "wgsl": _wgsl, "c": _c}
 )
 NOT_RUN = tuple(name for name in LANGUAGES if name not in RUNS)

@@ -85,7 +85,7 @@ def agreement(code: GBufferCode, count: int = COUNT, seed: int = 0) -> Agreement
     expected = Expected(contents, given, besides)
     ran = run(code, np.concatenate([given, expected.read(code)], axis=1), besides)
     width = len(target_leaves(code.texts))
-    return _compared(expected, _stored(contents.layout, _texels(code, ran[:, :width])), ran[:, width:])
+    return _compared(expected, stored_texels(contents.layout, written_texels(code, ran[:, :width])), ran[:, width:])
 
 
 class Expected:
@@ -103,7 +103,7 @@ class Expected:
         rows = np.zeros((len(given), NORMAL + len(COMPONENTS) + CHANNELS * len(layout.targets)), np.uint32)
         rows[:, : NORMAL + len(COMPONENTS)] = self._numbers()
         made = self._made(rows)[:, : CHANNELS * len(layout.targets)]
-        self.stored = _stored(layout, made.reshape(len(given), -1, CHANNELS))
+        self.stored = stored_texels(layout, made.reshape(len(given), -1, CHANNELS))
         self._add_others()
         rows[:, NORMAL + len(COMPONENTS) :] = self.stored.reshape(len(given), -1)
         self.surfaces = self._surfaces(self._made(rows)[:, CHANNELS * len(layout.targets) :])
@@ -175,7 +175,7 @@ def _reference_text(layout: Layout) -> str:
     return Source(REFERENCE, defines, files).text
 
 
-def _texels(code: GBufferCode, packed: np.ndarray) -> np.ndarray:
+def written_texels(code: GBufferCode, packed: np.ndarray) -> np.ndarray:
     """What a file writes to targets, as the renderer has it: uint32 of shape (count, targets, 4)."""
     found = np.zeros((len(packed), len(code.texts.targets), CHANNELS), np.uint32)
     for column, leaf in enumerate(target_leaves(code.texts)):
@@ -184,7 +184,7 @@ def _texels(code: GBufferCode, packed: np.ndarray) -> np.ndarray:
     return found
 
 
-def _stored(layout: Layout, texels: np.ndarray) -> np.ndarray:
+def stored_texels(layout: Layout, texels: np.ndarray) -> np.ndarray:
     """Texels as targets hold them and give them back: what the formats' own conversion makes of them."""
     found = np.zeros_like(texels)
     for at, target in enumerate(layout.targets):

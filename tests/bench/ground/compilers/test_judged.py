@@ -105,7 +105,7 @@ def test_words_of_generics_are_read():
         "#if __has_include(<math.h>)\n#endif",
     ],
 )
-@pytest.mark.parametrize("language", ["c", "msl", "cuda"])
+@pytest.mark.parametrize("language", ["c", "cuda"])
 def test_native_code_has_no_strings_and_no_words_of_its_compiler(text, language):
     with pytest.raises(RefusedError):
         judged(text, language)

@@ -8,14 +8,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from languages import require_runner
+from languages import RUN, require_runner
 from slowly import a_tenth
 
 import normalbench as nb
 from normalbench.bench.door import code_command
 from normalbench.bench.door.code_command import SHIPPED
 from normalbench.bench.shaders.code.channels import Channels
-from normalbench.bench.shaders.code.emit import LANGUAGES
 from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.shaders.code.kinds.normal import normals
 from normalbench.bench.shaders.code.reference import reference
@@ -74,7 +73,7 @@ FEW = ("per_pixel_view/rg16f", "spherical_lut/rg8")
 
 def pairs() -> list:
     """Each codec with each language."""
-    every = [(name, language) for name in CODECS for language in LANGUAGES]
+    every = [(name, language) for name in CODECS for language in RUN]
     is_slow = [language != "c" and name not in FEW for name, language in every]
     return [pytest.param(*pair, marks=[pytest.mark.slow] * slow) for pair, slow in zip(every, is_slow, strict=True)]
 
@@ -97,9 +96,9 @@ def test_the_code_of_a_codec_gives_the_catalogues_texels(language, name, tmp_pat
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("encoding", ENCODINGS)
 def test_the_code_of_every_codec_gives_the_catalogues_texels(encoding, tmp_path):
-    """As above, of every storage that fits. Metal, GLSL ES and Python, which start a process each, have those that
+    """As above, of every storage that fits. GLSL ES, which starts a process each time, has those that
     people ship; Slang is given HLSL's text, and OpenGL that of GLSL ES but for precisions."""
-    quick, slow = ("hlsl", "wgsl", "c"), ("essl", "msl", "python")
+    quick, slow = ("hlsl", "wgsl", "c"), ("essl",)
     for language in (*quick, *slow):
         require_runner(language)
     wrong = []
@@ -231,7 +230,7 @@ vec3 many_decode(vec2 e, vec3 view) {
 
 
 @pytest.mark.usefixtures("gl")
-@pytest.mark.parametrize("language", ["hlsl", "essl", "wgsl", "msl", "c", "python"])
+@pytest.mark.parametrize("language", ["hlsl", "essl", "wgsl", "c"])
 def test_a_users_glsl_is_written_in_every_language(language, tmp_path):
     """Functions that the catalogue does not use mean the same: mod of negatives, mix, step, sign, length, atan."""
     require_runner(language)
@@ -294,8 +293,8 @@ def test_code_of_a_user_is_the_users(run, tmp_path):
     """Its head names no licence for encode and decode, and the command that was typed."""
     (tmp_path / "many.glsl").write_text(MANY_WORDS)
     path, made = str(tmp_path / "many.glsl"), tmp_path / "made"
-    status, _, err = run("code", path, "--storage", "rg8", "--to", "glsl,python", "-o", str(made))
-    assert status == 0 and "left out: " not in err and "def _normal_halves(x):" in (made / "many_rg8.py").read_text()
+    status, _, err = run("code", path, "--storage", "rg8", "--to", "glsl", "-o", str(made))
+    assert status == 0 and "left out: " not in err and "normal_halves(" in (made / "many_rg8.glsl").read_text()
     text = " ".join((made / "many_rg8.glsl").read_text().replace("//", "").split())
     assert "Encode and decode are yours." in text and f"normalbench code {path}" in text
     assert "the catalogue's" not in text
@@ -358,7 +357,7 @@ def test_a_codec_is_measured_once_for_all_languages(run, tmp_path, monkeypatch):
     """Every file's head has its figures."""
     seen, own = [], code_command.figures
     monkeypatch.setattr(code_command, "figures", lambda codec: seen.append(codec.name) or own(codec))
-    words = ("octahedral,xy", "--storage", "rg8", "--to", "glsl,c,python")
+    words = ("octahedral,xy", "--storage", "rg8", "--to", "glsl,c,msl")
     assert run("code", *words, "-o", str(tmp_path / "codec"))[0] == 0
     assert seen == ["octahedral/rg8", "xy/rg8"]
     texts = [path.read_text() for path in (tmp_path / "codec").iterdir()]

@@ -16,11 +16,11 @@ from normalbench.encodings.storages.storage import STORAGES
 pytestmark = pytest.mark.usefixtures("gl")
 
 MEANS = "bench/shaders/code/test_everyday.py::test_everyday_glsl_is_read_and_means_the_same"
-# Slang is given HLSL's text, GLSL ES what OpenGL is given, and Metal what its own library here has.
+# Slang is given HLSL's text, and GLSL ES what OpenGL is given.
 LANGUAGES = [
     "c",
     *(pytest.param(language, marks=pytest.mark.slow) for language in ("hlsl", "wgsl")),
-    *(pytest.param(language, marks=pytest.mark.nightly(MEANS)) for language in ("slang", "msl", "essl")),
+    *(pytest.param(language, marks=pytest.mark.nightly(MEANS)) for language in ("slang", "essl")),
 ]
 
 

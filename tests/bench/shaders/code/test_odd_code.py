@@ -5,10 +5,9 @@ from itertools import product
 
 import numpy as np
 import pytest
-from languages import require_runner
+from languages import RUN, require_runner
 from test_code_kinds import codec_of
 
-from normalbench.bench.shaders.code.emit import LANGUAGES
 from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.shaders.code.kinds.depth import FAR, NEAR
 from normalbench.bench.shaders.code.reference import Reference, reference_of
@@ -45,7 +44,7 @@ def given(kind: str) -> tuple[np.ndarray, np.ndarray]:
 
 def pairs() -> list:
     every = [(*codec, "c") for codec in CODECS]
-    slow = [(*codec, language) for codec in FEW for language in LANGUAGES if language not in ("c", "python")]
+    slow = [(*codec, language) for codec in FEW for language in RUN if language != "c"]
     return [*every, *(pytest.param(*codec, marks=pytest.mark.slow) for codec in slow)]
 
 

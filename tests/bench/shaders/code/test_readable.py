@@ -9,7 +9,7 @@ from pasted import LONGEST, loops_without_unrolling, names_in
 from normalbench.bench.shaders.code.emit import LANGUAGES
 from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.shaders.code.fold import WIDTH
-from normalbench.bench.shaders.code.tables import dds, header, kept, npy, texels_of
+from normalbench.bench.shaders.code.tables import dds, header, kept, texels_of
 from normalbench.bench.subjects.codecs.kinds.codecs import codecs_of_kind
 from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.encodings.catalogue import BY_KIND, ENCODINGS
@@ -22,7 +22,7 @@ from normalbench.encodings.storages.storage import (
     STORAGES,
 )
 
-QUICK = ("hlsl", "c", "python")
+QUICK = ("hlsl", "c")
 # Storages whose functions are the longest: bytes, bits across channels, floats, signed numbers, two words.
 SOME = "rg8,rgba8,rgb8_12_12,rg16f,rgba8_10_10_10_snorm"
 OF_KIND = {"motion": MOTION_STORAGES, "curve": CURVE_STORAGES, "light": LIGHT_STORAGES, "frame": FRAME_STORAGES}
@@ -46,7 +46,7 @@ def check(codecs, languages) -> None:
             about = f"{codec.encoding.name} in {codec.storage.name}, {language}"
             lines = code.text(["A head. " * 40]).splitlines()
             assert max(map(len, lines)) <= WIDTH, (about, max(lines, key=len))
-            names = names_in(code.body, language)
+            names = names_in(code.body)
             assert len(max(names, key=len)) <= LONGEST, (about, max(names, key=len))
             if language == "hlsl":
                 assert not loops_without_unrolling(code.body), about
@@ -86,7 +86,7 @@ def test_a_loop_that_nothing_unrolls_is_found():
 )
 def test_an_arc_tangent_has_the_octants_that_it_needs(name, has, has_not):
     """Of a ratio in [-1, 1] none but its own; of two numbers without a sign the first quadrant."""
-    names = names_in(code_of(codecs_of(NORMAL, name, "rgba8")[0], "c").body, "c")
+    names = names_in(code_of(codecs_of(NORMAL, name, "rgba8")[0], "c").body)
     assert {f"normal_{one}" for one in has} <= names and not {f"normal_{one}" for one in has_not} & names
 
 
@@ -96,7 +96,7 @@ def test_the_table_of_best_fit_takes_a_byte_a_texel():
     texels = texels_of(table)
     assert texels.is_bytes and texels.format == "R8_UNORM" and texels.bytes == 2**20
     assert np.array_equal(kept(table) / np.float32(255), table)
-    assert len(dds(table)) == 148 + 2**20 and len(npy(table)) < 2**20 + 256
+    assert len(dds(table)) == 148 + 2**20
     assert "static const unsigned char t[1048576] = {" in header({"t": table})
     (angles,) = (one for name, one in ENCODINGS["spherical_lut"].tables().items() if name.endswith("angle"))
     assert texels_of(angles).format == "R32_FLOAT"

@@ -1,35 +1,35 @@
-"""Every language runs the same hand-written files, and gives what NumPy gives."""
+"""Every language runs the same hand-written files, and gives what the same in NumPy gives."""
 
 import json
 import os
 import re
+import runpy
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from languages import RUN
 
 from normalbench.bench.ground.compilers.text import Text
 from normalbench.bench.ground.machine.systems import landlock
 from normalbench.bench.ground.output.errors import MissingError
-from normalbench.bench.shaders.code.emit import LANGUAGES
-from normalbench.bench.shaders.code.run import c, interface, msl, runner
+from normalbench.bench.shaders.code.run import c, interface, runner
 from normalbench.bench.shaders.code.run.interface import Interface, Ran
+from normalbench.bench.shaders.translator.writer import PUBLIC
 from normalbench.gbuffer.gl.device import NoDeviceError
 from normalbench.gbuffer.gl.shader import ShaderError
 
 pytestmark = pytest.mark.slow
 
 FOLDER = Path(__file__).parents[3] / "inputs" / "code"
-ENDINGS = {"python": "py", "msl": "metal"}
 STEPS = np.array([[[3.0, 0.5], [5.0, 0.25]]], np.float32)
 SPHEREMAP = Interface("spheremap_rg8", 2, 0, 1)
 SCALED = Interface("scaled_rg32f", 3, 1, 2, ("view.xyz",), {"scaled_steps": STEPS})
-OTHERS = [name for name in LANGUAGES if name != "python"]
 
 
 def file_of(what: Interface, language: str) -> Path:
-    return FOLDER / f"{what.prefix}.{ENDINGS.get(language, language)}"
+    return FOLDER / f"{what.prefix}.{language}"
 
 
 def given(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -42,6 +42,20 @@ def given(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return n, view, random.random((count, 4), np.float32)
 
 
+def by_numpy(what: Interface, n: np.ndarray, view: np.ndarray, texels: np.ndarray) -> Ran:
+    """What the same functions in NumPy give."""
+    module = runpy.run_path(str(FOLDER / f"{what.prefix}.py"))
+    six = {name: module[f"{what.prefix}_{name}"] for name in PUBLIC}
+    besides = (view,) if what.settings else ()
+    codes = six["encode"](n, *besides)
+    sign = (codes[:, -1],) if what.sign_bits else ()
+    words = six["pack"](codes)
+    unpacked = six["unpack"](words, *sign)
+    back = six["from_target"](texels, *sign)
+    decoded = six["decode"](unpacked, *besides)
+    return Ran(codes, words.reshape(len(n), -1), unpacked, decoded, six["to_target"](codes), back)
+
+
 def ran(language: str, what: Interface, arrays) -> Ran:
     try:
         return runner(language).run(file_of(what, language), what, *arrays)
@@ -51,11 +65,11 @@ def ran(language: str, what: Interface, arrays) -> Ran:
         pytest.skip(str(error))
 
 
-@pytest.mark.parametrize("language", OTHERS)
+@pytest.mark.parametrize("language", RUN)
 def test_a_plain_code_gives_what_numpy_gives(language):
     """Spheremap in RG8: the same words, and numbers within 4 units in the last place of 1."""
     arrays = given(4096)
-    expected, found = ran("python", SPHEREMAP, arrays), ran(language, SPHEREMAP, arrays)
+    expected, found = by_numpy(SPHEREMAP, *arrays), ran(language, SPHEREMAP, arrays)
     differ = np.flatnonzero((expected.words != found.words).any(axis=1))
     assert not len(differ), f"{len(differ)} words differ, the first at {arrays[0][differ[0]]}"
     for name, a, b in zip(Ran._fields, expected, found, strict=True):
@@ -64,17 +78,17 @@ def test_a_plain_code_gives_what_numpy_gives(language):
         assert worst <= 4 * 2.0**-23, f"{name} differs by {worst}"
 
 
-@pytest.mark.parametrize("language", OTHERS)
+@pytest.mark.parametrize("language", RUN)
 def test_views_tables_signs_and_words_reach_the_functions(language):
     """A code that takes a view, a table, a sign and two words gives the same words and signs, in every language."""
     arrays = given(1000)
-    expected, found = ran("python", SCALED, arrays), ran(language, SCALED, arrays)
+    expected, found = by_numpy(SCALED, *arrays), ran(language, SCALED, arrays)
     for name, a, b in zip(Ran._fields, expected, found, strict=True):
         differ = np.count_nonzero(a != b)
         assert a.shape == b.shape and not differ, f"{differ} {name} differ"
 
 
-@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize("language", RUN)
 def test_blocks_are_put_together_in_order(language, monkeypatch):
     """A run in blocks of 300 is the run in one block, bit for bit; and nothing gives nothing."""
     arrays = given(1000)
@@ -86,7 +100,7 @@ def test_blocks_are_put_together_in_order(language, monkeypatch):
     assert none.words.shape == (0, 1) and none.decoded.shape == (0, 3)
 
 
-@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize("language", RUN)
 def test_a_broken_file_is_one_line_that_names_it(language, tmp_path):
     """A file that does not compile is a ShaderError of one line, not a crash."""
     ran(language, SPHEREMAP, given(8))
@@ -100,8 +114,7 @@ def test_a_broken_file_is_one_line_that_names_it(language, tmp_path):
 @pytest.fixture
 def no_judge(monkeypatch):
     """The judge of texts taken out: what it would refuse is compiled."""
-    for module in (c, msl):
-        monkeypatch.setattr(module, "judged_text", lambda text, *_: Text(text, is_own=False))
+    monkeypatch.setattr(c, "judged_text", lambda text, *_: Text(text, is_own=False))
 
 
 # What a file may do, and how the process that it is in ends.
@@ -115,22 +128,21 @@ ENDS = {
 
 @pytest.mark.usefixtures("no_judge")
 @pytest.mark.parametrize("what", ENDS)
-@pytest.mark.parametrize("language", ["c", "msl"])
-def test_somebodys_code_loses_its_own_process(language, what, tmp_path, monkeypatch):
+def test_somebodys_code_loses_its_own_process(what, tmp_path, monkeypatch):
     """One line says how it ended; this process lives."""
-    ran(language, SPHEREMAP, given(8))
+    ran("c", SPHEREMAP, given(8))
     monkeypatch.setitem(c.LIMITS, "RUN_SECONDS", 1)
     body, how = ENDS[what]
     head = "#include <stdlib.h>\n" if "calloc" in body else ""
-    text = file_of(SPHEREMAP, language).read_text()
+    text = file_of(SPHEREMAP, "c").read_text()
     name = re.search(r"\bspheremap_rg8_encode\(\w+ (\w+)\) \{", text)
     assert name, text
     trap = f"static float trap(void) {{ {body} }}\n"
     hurt = text.replace(name[0], f"{name[0]} if ({name[1]}.x > -2.0f) {name[1]}.x = trap();")
-    before, mark, rest = hurt.partition("\ninline " if language == "msl" else "\nstatic inline ")
+    before, mark, rest = hurt.partition("\nstatic inline ")
     (tmp_path / "hurt.txt").write_text(f"{head}{before}\n{trap}{mark}{rest}")
     with pytest.raises(ShaderError, match=how) as error:
-        runner(language).run(tmp_path / "hurt.txt", SPHEREMAP, *given(8))
+        runner("c").run(tmp_path / "hurt.txt", SPHEREMAP, *given(8))
     assert "\n" not in str(error.value) and "hurt.txt" in str(error.value)
 
 
@@ -144,22 +156,20 @@ walled = pytest.mark.skipif(
 
 @walled
 @pytest.mark.parametrize("trap", TRAPS)
-@pytest.mark.parametrize("language", ["c", "msl"])
-def test_somebodys_code_opens_and_starts_nothing(language, trap, tmp_path, request):
+def test_somebodys_code_opens_and_starts_nothing(trap, tmp_path, request):
     """It is refused. Without the judge it gives what it gives without its attempts, which succeed without the wall."""
-    expected = ran(language, SPHEREMAP, given(8))
-    name = "inline float2 spheremap" if language == "msl" else "static inline"
-    before, mark, rest = file_of(SPHEREMAP, language).read_text().partition(f"\n{name}")
+    expected = ran("c", SPHEREMAP, given(8))
+    before, mark, rest = file_of(SPHEREMAP, "c").read_text().partition("\nstatic inline")
     assert mark
     head = f"#include <stdio.h>\n#include <stdlib.h>\n{before}\n"
     tries = f"__attribute__((constructor)) static void tries(void) {{ if ({trap}) abort(); }}\n"
     (tmp_path / "tries.txt").write_text(f"{head}{tries}{mark}{rest}")
     with pytest.raises(ShaderError, match=r"is not read"):
-        runner(language).run(tmp_path / "tries.txt", FOREIGN, *given(8))
+        runner("c").run(tmp_path / "tries.txt", FOREIGN, *given(8))
     request.getfixturevalue("no_judge")
     with pytest.raises(ShaderError, match="SIGABRT"):
-        runner(language).run(tmp_path / "tries.txt", SPHEREMAP, *given(8))
-    found = runner(language).run(tmp_path / "tries.txt", FOREIGN, *given(8))
+        runner("c").run(tmp_path / "tries.txt", SPHEREMAP, *given(8))
+    found = runner("c").run(tmp_path / "tries.txt", FOREIGN, *given(8))
     assert all(np.array_equal(a, b) for a, b in zip(expected, found, strict=True))
 
 
@@ -170,13 +180,12 @@ def test_tables_of_somebodys_code_are_found_behind_the_wall():
         assert np.array_equal(a, b)
 
 
-@pytest.mark.parametrize("language", ["c", "msl"])
-def test_without_a_wall_somebodys_code_is_not_run(language, monkeypatch):
+def test_without_a_wall_somebodys_code_is_not_run(monkeypatch):
     """The catalogue's is."""
     monkeypatch.setattr(landlock, "abi", lambda: 0)
-    ran(language, SPHEREMAP, given(8))
+    ran("c", SPHEREMAP, given(8))
     with pytest.raises(MissingError, match="Landlock: none; C made of your files is not run here"):
-        runner(language).run(file_of(SPHEREMAP, language), FOREIGN, *given(8))
+        runner("c").run(file_of(SPHEREMAP, "c"), FOREIGN, *given(8))
 
 
 def test_without_a_wall_the_row_of_a_users_encoder_says_so(run, monkeypatch, tmp_path):
@@ -217,7 +226,7 @@ def test_what_naga_panics_at_is_refused_in_a_line(tmp_path):
         runner("wgsl").run(tmp_path / "panics.wgsl", foreign, *given(8))
 
 
-@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize("language", RUN)
 def test_a_runner_says_by_what_it_ran(language):
     """`how` is one line with a version."""
     ran(language, SPHEREMAP, given(8))
@@ -225,9 +234,7 @@ def test_a_runner_says_by_what_it_ran(language):
     assert "\n" not in said and any(c.isdigit() for c in said), said
 
 
-@pytest.mark.parametrize(
-    ("language", "tool"), [("c", "gcc"), ("msl", "clang"), ("hlsl", "glslang-tools"), ("slang", "slangtorch")]
-)
+@pytest.mark.parametrize(("language", "tool"), [("c", "gcc"), ("hlsl", "glslang-tools"), ("slang", "slangtorch")])
 def test_a_missing_tool_is_named_with_its_package(language, tool, monkeypatch):
     """Without compilers on the path a runner says what to install."""
     from normalbench.bench.shaders.isa import spirv

@@ -4,9 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from languages import require_runner
+from languages import RUN, require_runner
 
-from normalbench.bench.shaders.code.emit import LANGUAGES
 from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.shaders.code.kinds.table import kind_of
 from normalbench.bench.shaders.code.reference import reference
@@ -17,7 +16,7 @@ from normalbench.encodings.catalogue import FRAME_ENCODINGS
 
 pytestmark = pytest.mark.usefixtures("gl")
 OWN = Path(__file__).parents[3] / "inputs" / "own_codes"
-FAST = ("c", "python")
+FAST = ("c",)
 # Words of bits, roundings, numbers that depend on how others are rounded, and quaternions.
 FRAMES = (
     ("octahedral_angle", "unorm:12:12:7:1", "nearest"),
@@ -30,7 +29,7 @@ FRAMES = (
 
 def in_languages(rows) -> list:
     """Rows with each language; those whose runner starts slowly are slow."""
-    every = [(*row, language) for row in rows for language in LANGUAGES]
+    every = [(*row, language) for row in rows for language in RUN]
     return [pytest.param(*one, marks=[] if one[-1] in FAST else [pytest.mark.slow]) for one in every]
 
 

@@ -6,7 +6,6 @@ from dataclasses import replace
 from itertools import product
 from pathlib import Path
 
-import numpy as np
 import pytest
 from languages import require_runner
 from pasted import LONGEST, loops_without_unrolling, names_in
@@ -141,7 +140,7 @@ FILES = {
     "seen": SEEN,
 }
 PRESETS = ("unreal4", "bevy", "unity_hdrp", "nrd", "xy_depth_sign", "cryengine3", "wicked_truncated")
-FAST, FEW, MANY = ("c", "python"), 2**12, 10**6
+FAST, FEW, MANY = ("c",), 2**12, 10**6
 # Of the layouts of MANY surfaces: those whose curves have powers, or whose codes have quotients and roots, which
 # languages round otherwise, have ties.
 TIES = {"unreal4": 1e-4, "bevy": 1e-4, "unity_hdrp": 1e-4, "words": 0.0, "signed": 0.0, "xy_depth_sign": 0.0}
@@ -207,7 +206,7 @@ def test_lines_and_names_are_short(language, layouts):
     for layout in layouts.values():
         body = gbuffer_code(layout, language).body
         assert max(map(len, body.splitlines())) <= WIDTH, max(body.splitlines(), key=len)
-        names = names_in(body, language)
+        names = names_in(body)
         assert len(max(names, key=len)) <= LONGEST, max(names, key=len)
         assert language != "hlsl" or not loops_without_unrolling(body)
 
@@ -245,16 +244,16 @@ def test_a_fault_is_noticed(old, new, layouts):
 
 def test_a_width_in_the_file_changes_both_functions(tmp_path):
     """Roughness of 8 bits becomes one of 7 with a bit beside it: the code changes, and still agrees."""
-    require_runner("python")
+    require_runner("c")
     bodies = []
     for name, text in (("eight", WORDS), ("seven", WORDS.replace("(roughness):8", "(roughness):7 other:1"))):
         (tmp_path / f"{name}.toml").write_text(text)
         (layout,) = layouts_named(str(tmp_path / f"{name}.toml"))
-        code = gbuffer_code(layout, "python")
+        code = gbuffer_code(layout, "c")
         assert (found := agreement(code, FEW)).differing == 0, found.says
         bodies.append(code.body)
-    for function in ("def gbuffer_pack", "def gbuffer_unpack"):
-        parts = [body.partition(function)[2].partition("\ndef ")[0] for body in bodies]
+    for function in ("gbuffer_targets gbuffer_pack(", "gbuffer_surface gbuffer_unpack("):
+        parts = [body.partition(function)[2].partition("\n}")[0] for body in bodies]
         assert "255.0" in parts[0] and "127.0" in parts[1] and parts[0] != parts[1]
 
 
@@ -313,16 +312,13 @@ def test_the_table_says_where_each_field_lies(layouts):
     assert any("base_colour.x" in line and "sRGB, by the format" in line for line in lines)
 
 
-@pytest.mark.parametrize("mark, begin", [("//", "int x = "), ("#", "x = ")])
-def test_folded_lines_are_the_same_code(mark, begin):
-    """Nothing but white space is added; Python's lines are broken within brackets alone."""
+def test_folded_lines_are_the_same_code():
+    """Nothing but white space is added."""
     inside = " + ".join(f"f({at}, {at + 1})" for at in range(40))
-    line = f"    {begin}g({inside}, {inside})"
-    found = folded(line + "\n", mark)
-    assert max(map(len, found.splitlines())) <= WIDTH
-    assert "".join(found.split()) == "".join(line.split())
-    plain = f"{begin}{' + '.join(['abcdef'] * 30)}"
-    assert (len(folded(plain, mark).splitlines()) == 1) == (mark == "#")
+    for line in (f"    int x = g({inside}, {inside})", f"int x = {' + '.join(['abcdef'] * 30)}"):
+        broken = folded(line + "\n")
+        assert max(map(len, broken.splitlines())) <= WIDTH
+        assert "".join(broken.split()) == "".join(line.split())
 
 
 def test_the_command_writes_files_and_checks_them(run, tmp_path, monkeypatch):
@@ -330,9 +326,9 @@ def test_the_command_writes_files_and_checks_them(run, tmp_path, monkeypatch):
     require_runner("c")
     (tmp_path / "mine.toml").write_text(WORDS)
     monkeypatch.chdir(tmp_path)
-    status, _, _ = run("code", "mine.toml", "--to", "c,python,msl", "-o", "made")
+    status, _, _ = run("code", "mine.toml", "--to", "c,msl", "-o", "made")
     assert status == 0
-    assert {path.name for path in Path("made").iterdir()} == {"mine.h", "mine.py", "mine.metal"}
+    assert {path.name for path in Path("made").iterdir()} == {"mine.h", "mine.metal"}
     text = Path("made/mine.h").read_text()
     assert "normalbench code mine.toml --to c" in text and "the renderer's, bit for bit" in text
     assert "not run here" in Path("made/mine.metal").read_text()
@@ -365,16 +361,3 @@ def test_a_file_that_differs_is_not_written(run, tmp_path, monkeypatch):
     status, _, err = run("code", "mine.toml", "--to", "msl", "-o", "made")
     assert status == 1 and "is not written" in err
     assert not Path("made").exists()
-
-
-def test_python_takes_arrays_of_any_shape(layouts, tmp_path):
-    """A surface of one pixel's numbers gives one pixel's targets."""
-    (tmp_path / "mine.py").write_text(gbuffer_code(layouts["words"], "python").body)
-    made: dict = {}
-    exec(compile((tmp_path / "mine.py").read_text(), "mine.py", "exec"), made)
-    surface = made["gbuffer_surface"]([0, 0, 1], [1, 1, 1], 1, 1, 0.08, 1, 5, [0, 0], 1, 2, 3, 4)
-    targets = made["gbuffer_pack"](surface)
-    back = made["gbuffer_unpack"](targets)
-    assert targets.target_0.shape == (2,) and int(back.kind) == 5 and int(back.other_4) == 4
-    np.testing.assert_array_equal(back.motion, [0.0, 0.0])
-    np.testing.assert_allclose(back.normal, [0.0, 0.0, 1.0], atol=2e-3)
