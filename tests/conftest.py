@@ -32,7 +32,7 @@ from normalbench.bench.ground.machine.memory import (
     keep_what_is_imported,
     look_for_garbage_seldom,
 )
-from normalbench.bench.ground.options.gpu_families import ANV, HASVK, R600, RADV
+from normalbench.bench.ground.options.gpu_families import ANV, HASVK, RADV
 from normalbench.bench.ground.output.errors import MissingError
 from normalbench.bench.keep.machine import require_mobile
 from normalbench.bench.measures.metrics import published
@@ -160,12 +160,6 @@ def nvidia(radv):  # noqa: ARG001 (asks for the other compilers)
     """NVIDIA's compiler of CUDA, which people install themselves: no machine must have it."""
     if said := tools.missing():
         pytest.skip(said)
-
-
-@pytest.fixture(scope="session")
-def terascale(radv):  # noqa: ARG001 (asks for the GLSL compiler)
-    """Mesa's r600, and what builds the device that it is given."""
-    _need([R600], {null_device.COMPILER: null_device.NO_COMPILER})
 
 
 @pytest.fixture(scope="session")

@@ -14,7 +14,7 @@ from ...gbuffer.gl.device import NoDeviceError, device
 from ..ground.compilers import tools
 from ..ground.machine.settings import settings
 from ..ground.machine.systems.system_files import processor_lines
-from ..ground.options.gpu_families import ANV, HASVK, MOBILE, NVRTC, R600, RADV
+from ..ground.options.gpu_families import ANV, HASVK, MOBILE, NVRTC, RADV
 from ..ground.output.errors import MissingError
 from ..shaders.isa import isa, spirv
 
@@ -97,11 +97,6 @@ def require_intel() -> None:
 def require_nvidia() -> None:
     """Raises MissingError where NVIDIA's compiler of CUDA or its disassembler is missing."""
     _require(NVRTC)
-
-
-def require_terascale() -> None:
-    """Raises MissingError where r600 cannot compile, or the device that it is given."""
-    _require(R600)
 
 
 def require_mobile() -> None:

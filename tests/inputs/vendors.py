@@ -11,7 +11,6 @@ from normalbench.bench.ground.options.gpu_families import CHOICES, FAMILIES
 from normalbench.bench.shaders.isa import intel_disassembly, isa, null_device
 from normalbench.bench.shaders.isa import process as isa_process
 from normalbench.bench.shaders.isa.nvidia import sass, tools
-from normalbench.bench.shaders.isa.terascale import disassembly as terascale_disassembly
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.gbuffer.defines.packings import PACKINGS
@@ -79,10 +78,6 @@ def _nvidias_child_runs(patch: pytest.MonkeyPatch, code: str) -> None:
     patch.setattr(isa, "python", lambda _: [sys.executable, "-c", f"import os, sys, time; {code}"])
 
 
-def _terascales_child_runs(patch: pytest.MonkeyPatch, code: str) -> None:
-    patch.setattr(isa_process, "GL_CHILD", [sys.executable, "-c", f"import os, sys, time; {code}"])
-
-
 def _another_gpu(family: str, words: str) -> Callable[[pytest.MonkeyPatch], None]:
     other = FAMILIES | {family: replace(FAMILIES[family], null_device=words)}
     return lambda patch: patch.setattr(isa, "FAMILIES", other)
@@ -112,23 +107,7 @@ NVIDIA = Vendor(
     runs=_nvidias_child_runs,
     changes=_another_build,
 )
-TERASCALE = Vendor(
-    "terascale",
-    quick=("rv670",),
-    stages=("fragment",),
-    lanes=64,
-    reader=terascale_disassembly,
-    zero=("instructions", "vliw_slots", "branches"),
-    runs=_terascales_child_runs,
-    changes=_another_gpu("rv670", "0x9999"),
-    # A table to look up, a search and a loop.
-    encodings=(
-        *("xyz", "xy", "spheremap", "per_pixel_view", "spherical"),
-        *("spherical_lut", "best_fit_searched", "octahedral_precise"),
-    ),
-    packings=EVERY_PACKING[::4],
-)
-VENDORS = (INTEL, NVIDIA, TERASCALE)
+VENDORS = (INTEL, NVIDIA)
 
 
 # Some rows, compiled in the quick tests, or all of them.

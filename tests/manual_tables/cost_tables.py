@@ -89,25 +89,6 @@ COST_TABLES = (
         needs=("intel", "nvidia"),
     ),
     count_table(
-        " terascale",
-        "xyz,xy,spheremap,stereographic,octahedral,per_pixel_view,spherical,best_fit",
-        "--family terascale --stage fragment --storage rgba8 --article",
-        FRAGMENT,
-        [
-            column
-            for way in WAYS
-            for family, title, device in (
-                ("rv670", f"{way}: HD 3870", "Radeon HD 3870"),
-                ("cypress", "HD 5870", "Radeon HD 5870"),
-            )
-            for column in (
-                counted(title, way, family),
-                Column("article", "cycles", {"operation": way, "device": device}, "{:.2f}".format),
-            )
-        ],
-        needs=("terascale",),
-    ),
-    count_table(
         " mobile",
         "xyz,xy,stereographic,spheremap,octahedral,per_pixel_view",
         "--family a630,v3d42 --stage fragment --storage rgba8",

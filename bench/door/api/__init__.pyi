@@ -456,7 +456,7 @@ def cost(
         time: Nanoseconds a megapixel on the GL device.
         jax: Million normals a second in JAX.
         article: The figures of Pranckevicius' article next to them.
-        family: GPUs, comma-separated: polaris10, vega10, navi10, navi21, navi31, or radeon for these; hsw (Haswell), bdw (Broadwell), skl (Skylake), tgl (Tiger Lake), adl (Alder Lake), dg2 (Arc A770), or intel for these; sm_75 (Turing), sm_86 (Ampere), sm_89 (Ada), sm_90 (Hopper), sm_100 (Blackwell B200), sm_120 (Blackwell), or nvidia for these; rv670 (Radeon HD 3870), cypress (Radeon HD 5870), or terascale for these; a630 (Adreno 630), a650 (Adreno 650), a660 (Adreno 660), v3d42 (V3D 4.2, Raspberry Pi 4), or mobile for these, whose drivers you build; all.
+        family: GPUs, comma-separated: polaris10, vega10, navi10, navi21, navi31, or radeon for these; hsw (Haswell), bdw (Broadwell), skl (Skylake), tgl (Tiger Lake), adl (Alder Lake), dg2 (Arc A770), or intel for these; sm_75 (Turing), sm_86 (Ampere), sm_89 (Ada), sm_90 (Hopper), sm_100 (Blackwell B200), sm_120 (Blackwell), or nvidia for these; a630 (Adreno 630), a650 (Adreno 650), a660 (Adreno 660), v3d42 (V3D 4.2, Raspberry Pi 4), or mobile for these, whose drivers you build; all.
         stage: fragment, compute; comma-separated, or all.
         operation: encode, decode; comma-separated, or all.
         arithmetic: What codes are computed in: float (32 bits), half (every step rounded to 16 bits), or declared: float, and half as well for a file that declares half, min16float, float16_t or mediump; comma-separated, or all.

@@ -10,10 +10,8 @@ from difflib import SequenceMatcher
 MOST_LINES = 40
 # Which register holds a number, and where a jump goes to, is no difference: v3, s[2:5], g17.1, R8, BRA 0x230.
 _PLACE = re.compile(r"\b(v|s|g|r|R|UR|P|UP)(?:\d+(?:\.\d+)?|\[\d+(?::\d+)?\])|(?<=BRA )0x[0-9a-f]+")
-# The address of an instruction, its words and its bundle before its text: NVIDIA's, TeraScale's.
-_ADDRESS = re.compile(
-    r"^\s*(?:/\*[0-9a-f]{4,}\*/|\d{4} [0-9A-F]{8}(?: [0-9A-F]{8})?(?: +\d+ (?=[xyzwt]:| +[xyzwt]:))?)\s*"
-)
+# The address of an instruction before its text, as NVIDIA's listings have it.
+_ADDRESS = re.compile(r"^\s*/\*[0-9a-f]{4,}\*/\s*")
 # The bytes of an instruction, behind its text.
 _BYTES = re.compile(r"\s*;?\s*/\*\s*0x[0-9a-f]+\s*\*/\s*$|\s*;[\s0-9a-f]*$")
 # What fills the space behind a kernel's end.

@@ -9,7 +9,7 @@ from types import MappingProxyType
 RADV, ANV, HASVK = "libvulkan_radeon", "libvulkan_intel", "libvulkan_intel_hasvk"
 # NVIDIA's compiler of CUDA, which is given its own language and knows one kind of shader.
 NVRTC = "libnvrtc"
-R600, TURNIP, V3DV = "r600_dri", "libvulkan_freedreno", "libvulkan_broadcom"
+TURNIP, V3DV = "libvulkan_freedreno", "libvulkan_broadcom"
 FRAGMENT = "fragment"
 
 
@@ -19,12 +19,10 @@ class Family:
 
     Attributes:
         title: what people call it.
-        vendor: "radeon", "terascale" (Radeons of before GCN), "intel", "nvidia", "qualcomm" or "broadcom": also the
-            name of the group of its families.
-        library: the driver that compiles for it: of Vulkan, or r600 of GL, or NVRTC.
+        vendor: "radeon", "intel", "nvidia", "qualcomm" or "broadcom": also the name of the group of its families.
+        library: the driver that compiles for it: of Vulkan, or NVRTC.
         names: every name that a Mesa may have for it; the first that the driver takes is used.
-        null_device: what a driver is told of a GPU that is not there, in the words of null_i915.c, null_radeon.c or
-            null_mobile.c.
+        null_device: what a driver is told of a GPU that is not there, in the words of null_i915.c or null_mobile.c.
         stages: the kinds of shaders that are counted.
     """
 
@@ -46,10 +44,6 @@ def _intel(title: str, library: str, name: str, null_device: str) -> Family:
 
 def _nvidia(title: str, name: str) -> Family:
     return Family(title, "nvidia", NVRTC, (name,), stages=("compute",))
-
-
-def _terascale(title: str, name: str, pci: str) -> Family:
-    return Family(title, "terascale", R600, (name,), pci, ("fragment",))
 
 
 def _adreno(number: int) -> Family:
@@ -79,8 +73,6 @@ FAMILIES: Mapping[str, Family] = MappingProxyType(
         "sm_90": _nvidia("Hopper", "sm_90"),
         "sm_100": _nvidia("Blackwell B200", "sm_100"),
         "sm_120": _nvidia("Blackwell", "sm_120"),
-        "rv670": _terascale("Radeon HD 3870", "rv670", "0x9501"),
-        "cypress": _terascale("Radeon HD 5870", "cypress", "0x6898"),
         **{f"a{number}": _adreno(number) for number in (630, 650, 660)},
         "v3d42": Family("V3D 4.2, Raspberry Pi 4", "broadcom", V3DV, ("v3d42",), "v3d"),
     }
@@ -102,7 +94,6 @@ TITLES = MappingProxyType(
         ANV: "Intel anv",
         HASVK: "Intel hasvk",
         NVRTC: "NVIDIA NVRTC",
-        R600: "r600",
         TURNIP: "Qualcomm turnip",
         V3DV: "Broadcom v3dv",
     }

@@ -12,24 +12,19 @@ from pathlib import Path
 
 from ...ground.machine import children
 from ...ground.machine.systems.people import how_to_install
-from ...ground.options.gpu_families import MOBILE, R600, RADV, TITLES
+from ...ground.options.gpu_families import MOBILE, RADV, TITLES
 from .mobile import driver as mobile
-from .terascale import driver as terascale
 
-# Where another vendor's EGL may be the first of the machine, this names Mesa's.
-MESA_EGL = Path("/usr/share/glvnd/egl_vendor.d/50_mesa.json")
 # What would have a driver compile in another way, or the loader load something else; the session's other variables
 # stay.
 UNWANTED = (
     *("RADV_", "ACO_", "AMD_", "ANV_", "INTEL_", "NIR_", "MESA_", "VK_", "NORMALBENCH_NULL_"),
-    *("R600_", "RADEON_", "LIBGL_", "EGL_", "GALLIUM_", "TU_", "IR3_", "FD_", "V3D_", "V3DV_"),
+    *("TU_", "IR3_", "FD_", "V3D_", "V3DV_"),
 )
 
 
 def no_driver(library: str) -> str:
     """What to install where there is no description of a driver."""
-    if library == R600:
-        return terascale.NO_DRIVER
     if library in MOBILE:
         return f"no {TITLES[library]}: no Vulkan driver file names {library}; {mobile.INSTALL}"
     said = f"no {TITLES[library]}: no Vulkan driver file names {library}"
@@ -38,9 +33,7 @@ def no_driver(library: str) -> str:
 
 @cache
 def driver_file(library: str = RADV) -> Path | None:
-    """A driver's own description for the Vulkan loader, or its file where it is one of GL; None where there is none."""
-    if library == R600:
-        return terascale.driver_file()
+    """A driver's own description for the Vulkan loader; None where there is none."""
     found = [path for path in _descriptions() if _library(path) == library]
     # A machine may have the driver for several architectures; the file's name says for which, if anything does.
     return next((path for path in found if platform.machine() in path.name), found[0] if found else None)
@@ -64,19 +57,10 @@ def _library(path: Path) -> str:
         return ""
 
 
-def is_gl(path: Path) -> bool:
-    """Whether that is a driver of GL itself, and not a description for the Vulkan loader."""
-    return path.stem == R600
-
-
 def environment(path: Path, variables: Mapping[str, str]) -> dict[str, str]:
     """A process's environment in which the loader knows one driver alone; `variables` tell it for which GPU."""
     usual = {key: value for key, value in children.environment().items() if not key.startswith(UNWANTED)}
-    if is_gl(path):
-        driver = {"LIBGL_DRIVERS_PATH": str(path.parent), "EGL_PLATFORM": "surfaceless"}
-        driver |= {"__EGL_VENDOR_LIBRARY_FILENAMES": str(MESA_EGL)} if MESA_EGL.exists() else {}
-    else:
-        driver = {"VK_ICD_FILENAMES": str(path), "VK_DRIVER_FILES": str(path), "VK_LOADER_LAYERS_DISABLE": "~all~"}
+    driver = {"VK_ICD_FILENAMES": str(path), "VK_DRIVER_FILES": str(path), "VK_LOADER_LAYERS_DISABLE": "~all~"}
     # Mesa's own cache answers without compiling; the loader asks for a folder of the session's.
     usual = {"XDG_RUNTIME_DIR": tempfile.gettempdir(), **usual, **driver, "MESA_SHADER_CACHE_DISABLE": "true"}
     return usual | dict(variables)

@@ -19,44 +19,32 @@ from typing import Any
 from ....gbuffer.defines.kernels import PLANES
 from ...ground.machine.children import python
 from ...ground.machine.cores import cores
-from ...ground.options.gpu_families import FAMILIES, MOBILE, NVRTC, R600, RADV, TITLES, TURNIP, V3DV
+from ...ground.options.gpu_families import FAMILIES, MOBILE, NVRTC, RADV, TITLES, TURNIP, V3DV
 from ...ground.output import cache as kept
 from . import null_device
 from .compiler import DRIVERS
-from .driver_files import driver_file, is_gl, no_driver
+from .driver_files import driver_file, no_driver
 from .mobile import driver as mobile
 from .null_device import NullDeviceError
 from .nvidia import tools
 from .nvidia.child import ARCHITECTURE
 from .process import Driver, child
-from .terascale import driver as terascale
 
 # What RADV says before it gives up.
 REFUSAL = "Unknown family"
 # After so many jobs that were never answered a family is given up.
 MOST_LOST = 5
 # What decides what a child makes of a job, beside the driver.
-OWN_FILES = ("compiler.py", "child.py", "null_i915.c", "null_drm.h")
-OWN_FILES += tuple(f"terascale/{name}" for name in ("compiler.py", "child.py", "disassembly.py", "null_radeon.c"))
-OWN_FILES += ("mobile/null_mobile.c",)
+OWN_FILES = ("compiler.py", "child.py", "null_i915.c", "null_drm.h", "mobile/null_mobile.c")
 
 
 @dataclass(frozen=True)
 class Job:
-    """A shader to compile: "compute" or "fragment", as SPIR-V or as CUDA's text, and the vertex shader before it.
-
-    `glsl` and `glsl_vertex` are for drivers of GL: the same operation in the bare kernel; empty for compute shaders.
-    """
+    """A shader to compile: "compute" or "fragment", as SPIR-V or as CUDA's text, and the vertex shader before it."""
 
     stage: str
     code: bytes
     vertex: bytes
-    glsl: str = ""
-    glsl_vertex: str = ""
-
-    def texts(self, of_gl: bool) -> tuple[bytes, bytes]:
-        """The shader and the one before it as a driver takes them, of GL or of Vulkan."""
-        return (self.glsl.encode(), self.glsl_vertex.encode()) if of_gl else (self.code, self.vertex)
 
 
 @dataclass(frozen=True)
@@ -113,7 +101,7 @@ def _loaded(path: Path) -> str | Failure:
             return Failure(line.get("missing") or line["failed"], "missing" in line)
         files = line.get("loaded", {})
     ours = [(Path(__file__).parent / name).read_text(encoding="utf-8") for name in OWN_FILES]
-    is_there = any(Path(name).name.startswith((DRIVERS[0], R600)) for name in files)
+    is_there = any(Path(name).name.startswith(DRIVERS[0]) for name in files)
     return kept.key_of(*(part for item in sorted(files.items()) for part in item), *ours) if is_there else ""
 
 
@@ -136,7 +124,7 @@ def missing(library: str = RADV) -> str:
 
 def _null_device(library: str) -> None:
     """Builds what a driver is told of a GPU that is not there, where it needs it. Raises NullDeviceError."""
-    source = {R600: terascale.SOURCE, TURNIP: mobile.SOURCE, V3DV: mobile.SOURCE}.get(library, null_device.SOURCE)
+    source = {TURNIP: mobile.SOURCE, V3DV: mobile.SOURCE}.get(library, null_device.SOURCE)
     if library != RADV:
         null_device.library(source)
 
@@ -203,7 +191,7 @@ def _counted(family: str, stop: threading.Event, jobs: Sequence[Job]) -> list[Ou
     if reason := missing(library):
         return [Failure(reason, True)] * len(jobs)
     driver, identity = _driver(library, stop), _identity(library)
-    keys = [kept.key_of("isa", identity, family, gpu, job.stage, *job.texts(is_gl(driver.path))) for job in jobs]
+    keys = [kept.key_of("isa", identity, family, gpu, job.stage, job.code, job.vertex) for job in jobs]
     outcomes: dict[str, Outcome] = {}
     for key in keys if identity else ():
         if found := _as_compiled(kept.read(key)):
@@ -277,8 +265,6 @@ def _variables(family: str, name: str) -> dict[str, str]:
     if FAMILIES[family].library == NVRTC:
         return {ARCHITECTURE: name}
     words = FAMILIES[family].null_device
-    if FAMILIES[family].library == R600:
-        return terascale.variables(words)
     if FAMILIES[family].library in MOBILE:
         return mobile.variables(words)
     return null_device.variables(words) if words else {"RADV_FORCE_FAMILY": name}
@@ -315,7 +301,7 @@ def _answers(
 ) -> Iterator[str | Failure | tuple[str, Outcome]]:
     """What one child says: the key of a job that it begins, a key and its outcome, and in the end why it ended."""
     facts: dict[str, str] = {}
-    with child(variables, driver, _job_fields(jobs, is_gl(driver.path))) as (lines, why):
+    with child(variables, driver, _job_fields(jobs)) as (lines, why):
         while (line := lines()) is not None:
             if "missing" in line or ("failed" in line and "key" not in line):
                 yield Failure(line.get("missing") or line["failed"], "missing" in line)
@@ -331,11 +317,11 @@ def _answers(
         yield Failure(why())
 
 
-def _job_fields(jobs: Mapping[str, Job], of_gl: bool = False) -> dict[str, Any]:
+def _job_fields(jobs: Mapping[str, Job]) -> dict[str, Any]:
     """Jobs as a child takes them."""
-    return {"planes": PLANES, "jobs": [_as_json(key, job, of_gl) for key, job in jobs.items()]}
+    return {"planes": PLANES, "jobs": [_as_json(key, job) for key, job in jobs.items()]}
 
 
-def _as_json(key: str, job: Job, of_gl: bool) -> dict[str, str]:
-    code, vertex = (base64.b64encode(part).decode() for part in job.texts(of_gl))
+def _as_json(key: str, job: Job) -> dict[str, str]:
+    code, vertex = (base64.b64encode(part).decode() for part in (job.code, job.vertex))
     return {"key": key, "stage": job.stage, "code": code, "vertex": vertex}

@@ -1,4 +1,4 @@
-"""GPUs that are not there: null_i915.c and terascale/null_radeon.c, each built once into the user's cache folder.
+"""GPUs that are not there: null_i915.c and mobile/null_mobile.c, each built once into the user's cache folder.
 
 A library's name there says what it was built of and what it holds: another source, or a damaged file, is built again.
 """

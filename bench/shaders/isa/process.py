@@ -16,11 +16,9 @@ from typing import IO, Any
 
 from ...ground.machine.children import python
 from ...ground.machine.systems.processes import signal_name
-from .driver_files import environment, is_gl
+from .driver_files import environment
 
 CHILD: Sequence[str] = python("normalbench.bench.shaders.isa.child")
-# For a driver of GL, which the loader of Vulkan does not know.
-GL_CHILD: Sequence[str] = python("normalbench.bench.shaders.isa.terascale.child")
 # Of one job, and of a driver that starts: far more than they take, on a busy machine as well.
 SECONDS = 60.0
 
@@ -29,8 +27,7 @@ Lines = Callable[[], dict[str, Any] | None]
 
 @dataclass(frozen=True)
 class Driver:
-    """The driver's description for the loader, or its file where it is one of GL, and what tells its children that
-    nobody waits for them any more.
+    """The driver's description for the loader, and what tells its children that nobody waits for them any more.
 
     `command` starts a child where it is not one of CHILD.
     """
@@ -53,7 +50,7 @@ def child(
         json.dump(given, work)
         work.seek(0)
         with subprocess.Popen(
-            driver.command or (GL_CHILD if is_gl(driver.path) else CHILD),
+            driver.command or CHILD,
             stdin=work,
             stdout=subprocess.PIPE,
             stderr=errors,

@@ -13,11 +13,10 @@ from ....gbuffer.layouts.layout import Layout
 from ....gbuffer.layouts.words import Target
 from ...ground.options.counts import MOST_INSTRUCTIONS
 from ...ground.options.gpu_families import FAMILIES
-from ...ground.output.errors import MissingError, UsageError
+from ...ground.output.errors import MissingError
 from ...shaders.code.whole.kernel import pack_operation, unpack_operation
 from ...shaders.isa import isa, spirv
 from ..cost.measure import Case, counted
-from ..families_named import families_named
 from ..table import Row
 from .attributes import Code
 from .bins import SHARED, Bin
@@ -51,17 +50,6 @@ class Price:
     @property
     def once(self) -> float:
         return self.pack + self.unpack
-
-
-def families_counted(names: str) -> list[str]:
-    """The families of comma-separated names. Raises UsageError for an unknown one, or one without compute shaders."""
-    found = families_named(names)
-    for name in found:
-        if STAGE not in FAMILIES[name].stages:
-            raise UsageError(
-                f"--family {name}: layouts are counted in compute shaders, which {FAMILIES[name].title} lacks"
-            )
-    return found
 
 
 def check_compilers(families: Iterable[str]) -> None:

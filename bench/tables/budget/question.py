@@ -18,10 +18,11 @@ from ...measures.metrics.images import require_flip
 from ...subjects.codecs.layout_names import layouts_named
 from ...subjects.environments.scenes_under import scenes_under
 from ...subjects.scenes.scene_names import scene_makers_named
+from ..families_named import families_named
 from .attributes import EMISSION, UP_TO_PIXELS, Attribute
 from .bins import BINS, WEBGPU, WEBGPU_BYTES, Bin
 from .contract import MOTION, PACKED, as_known, attributes_held, held_in_stencil, names_held
-from .cost import check_compilers, families_counted
+from .cost import check_compilers
 from .rates import CLASSES, Stage
 from .readers import MOST, Readers, check_held, read_readers
 from .solve import Rules
@@ -111,7 +112,7 @@ def question(options: BudgetOptions) -> Question:
     alone = _read_alone(options.read_alone, names)
     rules = [Rules(limit, options.targets, blended, sets, left, apart, read=alone) for limit in sorted(sizes)]
     judging = tuple(choose("class", options.classes, {name: name for name in CLASSES}))
-    families = families_counted(options.family)
+    families = families_named(options.family)
     if options.most_instructions is not None:
         in_range("--most-instructions", options.most_instructions, 0, MOST_INSTRUCTIONS)
         check_compilers(families)

@@ -14,14 +14,13 @@ from ....gbuffer.defines.kernels import Operation
 from ....gbuffer.defines.packings import Packing
 from ....gbuffer.gl.shader import ShaderError
 from ...ground.machine.cores import on_all_cores
-from ...ground.options.gpu_families import FAMILIES, NVRTC, R600
+from ...ground.options.gpu_families import FAMILIES, NVRTC
 from ...ground.output.errors import MissingError
 from ...shaders.isa import disassembly, intel_disassembly, isa, occupancy, spirv
 from ...shaders.isa.isa import Compiled, Failure, Job, Kernel, Outcome
 from ...shaders.isa.mobile import ir3_disassembly, qpu_disassembly
 from ...shaders.isa.nvidia import sass
 from ...shaders.isa.nvidia.source import cuda_of
-from ...shaders.isa.terascale import disassembly as terascale_disassembly
 from ...subjects.codecs.half.kernels import half_operation
 from . import executed
 from .recorded import recorded
@@ -56,7 +55,6 @@ READERS: Mapping[str, Any] = {
     "radeon": disassembly,
     "intel": intel_disassembly,
     "nvidia": sass,
-    "terascale": terascale_disassembly,
     "qualcomm": ir3_disassembly,
     "broadcom": qpu_disassembly,
 }
@@ -126,13 +124,13 @@ class Prepared:
         return self.cuda if _takes_cuda(family) else (self.job, self.empty)
 
 
-def prepare(case: Case, stage: str, as_cuda: bool = False, as_glsl: bool = False) -> Prepared | Failure:
-    """A case's kernels, as CUDA and for drivers of GL where that is asked, or why there are none. Raises MissingError
-    where there is no compiler of SPIR-V."""
+def prepare(case: Case, stage: str, as_cuda: bool = False) -> Prepared | Failure:
+    """A case's kernels, as CUDA where that is asked, or why there are none. Raises MissingError where there is no
+    compiler of SPIR-V."""
     try:
         operation = case.make()
         (job, count), (empty, empty_count) = (
-            _job_and_instructions(o, stage, operation.is_portable, as_glsl) for o in (operation, operation.empty)
+            _job_and_instructions(o, stage, operation.is_portable) for o in (operation, operation.empty)
         )
     except spirv.ToolError as error:
         return Failure(str(error))
@@ -152,21 +150,15 @@ def _cuda_jobs(case: Case, operation: Operation, stage: str) -> tuple[Job, Job] 
     return job, empty
 
 
-def _library_name(family: str) -> str:
-    return FAMILIES[family].library if family in FAMILIES else ""
-
-
 def _takes_cuda(family: str) -> bool:
-    return _library_name(family) == NVRTC
+    return family in FAMILIES and FAMILIES[family].library == NVRTC
 
 
-def _job_and_instructions(operation: Operation, stage: str, counted: bool, as_glsl: bool) -> tuple[Job, int | None]:
+def _job_and_instructions(operation: Operation, stage: str, counted: bool) -> tuple[Job, int | None]:
     module = spirv.compiled(operation.source(kernels.STAGES[stage]), GLSLANG_STAGES[stage], counted)
     # A vertex shader feeds each fragment shader; a compute shader has none.
     vertex = spirv.compiled(operation.source("kernel.vert"), "vert", False).binary if stage == "fragment" else b""
-    kinds = ("frag", "vert") if as_glsl and stage == "fragment" else ()
-    bare = [operation.source(f"kernel_bare.{kind}").text for kind in kinds]
-    return Job(stage, module.binary, vertex, *bare), module.instructions
+    return Job(stage, module.binary, vertex), module.instructions
 
 
 def isa_rows(
@@ -192,8 +184,8 @@ def isa_rows(
     compiler = spirv.titles()
     if spirv.version(spirv.OPTIMISER) is None:
         lacks.append(spirv.NO_OPTIMISER)
-    takes_cuda, takes_glsl = (any(_library_name(f) == library for f in families) for library in (NVRTC, R600))
-    prepared = list(on_all_cores(lambda pair: prepare(*pair, takes_cuda and "compute" in pair, takes_glsl), pairs))
+    takes_cuda = any(map(_takes_cuda, families))
+    prepared = list(on_all_cores(lambda pair: prepare(*pair, takes_cuda and "compute" in pair), pairs))
     outcomes: dict[tuple[str, Job], Outcome] = {}
     for some in ([f for f in families if _takes_cuda(f) == is_cuda] for is_cuda in (False, True)):
         outcomes |= isa.compile_all(_jobs(prepared, some[0]), some, tick) if some else {}

@@ -31,7 +31,7 @@ class CostOptions(SourceOptions):
         Option(
             "--family",
             f"GPUs, comma-separated: {', '.join(CHOICES['radeon'])}, or radeon for these; {titled('intel')}, or intel "
-            f"for these; {titled('nvidia')}, or nvidia for these; {titled('terascale')}, or terascale for these; "
+            f"for these; {titled('nvidia')}, or nvidia for these; "
             f"{titled('mobile')}, or mobile for these, whose drivers you build; all.",
             in_run=True,
         ),
@@ -80,13 +80,13 @@ COLUMNS = (
         "instructions",
         "Instructions of one lane, less those of an empty kernel that moves the same numbers. The columns full_rate, "
         "conversion, quarter_rate, transcendental, scalar, memory, waiting, control_flow and other_alu add up to it "
-        "where there is a disassembly. TeraScale: a bundle of up to five operations is one instruction. "
+        "where there is a disassembly. "
         "Qualcomm: cycles that a program waits in words count.",
     ),
     _count_column(
         "issue_slots",
         "How long they keep the vector unit busy, in full-rate instructions: on GCN slow ones count 4, on RDNA a "
-        "transcendental one issues once and runs in another unit. TeraScale: bundles. Broadcom: instructions. Empty "
+        "transcendental one issues once and runs in another unit. Broadcom: instructions. Empty "
         "for Intel, NVIDIA and Qualcomm.",
     ),
     _count_column(
@@ -111,7 +111,7 @@ COLUMNS = (
     _count_column(
         "transcendental",
         "Reciprocal, root, logarithm, sine: at a quarter of the rate, from Navi on in a unit of their own. Intel: "
-        "`math`, which also divides integers. NVIDIA: `MUFU`. TeraScale, Broadcom: instructions that hold one.",
+        "`math`, which also divides integers. NVIDIA: `MUFU`. Broadcom: instructions that hold one.",
     ),
     _count_column("scalar", "Radeon, Intel, NVIDIA: instructions once for all lanes.", 14),
     _count_column(
@@ -130,10 +130,7 @@ COLUMNS = (
         "other_alu", "All other arithmetic, moves, compares and selections; interpolation, too. Radeon: empty.", 19
     ),
     _count_column("packed", "Radeon: of full_rate those on two numbers of 16 bits at once.", 20),
-    _count_column(
-        "vliw_slots", "Operations in all instructions, where one holds several: TeraScale up to five, Broadcom two.", 20
-    ),
-    _count_column("t_slots", "TeraScale: operations in the fifth slot, t, the only one for transcendental ones.", 21),
+    _count_column("vliw_slots", "Broadcom: operations in all instructions, of which one holds up to two.", 20),
     _count_column("branches", "Conditional jumps, more than the empty kernel's. Both sides of a branch count.", 12),
     _count_column("loops", "Jumps back, more than the empty kernel's. A loop's body counts once."),
     _count_column("looped", "Of instructions those in loops, which run again at each turn.", 21),
@@ -221,7 +218,6 @@ ALSO = (
         for driver, names in (
             ("hasvk", ("hsw", "bdw")),
             ("anv", ("skl", "tgl", "adl", "dg2")),
-            ("r600", ("rv670", "cypress")),
             ("turnip", ("a630", "a650", "a660")),
             ("v3dv", ("v3d42",)),
         )

@@ -418,11 +418,5 @@ def test_registers_alone_are_no_difference_between_listings():
     nvidia = ["        /*{:04x}*/    FMUL R3, R2, R4 ;   /* 0x0000000402037220 */", "   /* 0x000fe20000410000 */"]
     lines = [listings.lines_of("\n".join([nvidia[0].format(at), nvidia[1], "/*0200*/ NOP;"])) for at in (16, 48)]
     assert lines == [["FMUL R3, R2, R4"]] * 2
-    r600 = " 00{} 800004FE 60006910     {} t:     RECIPSQRT_IEEE         R0.w,  PV.y"
-    assert (
-        listings.lines_of(r600.format(10, 2))
-        == listings.lines_of(r600.format(24, 3))
-        == ["t: RECIPSQRT_IEEE R0.w, PV.y"]
-    )
     long = list(listings.differences([], [f"v_op{at}" for at in range(100)]))
     assert len(long) == listings.MOST_LINES + 1 and long[-1] == "... and 60 lines more"

@@ -1,1 +1,0 @@
-"""What Mesa's r600 makes of GLSL for Radeons of before GCN, whose instructions are bundles of up to five operations."""
