@@ -17,19 +17,21 @@ from collections.abc import Callable
 from pathlib import Path
 
 from normalbench.bench.ground.choose import choose
-from normalbench.bench.ground.options.counts import MAX_TIMED_COUNT, checked_numbers
+from normalbench.bench.ground.options.counts import checked_numbers
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.subjects.codecs.names import codecs_named
 
 from . import growth, simulate, throughput
 from .timing import Row
 
+# What a machine holds in memory at once.
+MOST = 2**28
 RECORD = Path(__file__).with_name("record.json")
 
 
 def _throughput(asked: argparse.Namespace) -> list[Row]:
     encodings = [codec.encoding for codec in codecs_named(asked.encoding, throughput.STORAGE, "nearest")]
-    counts = checked_numbers("--counts", asked.counts, int, throughput.WHOLE, MAX_TIMED_COUNT)
+    counts = checked_numbers("--counts", asked.counts, int, throughput.WHOLE, MOST)
     return throughput.rows(encodings, counts)
 
 

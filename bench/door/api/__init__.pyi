@@ -426,7 +426,6 @@ def cost(
     encoding: Names = ...,
     isa: bool = ...,
     time: bool = ...,
-    jax: bool = ...,
     article: bool = ...,
     family: Names = ...,
     stage: Names = ...,
@@ -454,7 +453,6 @@ def cost(
         encoding: Encodings or files of GLSL, HLSL, Slang or WGSL, comma-separated, or all; `normalbench list` shows them.
         isa: Instructions that compilers make of the GLSL; needs no GPU.
         time: Nanoseconds a megapixel on the GL device.
-        jax: Million normals a second in JAX.
         article: The figures of Pranckevicius' article next to them.
         family: GPUs, comma-separated: polaris10, vega10, navi10, navi21, navi31, or radeon for these; hsw (Haswell), bdw (Broadwell), skl (Skylake), tgl (Tiger Lake), adl (Alder Lake), dg2 (Arc A770), or intel for these; sm_75 (Turing), sm_86 (Ampere), sm_89 (Ada), sm_90 (Hopper), sm_100 (Blackwell B200), sm_120 (Blackwell), or nvidia for these; a630 (Adreno 630), a650 (Adreno 650), a660 (Adreno 660), v3d42 (V3D 4.2, Raspberry Pi 4), or mobile for these, whose drivers you build; all.
         stage: fragment, compute; comma-separated, or all.
@@ -463,7 +461,7 @@ def cost(
         storage: Storages and packings whose own cost is shown, comma-separated, or all.
         size: WIDTHxHEIGHT of the target that is timed. Default: 64x64 in software, or 1024x1024.
         repeats: Repetitions that medians are taken over.
-        count: Normals, for JAX and in uniform sets.
+        count: --plot: normals in uniform sets.
         seed: The random seed of uniform sets, points and scenes.
         normals: --plot: normal sets, comma-separated, or all; `normalbench list` shows them.
         error: --plot: psnr, mean or max, the largest angle.

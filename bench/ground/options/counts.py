@@ -12,8 +12,6 @@ N = TypeVar("N", int, float)
 
 DEFAULT_COUNT = 2**22
 MAX_COUNT = 2**40
-# Held in memory at once, where JAX is timed.
-MAX_TIMED_COUNT = 2**28
 MAX_REPEATS = 1000
 # Issue slots that a limit may be.
 MOST_INSTRUCTIONS = 10**6

@@ -24,7 +24,6 @@ class CostOptions(SourceOptions):
     encoding: Encodings = "all"
     isa: Annotated[bool, Option("--isa", "Instructions that compilers make of the GLSL; needs no GPU.")] = False
     time: Annotated[bool, Option("--time", "Nanoseconds a megapixel on the GL device.")] = False
-    jax: Annotated[bool, Option("--jax", "Million normals a second in JAX.")] = False
     article: Annotated[bool, Option("--article", "The figures of Pranckevicius' article next to them.")] = False
     family: Annotated[
         str,
@@ -47,7 +46,7 @@ class CostOptions(SourceOptions):
         Option("--size", "WIDTHxHEIGHT of the target that is timed. Default: 64x64 in software, or 1024x1024."),
     ] = None
     repeats: Annotated[int, Option("--repeats", "Repetitions that medians are taken over.")] = 9
-    count: Annotated[int, Option("--count", "Normals, for JAX and in uniform sets.")] = 2**20
+    count: Annotated[int, Option("--count", "--plot: normals in uniform sets.")] = 2**20
     seed: Seed = 0
     normals: Annotated[
         str, Option("--normals", "--plot: normal sets, comma-separated, or all; `normalbench list` shows them.")
@@ -70,7 +69,7 @@ def _count_column(name: str, says: str, drops: int = 0) -> Column:
 
 
 COLUMNS = (
-    Column("measure", "isa: instructions; time: on the GL device; jax: in JAX; article: published figures.", KEY),
+    Column("measure", "isa: instructions; time: on the GL device; article: published figures.", KEY),
     Column("encoding", "How a normal becomes a few numbers; empty in the rows of storages.", KEY),
     Column("storage", "A storage's packing of bit fields into channels; empty in the rows of encodings.", KEY),
     Column("operation", "encode or decode; pack or unpack.", KEY),
@@ -193,8 +192,6 @@ COLUMNS = (
         "ns",
         "less",
     ),
-    Column("millions_per_second", "Million normals a second, in JAX on all cores.", TIME, "", "more"),
-    Column("ceiling", "What adding up the input alone reaches, in the same unit.", TIME),
     Column("spread", "Width of the median's 95 % interval.", TIME),
     Column("turns", "How often the operation runs in the timed shader.", HOW),
     Column("size", "Width and height of the target in pixels.", HOW),

@@ -20,7 +20,7 @@ from ....reports.charts.chart import Chart
 from ...ground.choose import choose
 from ...ground.options import gpu_families as families
 from ...ground.options import listing
-from ...ground.options.counts import MAX_REPEATS, MAX_TIMED_COUNT, check_seed, checked_count, in_range
+from ...ground.options.counts import MAX_REPEATS, check_seed, checked_count, in_range
 from ...ground.options.storage_names import storages_said
 from ...ground.output.errors import MissingError, UsageError
 from ...ground.output.writing import check_folder, whole_file
@@ -35,7 +35,7 @@ from .measure import file_name
 from .table import TABLE, CostOptions, CostOutputs
 
 FLOAT = "float"
-MEASURES = ("isa", "time", "jax")
+MEASURES = ("isa", "time")
 
 
 def measures(options: CostOptions) -> list[str]:
@@ -104,8 +104,6 @@ def costing(options: CostOptions) -> Costing:
     """What the options name. Raises UsageError for what is unknown or out of range."""
     in_range("--repeats", options.repeats, 2, MAX_REPEATS)
     checked_count(options.count)
-    if "jax" in measures(options) and options.count > MAX_TIMED_COUNT:
-        raise UsageError(f"--count {options.count}: in JAX a count is at most {MAX_TIMED_COUNT} (2^28)")
     check_seed(options.seed)
     choose("error", options.error, pareto.ERRORS)
     choose("normal set", options.normals, listing.NORMAL_SETS)
@@ -117,7 +115,7 @@ def costing(options: CostOptions) -> Costing:
         choose("stage", options.stage, {name: name for name in STAGES}),
         chosen_families(options.family),
     )
-    if measures(options) != ["isa"]:
+    if "time" in measures(options):
         from ...subjects.codecs.names import check_twin
 
         for encoding in made.encodings:
@@ -143,7 +141,6 @@ def _steps(options: CostOptions, outputs: CostOutputs) -> list[Step]:
     keys = {
         "isa": key | {"stages": asked.stages, "families": asked.families},
         "time": key | {"size": options.size, "repeats": options.repeats},
-        "jax": key | {"count": options.count, "repeats": options.repeats},
     }
     made = [Step({"measure": name} | keys[name], Part(asked, name, MEASURED[name]), name) for name in measures(options)]
     article = [Step({"measure": "article"} | key, Part(asked, "article", _article), "article")]
@@ -158,8 +155,6 @@ def _check(asked: Costing, outputs: CostOutputs) -> None:
         if "isa" not in chosen:
             raise UsageError("--disassembly is of what compilers make; ask for --isa")
     if outputs.plot:
-        if set(chosen) == {"jax"}:
-            raise UsageError("--plot draws instructions or time; ask for --isa or --time")
         _ = asked.drawn_storages
 
 
@@ -201,20 +196,11 @@ def _time(asked: Costing) -> Iterable[Row]:
     return clocks.time_rows(device, asked.cases, size, asked.options.repeats, measure.nobody)
 
 
-def _jax(asked: Costing) -> Iterable[Row]:
-    from ...ground.machine.devices import require_jax
-    from .jax_time import jax_rows
-
-    require_jax()
-    chosen = measure.cases(asked.encodings, (), asked.operations)
-    return jax_rows(chosen, asked.options.count, asked.options.repeats, measure.nobody)
-
-
 def _article(asked: Costing) -> list[Row]:
     return sheets.article_rows((encoding.name for encoding in asked.encodings), asked.operations)
 
 
-MEASURED: dict[str, Callable[[Costing], Iterable[Row]]] = {"isa": _isa, "time": _time, "jax": _jax}
+MEASURED: dict[str, Callable[[Costing], Iterable[Row]]] = {"isa": _isa, "time": _time}
 
 
 def _warnings(rows: Sequence[Row]) -> list[str]:
@@ -239,7 +225,7 @@ def _shown(done: Measured) -> Iterator[Sheet]:
         yield Sheet("", rows, TABLE.drops(rows))
     if families and article:
         yield Sheet("", (), notes=tuple(sheets.order_notes(_texts(done), article)))
-    for rows in (by_measure["time"], by_measure["jax"], sheets.article_sheet(article)):
+    for rows in (by_measure["time"], sheets.article_sheet(article)):
         if rows:
             shown = TABLE.without_hidden(rows)
             yield Sheet("", shown, TABLE.drops(shown))

@@ -4,16 +4,13 @@ import json
 import math
 from contextlib import ExitStack
 
-import jax.numpy as jnp
 import numpy as np
 import pytest
 
 from normalbench.bench.ground.machine.devices import require_device
 from normalbench.bench.tables.cost import clocks as cost_clocks
-from normalbench.bench.tables.cost import jax_time as cost_jax
 from normalbench.bench.tables.cost.clocks import LEAST_TURNS, MOST_TURNS, Field, Pair, Passes, median_interval, summary
 from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.vec import Vec3
 from normalbench.gbuffer.defines import kernels
 from normalbench.gbuffer.gl.device import read_pixels
 
@@ -96,41 +93,6 @@ def test_every_operation_and_packing_has_a_row_that_says_what_it_is(run):
         for key in (("per_pixel_view", "encode"), ("spheremap", "encode"), ("rgb8_12_12 12:12", "pack"))
     )
     assert view > spheremap > 0 and packed > 0, "a frame by pixel costs more than spheremap"
-
-
-def test_jax_rates_are_millions_a_second():
-    """Of calls of 20 ms and 10 ms the faster counts: two million normals in 10 ms are 200 millions in a second."""
-    ends = iter([0.0, 0.020, 0.020, 0.030])
-    assert cost_jax.rate(lambda: None, 2_000_000, lambda: next(ends)) == pytest.approx(200.0)
-
-
-def test_accelerators_and_cores_add_up_the_same():
-    n, view = (Vec3(*jnp.asarray(np.random.default_rng(i).normal(size=(3, 2**16)).astype(np.float32))) for i in (0, 1))
-    encode = ENCODINGS["per_pixel_view"].encode
-    whole = float(cost_jax.total(encode, n, view))
-    assert whole == pytest.approx(float(cost_jax.total_by_blocks(encode, n, view)), rel=1e-4)
-    assert whole == pytest.approx(float(sum(c.sum() for c in encode(n, view))), rel=1e-4)
-
-
-def test_jax_rows_name_their_ceiling(run):
-    words = ["--encoding", "xyz,spherical_lut", "--repeats", "3", "--count", "65536"]
-    status, out, err = run("cost", "--jax", *words, "--format", "json")
-    rows = json.loads(out)
-    assert (status, err) == (0, "") and len(rows) == 4
-    for row in rows:
-        assert row["millions_per_second"] > 0 and row["ceiling"] > 0 and row["clock"] == "wall clock"
-    encoders = {row["encoding"]: row["ceiling"] for row in rows if row["operation"] == "encode"}
-    assert len(set(encoders.values())) == 1, "the same numbers go in"
-
-
-def test_normals_that_memory_does_not_hold_are_one_line(run, monkeypatch):
-    def too_many(_):
-        raise MemoryError
-
-    monkeypatch.setattr(cost_jax, "random_shards", too_many)
-    status, out, err = run("cost", "--jax", "--encoding", "xy", "--count", str(2**28), "--format", "json")
-    assert status == 3 and err.count("\n") == 1 and "lacks the memory" in err
-    assert [row["skipped"] is not None for row in json.loads(out)] == [True]
 
 
 @pytest.mark.usefixtures("gl")
