@@ -14,10 +14,14 @@ import pytest
 from manual import NAMED, PAGES, README, ROOT
 from packaging.utils import canonicalize_name
 
+from normalbench.bench.door.python import stub
+
 ROOMS = ("bench", "encodings", "gbuffer", "reports")
 BESIDE = ("pyproject.toml", "setup.py", "README.md", "LICENSE")
 # What `import normalbench` gives lies elsewhere in a checkout.
 API = "bench/door/api/"
+# What type checkers and editors are told, which is made when the package is built.
+STUB = "__init__.pyi"
 
 
 @pytest.mark.slow
@@ -30,7 +34,8 @@ def test_an_install_is_whole_and_leaves_nothing_in_the_checkout(tmp_path):
     assert done.returncode == 0, done.stderr
     assert files_in(checkout) == before and {path.name for path in checkout.iterdir()} == {*ROOMS, *BESIDE}
     packaged = {name.removeprefix(API) for name in before if name not in BESIDE}
-    assert files_in(site / "normalbench") == packaged
+    assert files_in(site / "normalbench") == packaged | {STUB}
+    assert (site / "normalbench" / STUB).read_text() == stub.stub()
 
 
 def copied(checkout, *more):
@@ -38,7 +43,8 @@ def copied(checkout, *more):
     checkout.mkdir()
     for path in [ROOT / name for name in (*ROOMS, *BESIDE, *more)]:
         if path.is_dir():
-            shutil.copytree(path, checkout / path.name, ignore=shutil.ignore_patterns("__pycache__", ".pytest_cache"))
+            made = shutil.ignore_patterns("__pycache__", ".pytest_cache", STUB)
+            shutil.copytree(path, checkout / path.name, ignore=made)
         else:
             shutil.copy(path, checkout)
     return checkout

@@ -17,7 +17,7 @@ from ..keep.plain import key_text, plain
 from ..keep.runs import read_run
 from ..run.measuring import Asked, asked_together, measured
 from ..run.piped import Send
-from ..run.second import Drawn, Kept, Written
+from ..run.second import Finished, Kept, Written
 from ..tables.registry import TABLES
 from ..tables.table import Row, Step
 
@@ -75,7 +75,7 @@ def prepare(send: Send) -> None:  # noqa: ARG001 # as of all that a process call
 
 
 def measure(send: Send, folder: Path, own: Sequence[Asking], others: Sequence[Asking], said: Iterable[str]) -> None:
-    """Measure tables one after the other; then write what the first process has measured, and draw charts.
+    """Measure tables one after the other; then write what the first process has measured.
 
     Args:
         folder: of the run.
@@ -86,8 +86,6 @@ def measure(send: Send, folder: Path, own: Sequence[Asking], others: Sequence[As
     Raises:
         UsageError, MissingError: what was wrong.
     """
-    from ..show.report import draw_ahead
-
     told.update(said)
     sent = Sent(folder, send)
     asks = [asking.asked() for asking in own]
@@ -96,7 +94,7 @@ def measure(send: Send, folder: Path, own: Sequence[Asking], others: Sequence[As
         _write(ask, sent, send)
         give_back_what_a_table_needed()
     _write_others((asking.asked() for asking in others), Sent(folder, send), send)
-    send(Drawn(draw_ahead(folder)))
+    send(Finished())
 
 
 def _write(ask: Asked, sent: Sent, send: Send) -> None:

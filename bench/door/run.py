@@ -160,7 +160,7 @@ def _measured_and_shown(run: Run, asks: Sequence[Asked], where: Place, second: S
             shown = _measure_all(run, asks, where, second)
         shown.written |= second.written if second else set()
         run.arrange((ask.table.name, step) for ask in asks for step in ask.steps)
-        _complete(run, shown, second.drawn if second else {})
+        _complete(run, shown)
     except (KeyboardInterrupt, SystemExit):
         tell(f"{run.kept} of {total} steps are kept; the same command goes on")
         raise
@@ -256,9 +256,9 @@ def _show(table: Table, rows: Sequence[Row]) -> bool:
     return failed
 
 
-def _complete(run: Run, shown: Shown, drawn: Mapping[str, str]) -> None:
-    """Tables for others, the pictures and the page; then the run is finished. `drawn` are charts that are there."""
-    from ..show.report import write_report
+def _complete(run: Run, shown: Shown) -> None:
+    """Tables for others, the pictures and the page; then the run is finished."""
+    from ..show.report import CHARTS, CHARTS_OF_A_RUN, write_report
     from .run_code import keep_code
 
     done = replace(read_run(run.folder), facts=run.facts | {"finished": True})
@@ -268,7 +268,7 @@ def _complete(run: Run, shown: Shown, drawn: Mapping[str, str]) -> None:
             ask.table.work.write(shown.done[ask.table.name], lambda _: None)
     keep_code(run.folder, done)
     say(f"\nEvery figure, the pictures and the machine they come from: {run.folder}\n")
-    page = write_report(run.folder, done, run.folder / PAGE, drawn=drawn)
+    page = write_report(run.folder, done, run.folder / PAGE, CHARTS, most_charts=CHARTS_OF_A_RUN)
     run.finish()
     answers = (line for ask in shown.asks if ask.table.section.leads for line in in_short(ask.table, shown.done))
     say("".join(f"{line}\n" for line in answers) + f"All of it on one page: {page}\n")

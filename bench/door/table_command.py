@@ -152,4 +152,4 @@ def _write_page(table: Table, done: Measured, folder: Path, target: Path) -> Non
     facts |= {"request": {"tables": table.name}}
     steps = [{"table": table.name, "key": {}, "rows": rows}]
     shown = Done(facts, steps, whole={table.name: rows})
-    say(f"\nThe page: {write_report(folder, shown, target, charts=None, name=target.stem)}\n")
+    say(f"\nThe page: {write_report(folder, shown, target, name=target.stem)}\n")

@@ -1,12 +1,12 @@
 """The second process of a run, which measures tables while the first one renders others.
 
 One process renders, and llvmpipe leaves much of the second core idle; JAX and compilers need no more than one. A run
-starts it with `second_process`, and says what it calls. What it measured it draws, too.
+starts it with `second_process`, and says what it calls. It writes the files of what it measured, too.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
@@ -36,10 +36,8 @@ class Written:
 
 
 @dataclass(frozen=True)
-class Drawn:
-    """All is done: the charts that are drawn, by name what each shows."""
-
-    charts: Mapping[str, str]
+class Finished:
+    """All is done."""
 
 
 def is_worth_it(tables: Iterable[Table]) -> bool:
@@ -52,12 +50,10 @@ class Second:
 
     Attributes:
         written: the tables whose files are written, too.
-        drawn: the charts that it drew: by name, what each shows.
     """
 
     def __init__(self, first: Callable[[Send], None]):
         self.written: set[str] = set()
-        self.drawn: Mapping[str, str] = {}
         self._run: Run | None = None
         self._steps: dict[str, tuple[str, Step]] = {}
         self._error: Exception | None = None
@@ -84,23 +80,22 @@ class Second:
         for line in self._process.wait():
             tell(line.removeprefix("normalbench: "))
 
-    def _take(self, value: Kept | Written | Drawn | Exception) -> None:
+    def _take(self, value: Kept | Written | Finished | Exception) -> None:
         try:
             self._keep(value)
         except (UsageError, MissingError) as error:
             self._error = error
             self._process.end()
 
-    def _keep(self, value: Kept | Written | Drawn | Exception) -> None:
+    def _keep(self, value: Kept | Written | Finished | Exception) -> None:
         match value:
             case Kept():
                 assert self._run
                 self._run.keep(*self._steps[value.step], value.rows)
             case Written():
                 self.written.add(value.table)
-            case Drawn():
-                self.drawn = value.charts
-                # It is done: what it holds in memory is the first process's now.
+            case Finished():
+                # What it holds in memory is the first process's now.
                 self._process.end()
             case UsageError() | MissingError():
                 raise value

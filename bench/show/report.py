@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import json
-import pickle
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 from ...encodings.catalogue import ENCODINGS
@@ -23,13 +20,12 @@ from ...reports.page.verdict import is_count
 from ...reports.sheets import Sheet
 from ...reports.tables import LARGEST_WHOLE
 from ..ground.machine.systems.people import command_line
-from ..ground.output import cache
 from ..ground.output.errors import UsageError
 from ..ground.output.replacing import PAGE as MARK
 from ..ground.output.sources import sources
 from ..ground.output.writing import check_folder, check_page, check_writable, files_of, say, whole_file, write_text
 from ..keep import side_by_side
-from ..keep.runs import Done, Row, read_run, read_to_show
+from ..keep.runs import Done, Row, read_to_show
 from ..measures.live import checks
 from ..measures.live.kept import read_live
 from ..measures.live.programs import helpers, storage_functions
@@ -43,11 +39,14 @@ from .kept_code import read_code
 SEVERAL = "runs.html"
 PAGE, CHARTS, PICTURES = "report.html", "charts", "pictures"
 LIVE = "live"
-NOTHING: Mapping[str, str] = MappingProxyType({})
+# How many charts a run keeps as files; `report --charts` writes all of them.
+CHARTS_OF_A_RUN = 3
 
 
-def report_command(folders: Sequence[Path], as_markdown: bool, pictures_beside: bool, output: Path | None) -> None:
-    """Write a page and charts of a run, a page of several, or a text for a pull request; runs stay as they are.
+def report_command(
+    folders: Sequence[Path], as_markdown: bool, pictures_beside: bool, charts_beside: bool, output: Path | None
+) -> None:
+    """Write a page of a run, a page of several, or a text for a pull request; runs stay as they are.
 
     Raises:
         UsageError: a folder is not a run's, or the page cannot be written.
@@ -56,11 +55,14 @@ def report_command(folders: Sequence[Path], as_markdown: bool, pictures_beside: 
         _check_output(output, as_markdown)
     done = [read_to_show(folder) for folder in folders]
     if len(folders) > 1:
-        _report_several(folders, done, as_markdown, pictures_beside, output)
+        for option, is_asked in (("--pictures", pictures_beside), ("--charts", charts_beside)):
+            if is_asked:
+                raise UsageError(f"{option} is for the page of one run; a page of several compares figures")
+        _report_several(folders, done, as_markdown, output)
     elif as_markdown:
         write_text(lambda: markdown.markdown(gathered(folders[0], done[0])), output)
     else:
-        charts = f"{output.stem}-{CHARTS}" if output else CHARTS
+        charts = "" if not charts_beside else f"{output.stem}-{CHARTS}" if output else CHARTS
         say(f"{write_report(folders[0], done[0], output or folders[0] / PAGE, charts, pictures_beside)}\n")
 
 
@@ -73,11 +75,7 @@ def _check_output(output: Path, as_markdown: bool) -> None:
         raise UsageError(f"{output}: --markdown writes text; name it {output.with_suffix('.md')}")
 
 
-def _report_several(
-    folders: Sequence[Path], done: Sequence[Done], as_markdown: bool, pictures_beside: bool, output: Path | None
-) -> None:
-    if pictures_beside:
-        raise UsageError("--pictures is for the page of one run; a page of several compares figures")
+def _report_several(folders: Sequence[Path], done: Sequence[Done], as_markdown: bool, output: Path | None) -> None:
     names = side_by_side.labels([str(plain_text(folder.resolve().name)) for folder in folders])
     runs = dict(zip(names, map(_cleaned, done), strict=True))
     if as_markdown:
@@ -102,15 +100,16 @@ def write_report(
     folder: Path,
     done: Done,
     target: Path,
-    charts: str | None = CHARTS,
+    charts: str = "",
     pictures_beside: bool = False,
-    drawn: Mapping[str, str] = NOTHING,
+    most_charts: int | None = None,
     name: str = "",
 ) -> Path:
-    """The page, and beside it a folder of its charts unless `charts` is None, and one of its pictures if asked for.
+    """Write the page, and beside it a folder of its charts and one of its pictures, if asked for.
 
     Args:
-        drawn: charts that are there already, as `draw_ahead` gives them.
+        charts: the folder of charts beside the page; empty for none.
+        most_charts: how many of them are written, the page's first ones; None for all.
         name: what the page is called; empty for the name of the folder.
 
     Returns:
@@ -125,7 +124,7 @@ def write_report(
     for one in (beside, target.parent / pictures):
         if one:
             check_folder(one)
-    run, gallery, specs = drawn_page(gathered(folder, done, name), beside, pictures, drawn)
+    run, gallery, specs = drawn_page(gathered(folder, done, name), beside, pictures, most_charts)
     _write_beside(target.parent / pictures, gallery.files)
     with whole_file(target) as partial:
         files = {path.name for path in folder.iterdir()} if target.parent.resolve() == folder.resolve() else set()
@@ -134,7 +133,7 @@ def write_report(
 
 
 def drawn_page(
-    run: Found, charts: Path | None = None, pictures: str = "", drawn: Mapping[str, str] = NOTHING
+    run: Found, charts: Path | None = None, pictures: str = "", most_charts: int | None = None
 ) -> tuple[Found, embedded.Gallery, dict[str, wire.Spec]]:
     """A run with what could not be drawn, its pictures, and its charts by name.
 
@@ -142,14 +141,14 @@ def drawn_page(
         run: as it was gathered.
         charts: the folder that files of its charts are written into; None for no files.
         pictures: the folder of pictures, from that of the page; empty for those in the page.
-        drawn: charts that are there already, as `draw_ahead` gives them.
+        most_charts: how many of them are written; None for all.
     """
     # Pictures are packed while charts are drawn; either takes a core for seconds.
     with ThreadPoolExecutor(1) as pool:
         is_answered = any(section.about.leads and section.rows for section in run.sections)
         budget = embedded.BUDGET_OF_A_RUN if is_answered else embedded.BUDGET
         packing = pool.submit(embedded.gallery, run.subjects, pictures, budget)
-        specs, failed = _drawn(run, charts, drawn)
+        specs, failed = _drawn(run, charts, most_charts)
         gallery = packing.result()
     if gallery.damaged:
         failed.append(f"These pictures cannot be read: {'; '.join(gallery.damaged)}.")
@@ -173,31 +172,13 @@ def _write_beside(folder: Path, files: Mapping[str, str]) -> None:
             partial.write_text(text, encoding="utf-8", newline="\n")
 
 
-def draw_ahead(folder: Path) -> dict[str, str]:
-    """Writes the charts of what a run has measured so far. Gives what each of them shows, by name.
-
-    Those that cannot be drawn or written are left to `write_report`, which says so.
-    """
-    found = {}
-    for drawing in page.drawings(gathered(folder, read_run(folder))):
-        with suppress(*UNEXPECTED, UsageError, OSError):
-            _write_chart(drawing, folder / CHARTS)
-            found[drawing.name] = _what_it_shows(drawing)
-    return found
-
-
-def _what_it_shows(drawing: drawings.Drawing) -> str:
-    """What two charts that are alike have in common."""
-    return cache.key_of(pickle.dumps(drawing.draw))
-
-
-def _drawn(run: Found, folder: Path | None, drawn: Mapping[str, str]) -> tuple[dict[str, wire.Spec], list[str]]:
-    """Writes every chart as files, if there is a folder for them. Gives those of the page by name, and a sentence for
-    each that cannot be drawn."""
+def _drawn(run: Found, folder: Path | None, most: int | None) -> tuple[dict[str, wire.Spec], list[str]]:
+    """Write the first charts as files, if there is a folder for them. Return those of the page by name, and a sentence
+    for each that cannot be drawn."""
     specs, failed = {}, []
-    for drawing in page.drawings(run):
+    for number, drawing in enumerate(page.drawings(run)):
         try:
-            if folder and not (drawing.name in drawn and drawn[drawing.name] == _what_it_shows(drawing)):
+            if folder and (most is None or number < most):
                 _write_chart(drawing, folder)
             if drawing.spec:
                 made = drawing.spec()

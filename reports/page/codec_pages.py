@@ -13,7 +13,7 @@ from . import cards
 from .found import Found
 from .page import Table, base, sheet_table, table, template
 from .sections import TableSection, whole
-from .site import SCRIPTS, Index, Searched, Site, index_html, linked, paths
+from .site import SCRIPTS, Index, Searched, Site, index_html, linked, plain_names
 
 FOLDER, INDEX = "codecs", "codecs/index.html"
 # The columns of the lists, and what they say.
@@ -55,7 +55,8 @@ def codec_pages(found: Found, names: Sequence[str], site: Site, run_page: str) -
     """
     codecs = cards.codecs_of(found, names)
     groups = {name: list(labels) for name, labels in groupby(names, cards.of_encoding)}
-    files = dict(zip(groups, paths(groups, FOLDER, "encoding"), strict=True))
+    named = zip(groups, plain_names(groups, "encoding"), strict=True)
+    files = {group: f"{FOLDER}/{name}.html" for group, name in named}
     made = {}
     for name, path in files.items():
         about, card = _page(found, name, {label: codecs[label] for label in groups[name]}), _card(groups[name][0])

@@ -44,8 +44,8 @@ def linked(to: str, path: str) -> str:
     return posixpath.relpath(file, posixpath.dirname(path) or ".") + mark + fragment
 
 
-def paths(names: Iterable[str], folder: str, other: str) -> Iterator[str]:
-    """For each name a file of its own in a folder, of letters that every file system has; next to an index.
+def plain_names(names: Iterable[str], other: str) -> Iterator[str]:
+    """Return for each name one of its own, of letters that every file system and every address has; none is "index".
 
     Args:
         other: what one is called whose name has no such letters.
@@ -54,9 +54,9 @@ def paths(names: Iterable[str], folder: str, other: str) -> Iterator[str]:
     for name in names:
         plain = re.sub(r"[^a-z0-9_]+", "-", name.lower()).strip("-")[:LONGEST] or other
         numbered = (plain, *(f"{plain}-{number}" for number in range(2, len(taken) + 2)))
-        path = next(one for one in numbered if one not in taken)
-        taken.add(path)
-        yield f"{folder}/{path}.html"
+        free = next(one for one in numbered if one not in taken)
+        taken.add(free)
+        yield free
 
 
 @dataclass(frozen=True)
@@ -68,12 +68,12 @@ class Answer:
 
 
 @dataclass(frozen=True)
-class DevicePage:
-    """A device's page.
+class DeviceSection:
+    """A device on the page of devices.
 
     Attributes:
         name: the device and its browser.
-        path: of the page, from the site's folder.
+        key: the section's anchor.
         said: how it agrees with the run, in a sentence.
         about: what the browser says of it, by name.
         answers: which code to take.
@@ -81,7 +81,7 @@ class DevicePage:
     """
 
     name: str
-    path: str
+    key: str
     said: str
     about: Mapping[str, str]
     answers: Sequence[Answer]
@@ -90,8 +90,8 @@ class DevicePage:
 
 @dataclass(frozen=True)
 class Searched:
-    """A table of the index: for each row words that it is found by besides its cells, and the page that it leads to,
-    empty for none."""
+    """A table of the index: for each row words that it is found by besides its cells, and where it leads to, empty for
+    nowhere."""
 
     key: str
     title: str
@@ -133,12 +133,14 @@ class Index(Headed):
         said: what all rows together show, in sentences.
         label: of the field to search by.
         searched: its tables.
+        devices: what each of its tables' devices does.
         measures: whether it says how a reader's device is measured and added.
     """
 
     said: Sequence[str]
     label: str
     searched: Sequence[Searched]
+    devices: Sequence[DeviceSection] = ()
     measures: bool = False
 
 
@@ -160,11 +162,6 @@ class ViewPage(Headed):
 def index_html(index: Index, site: Site) -> str:
     """A list that is searched."""
     return template("site.html.j2").render(index=index, **_around(index.path, site))
-
-
-def device_html(device: DevicePage, site: Site) -> str:
-    """A device's page."""
-    return template("device.html.j2").render(device=device, **_around(device.path, site))
 
 
 def view_html(shown: ViewPage, site: Site) -> str:

@@ -84,6 +84,8 @@ def opened_once(browser, report):
 def opened(opened_once):
     """The report as it has just been opened: a module's tests use one window, which a page is loaded into anew."""
     opened_once.load_anew()
+    # Firefox gives keys to the window in front alone.
+    opened_once.page.bring_to_front()
     return opened_once
 
 

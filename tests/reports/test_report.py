@@ -116,8 +116,9 @@ def test_a_hostile_run_injects_nothing(run, tmp_path):
     assert all(a.get("src", "").startswith("data:") for a in read.all("img"))
     assert not any(part in text for part in FORBIDDEN)
     assert "<script>alert(1)</script>" in read.text, "it is shown as it is"
-    for chart in (folder / "charts").glob("*.svg"):
-        assert "<script" not in chart.read_text()
+    run("report", str(folder), "--charts")
+    charts = list((folder / "charts").glob("*.svg"))
+    assert charts and not any("<script" in chart.read_text() for chart in charts)
 
 
 def test_a_name_leads_to_no_file_outside_the_run(run, tmp_path):
@@ -162,6 +163,8 @@ def test_a_run_of_one_table_says_what_is_not_there(run, tmp_path):
     assert "What this run measured" in read.text and "no rows" not in read.text
     assert "What normals lose" not in read.text, "nobody asked for it"
     assert "What depth loses" in read.text and "the worst position error, near 0.1, far 10" in read.text
+    assert not (tmp_path / "run/charts").exists()
+    assert run("report", str(tmp_path / "run"), "--charts")[0] == 0
     assert {path.name for path in (tmp_path / "run/charts").iterdir()} == {"depth.png", "depth.svg"}
 
 
@@ -304,7 +307,7 @@ def test_reading_leaves_the_run_as_it_is_and_run_has_written_the_same_report(run
     before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
     assert f"All of it on one page: {folder / 'report.html'}" in out
     begin = time.process_time()
-    status, _, err = run("report", str(folder), "-o", str(tmp_path / "page.html"))
+    status, _, err = run("report", str(folder), "--charts", "-o", str(tmp_path / "page.html"))
     assert status == 0, err
     assert time.process_time() - begin < 60, "seconds of all cores"
     assert {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()} == before

@@ -62,6 +62,7 @@ def test_runs_of_one_name_are_numbered():
     "arguments, said",
     [
         (["{one}", "{two}", "--pictures", "beside"], "--pictures is for the page of one run"),
+        (["{one}", "{two}", "--charts"], "--charts is for the page of one run"),
         (["{one}", "nowhere"], "nowhere"),
         (["{one}", "{two}", "-o", "/proc/nowhere/page.html"], "cannot write"),
     ],

@@ -296,6 +296,9 @@ def report(
         PicturePlace,
         typer.Option("--pictures", help="inside: as many as keep the page small; beside: all, in files next to it."),
     ] = PicturePlace.inside,
+    charts: Annotated[
+        bool, typer.Option("--charts", help="Also write every chart as PNG and SVG, into the folder charts next to it.")
+    ] = False,
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", help="The page. Default: report.html in the folder; runs.html for several."),
@@ -305,11 +308,11 @@ def report(
 
     Several runs on one page: what differs, on which machines, and every figure side by side.
 
-    The charts lie next to the page in the folder charts, as PNG and SVG files. The run's own files stay as they are.
+    The run's own files stay as they are.
     """
     from ...show.report import report_command
 
-    report_command(runs, markdown, pictures is PicturePlace.beside, output)
+    report_command(runs, markdown, pictures is PicturePlace.beside, charts, output)
 
 
 add_history(app)

@@ -1,6 +1,6 @@
-"""What type checkers and editors are told of `import normalbench`: bench/door/api/__init__.pyi, made from the registry.
+"""What type checkers and editors are told of `import normalbench`, made from the registry when the package is built.
 
-python -m normalbench.bench.door.python.stub > bench/door/api/__init__.pyi
+setup.py writes it next to the package; an editable install has it in the checkout.
 """
 
 from __future__ import annotations
@@ -52,7 +52,3 @@ def _type(one: Field) -> str:
     """Text stands for names too, in a list or as the caller's own values."""
     kind = "Names" if one.kind is str else one.kind.__name__
     return kind if one.default is not None else f"{kind} | None"
-
-
-if __name__ == "__main__":
-    print(stub(), end="")

@@ -1,10 +1,11 @@
 "use strict";
 
-// Figures: their charts, and d3, are unpacked when the first one comes into view, or the page is idle.
+// Figures: their charts, and d3, are unpacked when the first one comes into view, or the page is idle; text is painted before.
 const toolsOf = (figure) => figure.querySelector("[data-tools]");
+const painted = new Promise((done) => (document.hidden ? done() : requestAnimationFrame(() => setTimeout(done))));
 
 function ready() {
-  charts.ready ||= Promise.all([unpacked("#chart-specs"), unpacked("#chart-library")]).then(([text, library]) => {
+  charts.ready ||= painted.then(() => Promise.all([unpacked("#chart-specs"), unpacked("#chart-library")])).then(([text, library]) => {
     document.head.append(element("script", {}, library));
     charts.specs = JSON.parse(text);
     performance.mark("first chart");

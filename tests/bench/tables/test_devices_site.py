@@ -10,7 +10,8 @@ from pathlib import Path
 import devices as made
 import pytest
 
-from normalbench.bench.show.site_files import MARKER
+from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.show.site_files import MARKER, write_site
 from normalbench.bench.tables.devices.device_file import read_device_file
 from normalbench.bench.tables.devices.reading import codec_rows, devices
 from normalbench.bench.tables.devices.site.answers import Known, answers
@@ -65,25 +66,23 @@ def test_ten_devices_take_less_than_ten_seconds(run, tmp_path, monkeypatch):
     assert min(times) < MOST_SECONDS, f"{times} s"
 
 
-def test_there_is_a_page_for_each_device_and_every_link_leads_to_one(site):
-    pages = sorted((site / "devices").glob("*.html"))
-    assert len(pages) == 10 and {"mali-g78-chromium-156.html", "apple-m2-safari-18.html"} <= {p.name for p in pages}
-    for page in (site / "index.html", *pages):
-        for link in Read(page).links:
-            if not link.startswith(("#", "data:")):
-                assert (page.parent / link).resolve().is_file(), f"{page.name}: {link}"
-    linked = {link for link in Read(site / "index.html").links if link.startswith("devices/")}
-    assert linked == {f"devices/{page.name}" for page in pages}
+def test_there_is_a_section_for_each_device_and_every_link_leads_to_one(site):
+    page = Read(site / "index.html")
+    sections = {attributes["id"] for tag, attributes in page.tags if tag == "section"}
+    devices = {section for section in sections if section.startswith("device-")}
+    assert len(devices) == 10 and {"device-mali-g78-chromium-156", "device-apple-m2-safari-18"} <= devices
+    assert {link for link in page.links if link.startswith("#device-")} == {f"#{section}" for section in devices}
+    ids = [attributes["id"] for _, attributes in page.tags if "id" in attributes]
+    assert len(ids) == len(set(ids)) and files_of(site).keys() == {"index.html", MARKER}
 
 
-def test_the_index_says_who_agrees_and_each_page_what_to_take(site):
+def test_the_page_says_who_agrees_and_what_to_take_on_each(site):
     text = Read(site / "index.html").text
     assert "5 devices agree with the run in every code of 35 codecs." in text
     assert "Mali-G78, Chromium 156 differs in 8 of 35 codecs, most in xyz rgb10a2: 87.6 % of its codes" in text
-    page = Read(site / "devices/mali-g78-chromium-156.html").text
-    assert "rg8, 2 bytes: take octahedral." in page and "ms per megapixel to encode" in page
-    assert "stereographic, hemi_octahedral (made for normals with z >= 0 alone)" in " ".join(page.split())
-    assert "This device has no times" in Read(site / "devices/apple-gpu-safari-18.html").text
+    assert "rg8, 2 bytes: take octahedral." in text and "ms per megapixel to encode" in text
+    assert "stereographic, hemi_octahedral (made for normals with z >= 0 alone)" in " ".join(text.split())
+    assert "This device has no times" in text
 
 
 def answered(tmp_path, **more) -> dict[str, str]:
@@ -159,19 +158,20 @@ def test_a_second_site_replaces_its_own_files_and_no_others(run, tmp_path):
     gone = made.write(files / "b.json", renderer=made.MALI)
     assert run("site", str(files), "-o", str(site))[0] == 0
     (site / "CNAME").write_text("devices.example")
+    (site / "devices").mkdir()
     (site / "devices" / "mine.html").write_text("mine")
     gone.unlink()
     assert run("site", str(files), "-o", str(site))[0] == 0
-    names = {"CNAME", "index.html", MARKER, "devices/mine.html", "devices/swiftshader-chromium-156.html"}
+    names = {"CNAME", "index.html", MARKER, "devices/mine.html"}
     assert set(files_of(site)) == names
-    assert json.loads((site / MARKER).read_text())["files"] == ["devices/swiftshader-chromium-156.html", "index.html"]
+    assert json.loads((site / MARKER).read_text())["files"] == ["index.html"]
+    assert "Mali" not in (site / "index.html").read_text()
 
 
 @pytest.mark.parametrize(
     "name, text, said",
     [
         ("index.html", "mine", "index.html is not of an earlier site"),
-        ("devices/swiftshader-chromium-156.html", "mine", "is not of an earlier site"),
         (MARKER, "{", "this is not JSON; delete it"),
         (MARKER, '{"files": ["../outside.html"]}', "it lists what no site has"),
         (MARKER, '{"files": 3}', "delete it"),
@@ -190,13 +190,13 @@ def test_nobody_elses_file_is_touched(run, tmp_path, name, text, said):
     assert files_of(tmp_path) == before
 
 
-def test_a_link_in_the_site_leads_nowhere_else(run, tmp_path):
-    made.write(tmp_path / "files/a.json")
+def test_a_link_in_the_site_leads_nowhere_else(tmp_path):
     (tmp_path / "other").mkdir()
     (tmp_path / "site").mkdir()
     (tmp_path / "site/devices").symlink_to(tmp_path / "other")
-    status, _, err = run("site", str(tmp_path / "files"), "-o", str(tmp_path / "site"))
-    assert status == 2 and "a link in the place of a site's files" in err and not list((tmp_path / "other").iterdir())
+    with pytest.raises(UsageError, match="a link in the place of a site's files"):
+        write_site(tmp_path / "site", {"devices/index.html": "text"})
+    assert not list((tmp_path / "other").iterdir())
 
 
 def test_a_full_disk_leaves_the_earlier_site(run, tmp_path, monkeypatch):
@@ -208,7 +208,7 @@ def test_a_full_disk_leaves_the_earlier_site(run, tmp_path, monkeypatch):
     write = Path.write_text
 
     def full(self, text, **more):
-        if "mali" in self.name:
+        if self.name.startswith("index.html"):
             raise OSError(28, "No space left on device")
         return write(self, text, **more)
 
@@ -218,7 +218,7 @@ def test_a_full_disk_leaves_the_earlier_site(run, tmp_path, monkeypatch):
     assert files_of(site) == before and [p.name for p in tmp_path.iterdir() if "partial" in p.name] == []
 
 
-def test_two_files_of_one_device_are_one_page(run, tmp_path):
+def test_two_files_of_one_device_are_one_section(run, tmp_path):
     made.write(tmp_path / "files/a.json", made="2026-11-22T15:00:00Z")
     made.write(tmp_path / "files/b.json")
     status, out, err = run("site", str(tmp_path / "files"), "-o", str(tmp_path / "site"))
@@ -243,9 +243,9 @@ def test_markup_of_a_device_stays_text(run, tmp_path):
         assert "default-src 'none'" in text and "http" not in text.replace("http-equiv", "")
 
 
-def test_devices_whose_names_give_one_file_name_have_pages_of_their_own(run, tmp_path):
+def test_devices_whose_names_give_one_address_have_sections_of_their_own(run, tmp_path):
     for at, renderer in enumerate(("GPU+", "GPU-", "\u7a7a", "\u7a7a\u7a7a")):
         made.write(tmp_path / f"files/{at}.json", renderer=renderer, browser="\u7a7a")
     assert run("site", str(tmp_path / "files"), "-o", str(tmp_path / "site"))[0] == 0
-    names = sorted(path.name for path in (tmp_path / "site/devices").iterdir())
-    assert names == ["device-2.html", "device.html", "gpu-2.html", "gpu.html"]
+    sections = [attributes["id"] for tag, attributes in Read(tmp_path / "site/index.html").tags if tag == "section"]
+    assert sections[-4:] == ["device-gpu", "device-gpu-2", "device-one", "device-one-2"], sections

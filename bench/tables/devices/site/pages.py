@@ -1,4 +1,4 @@
-"""The pages of a site of devices, from their files."""
+"""The page of a site's devices, from their files."""
 
 from __future__ import annotations
 
@@ -9,14 +9,12 @@ from typing import Any
 from .....reports.page.page import Table, table
 from .....reports.page.site import (
     Answer,
-    DevicePage,
+    DeviceSection,
     Index,
     Searched,
     Site,
-    device_html,
     index_html,
-    linked,
-    paths,
+    plain_names,
     words_table,
 )
 from ...table import Row, Sheet
@@ -38,7 +36,7 @@ from .answers import Known, answers
 INDEX, FOLDER = "index.html", "devices"
 # A site of nothing but devices.
 ALONE = Site({INDEX: "All devices"}, INDEX)
-# What a device's page leaves to its heading and its facts.
+# What a device's tables leave to its heading and its facts.
 OF_DEVICE = ("device", "browser", "row_of", "made", "program", "sources", "renderer", "vendor")
 # The columns of the index that no table has.
 INDEXED = {
@@ -57,10 +55,10 @@ INDEXED = {
 
 @dataclass(frozen=True)
 class Entry:
-    """A device with what its page shows."""
+    """A device with what its section shows."""
 
     device: Device
-    path: str
+    key: str
     rows: Sequence[Row]
     answers: Sequence[Sheet]
 
@@ -72,32 +70,34 @@ class Entry:
 
 
 def pages(devices: Sequence[Device], site: Site = ALONE) -> dict[str, str]:
-    """The pages of devices by their paths in the site's folder."""
-    rows, files = [codec_rows(one) for one in devices], paths((one.called for one in devices), FOLDER, "device")
+    """Return the page of devices by its path in the site's folder."""
+    rows = [codec_rows(device) for device in devices]
+    keys = (f"device-{name}" for name in plain_names((device.called for device in devices), "one"))
     known = Known(rows)
     entries = [
-        Entry(one, path, own, list(answers(own, known))) for one, path, own in zip(devices, files, rows, strict=True)
+        Entry(device, key, own, list(answers(own, known))) for device, key, own in zip(devices, keys, rows, strict=True)
     ]
-    made = {entry.path: device_html(_device_page(entry), site) for entry in entries}
-    return made | {site.devices: index_html(_index(entries, site), site)}
+    return {site.devices: index_html(_index(entries, site), site)}
 
 
-def _device_page(entry: Entry) -> DevicePage:
+def _device_section(entry: Entry) -> DeviceSection:
     device, file = entry.device, entry.device.file
     about = {"GPU": file.renderer, "vendor": file.vendor, "browser": file.browser, "saved": file.made}
     about |= {"normalbench": file.program, "fingerprint of the run": file.sources}
     known = {name: text for name, text in about.items() if text}
     codecs = [_row_without(row, OF_DEVICE) for row in entry.rows]
     facts = [{"name": row["name"], "value": row["value"]} for row in fact_rows(device)]
-    tables = [_shown_table("Every codec", codecs), *([_shown_table("Facts", facts)] if facts else [])]
-    answered = [Answer((*sheet.said, *sheet.aside), _front_table(sheet)) for sheet in entry.answers]
+    tables = [_shown_table(f"Every codec on {device.called}", codecs)]
+    tables += [_shown_table(f"Facts of {device.called}", facts)] if facts else []
+    answered = [Answer((*sheet.said, *sheet.aside), _front_table(sheet, device.called)) for sheet in entry.answers]
     said = f"{device.called} {difference(entry.rows)}."
-    return DevicePage(device.called, entry.path, said, known, answered, tables)
+    return DeviceSection(device.called, entry.key, said, known, answered, tables)
 
 
-def _front_table(sheet: Sheet) -> Table:
+def _front_table(sheet: Sheet, device: str) -> Table:
     """The codes of an answer; none where no code qualifies."""
-    return table(sheet.title, sheet.rows, lambda _: "") if sheet.rows else Table(sheet.title, [], [], "")
+    title = f"{device}, {sheet.title}"
+    return table(title, sheet.rows, lambda _: "") if sheet.rows else Table(title, [], [], "")
 
 
 def _row_without(row: Row, names: Sequence[str]) -> Row:
@@ -124,7 +124,8 @@ def _index(entries: Sequence[Entry], site: Site) -> Index:
         question="Which devices store the same codes?",
         said=sentences(rows) if rows else ("No device has been added yet.",),
         label="Search by device, codec or storage",
-        searched=[_device_list(entries, site), _codec_list(rows), _taken_list(entries, site)] if entries else [],
+        searched=[_device_list(entries), _codec_list(rows), _taken_list(entries)] if entries else [],
+        devices=[_device_section(entry) for entry in entries],
         measures=bool(site.laboratory),
     )
 
@@ -133,10 +134,10 @@ def _table(title: str, rows: Sequence[Row]) -> Table:
     return table(title, rows, lambda name: INDEXED.get(name, ""))
 
 
-def _device_list(entries: Sequence[Entry], site: Site) -> Searched:
+def _device_list(entries: Sequence[Entry]) -> Searched:
     rows = [{"device": e.device.called} | _row_without(overview(e.rows)[0], ("device", "browser")) for e in entries]
-    intro = "A row for each GPU and browser. Its name leads to its page."
-    words, links = [entry.words for entry in entries], [linked(entry.path, site.devices) for entry in entries]
+    intro = "A row for each GPU and browser. Its name leads to its codecs and facts below."
+    words, links = [entry.words for entry in entries], [f"#{entry.key}" for entry in entries]
     return Searched("devices", "Devices", intro, _table("Agreement by device", rows), words, links)
 
 
@@ -159,12 +160,12 @@ def _codec_row(rows: Sequence[Row]) -> Row:
     return about | {"fastest_on": device_of(quick) if quick else None, "fastest_ms": time_of(quick) if quick else None}
 
 
-def _taken_list(entries: Sequence[Entry], site: Site) -> Searched:
+def _taken_list(entries: Sequence[Entry]) -> Searched:
     """The code to take on each device, with a column for each storage."""
     titles = dict.fromkeys(_column_name(sheet) for entry in entries for sheet in entry.answers)
     rows = [{"device": e.device.called} | {**dict.fromkeys(titles), **_codecs_taken_on(e)} for e in entries]
     intro = "The answer of pick for each storage, by the errors of the device."
-    words, links = [entry.words for entry in entries], [linked(entry.path, site.devices) for entry in entries]
+    words, links = [entry.words for entry in entries], [f"#{entry.key}" for entry in entries]
     shown = words_table("The code to take, by device and storage", rows)
     return Searched("take", "What to take", intro, shown, words, links)
 
