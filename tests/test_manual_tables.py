@@ -13,7 +13,9 @@ from normalbench.bench.measures.metrics import published
 from normalbench.bench.measures.metrics.code_limits import HEMISPHERE, SPHERE, code_limit
 
 VENDORS = PAGES[ROOT / "docs" / "vendors.md"]
-MARKER = re.compile(r"^<!-- (headline|answer: [\w ]+|workers simulated|normalbench [\w ]+) -->$", re.M)
+MARKER = re.compile(
+    r"^<!-- (headline|answer: [\w ]+|workers simulated|published figures|normalbench [\w ]+) -->$", re.M
+)
 
 
 def kept_figures(marker: str, column: str) -> dict[tuple, object]:
@@ -111,7 +113,7 @@ def test_the_orders_are_those_of_the_counts(marker, row):
 
 
 def test_every_published_figure_has_a_verdict():
-    lines = TABLES["normalbench published"].read().lines
+    lines = TABLES["published figures"].read().lines
     assert {verdict for *_, verdict, _, _ in lines} == {"reproduced", "holds", "short by sampling", "different"}
     assert all(why and command for *_, verdict, why, command in lines if verdict == "different")
     assert all(math.isfinite(ours) for _, _, _, ours, *_ in lines)

@@ -100,7 +100,7 @@ def test_every_example_is_used():
 # What takes more than a second of processor time: it renders, tunes, draws, compiles or measures many rows.
 LONG = re.compile(
     r"normalbench (pick|budget|mix|maps|render|effects|motion|lights|sweep|tune|run|report|frames|check|code"
-    r"|published|site before)\b(?! --help)|python|normalbench (doctor|vectors)$"
+    r"|site before)\b(?! --help)|python|normalbench (doctor|vectors)$"
     r"|.*(--on |--plot|--report|--worst-case|--encoding all|--arithmetic float|--far|--normals (scene|frame))"
 )
 LONG_COMMANDS = [command for command in COMMANDS if LONG.match(command)]

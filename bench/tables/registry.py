@@ -27,7 +27,6 @@ FOLDERS = (
     "curves",
     "sweep",
     "tune",
-    "published",
     "devices",
 )
 TABLES: Mapping[str, Table] = MappingProxyType(

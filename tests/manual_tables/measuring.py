@@ -52,6 +52,15 @@ def simulated() -> list[Row]:
     return json.loads(subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout)
 
 
+def published() -> list[Row]:
+    """Figures of articles and engines. Fails where one differs without a reason."""
+    from published.rows import rows, unexplained
+
+    measured = rows()
+    assert not unexplained(measured), "\n".join(unexplained(measured))
+    return measured
+
+
 def for_every_storage(rows: list[Row]) -> list[Row]:
     """Rows without a storage stand for every storage that their encoding was measured in."""
     of = [(row["encoding"], row["storage"]) for row in rows if row["encoding"] and row["storage"]]

@@ -165,8 +165,8 @@ ALL = (
         "spheremap hemisphere,stereographic hemisphere,xy hemisphere,limit hemisphere",
     ),
     Table(
-        marker="normalbench published",
-        rows=("published",),
+        marker="published figures",
+        rows=measuring.published,
         columns=(
             key("source", "source"),
             key("figure", "figure"),

@@ -34,15 +34,11 @@ def answer(_: Table, kept: Measured) -> str:
 
 
 def published(table: Table, kept: Measured) -> str:
-    """As the command writes it."""
-    from normalbench.bench.show import showing
-    from normalbench.bench.tables.registry import TABLES
-    from normalbench.bench.tables.table import Measured as Done
+    """A table for each source."""
+    from published.rows import text
 
-    command = TABLES["published"]
-    rows = [command.empty() | dict(zip((c.name for c in table.columns), line, strict=True)) for line in kept.lines]
-    done = Done(command.options(), command.outputs(), (), rows)
-    return showing.written(command, done, "markdown", WIDTH).rstrip("\n")
+    names = [column.name for column in table.columns]
+    return text([dict(zip(names, line, strict=True)) for line in kept.lines], WIDTH).rstrip("\n")
 
 
 def simulation(table: Table, kept: Measured) -> str:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from ....encodings.catalogue import ENCODINGS
-from ...measures.metrics import published
+from normalbench.bench.measures.metrics import published
+from normalbench.encodings.catalogue import ENCODINGS
+
 from . import counts
 from .figure import DECIBELS, DEGREES, Figure, Measure
 from .measures import ArticleMse, Counted, InACube, Instructions, Quality

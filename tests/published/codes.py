@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from functools import partial
 
-from ....encodings.normals.optimised_rings import covering_radius
+from normalbench.encodings.normals.optimised_rings import covering_radius
+
 from . import counts
 from .figure import DEGREES, Figure
 from .measures import Counted, Quality

@@ -9,15 +9,15 @@ from functools import cache
 import jax
 import numpy as np
 
-from ....encodings.catalogue import ENCODINGS
-from ....encodings.codecs.codec import Codec
-from ...ground.output import cache as kept
-from ...ground.output.sources import sources
-from ...measures.metrics import published
-from ...subjects.codecs.names import codecs_named
-from ...subjects.normals.normal_sets import NORMAL_SETS, NormalSet, from_arrays
-from ..cost import measure as cost
-from ..quality import measure as quality
+from normalbench.bench.ground.output import cache as kept
+from normalbench.bench.ground.output.sources import sources
+from normalbench.bench.measures.metrics import published
+from normalbench.bench.subjects.codecs.names import codecs_named
+from normalbench.bench.subjects.normals.normal_sets import NORMAL_SETS, NormalSet, from_arrays
+from normalbench.bench.tables.cost import measure as cost
+from normalbench.bench.tables.quality import measure as quality
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codecs.codec import Codec
 
 COUNT = 2**20
 # Angles have a standard deviation of about half their mean, and two means of a million are compared: four deviations.
@@ -171,7 +171,7 @@ class Counted(Exact):
     @property
     def command(self) -> str:
         """What shows it."""
-        return f"normalbench published --source {self.source}"
+        return f"python -m tests.published {self.source}"
 
     def figure(self) -> float | None:
         """Its value."""

@@ -1,16 +1,12 @@
 """Published figures, measured anew: every one has a verdict, and a wrong one is noticed."""
 
-import json
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import pytest
+from published import rows, sources
+from published.figure import Figure, Source
+from published.sources import SOURCES
 
-from normalbench.bench.tables.published import sources, work
-from normalbench.bench.tables.published.figure import Figure, Source
-from normalbench.bench.tables.published.sources import SOURCES
-
-PAGE = Path(__file__).parents[3] / "docs" / "published-figures.md"
 FIGURES = [(source, figure) for source in SOURCES for figure in source.figures]
 
 
@@ -20,7 +16,7 @@ class Known:
 
     value: float | None
     scatter: float = 0.0
-    command: str = "normalbench published"
+    command: str = "python -m tests.published"
 
     def figure(self) -> float | None:
         return self.value
@@ -64,36 +60,37 @@ def test_there_are_more_than_eighty_and_each_is_named_once():
     assert len(names) > 130 and len(set(names)) == len(names)
     for source, figure in FIGURES:
         assert float(figure.printed) == pytest.approx(figure.value), figure.what
-        assert figure.place and source.name and figure.ours.command.startswith("normalbench ")
+        assert (
+            figure.place
+            and source.name
+            and figure.ours.command.startswith(("normalbench ", "python -m tests.published "))
+        )
 
 
-def test_a_wrong_constant_fails_the_command_and_names_the_figure(run, monkeypatch):
+def test_a_wrong_constant_is_found_and_its_figure_named(monkeypatch):
     """A hundredth off."""
     right = next(figure for _, figure in FIGURES if figure.what == "mean of oct16, 8:8")
     wrong = Source("Z. Cigolle", (right, replace(right, what="a slip", value=right.value * 1.01)))
     monkeypatch.setattr(sources, "SOURCES", (wrong,))
-    status, out, err = run("published", "--source", "Cigolle", "--format", "json")
-    assert status == 1 and [row["verdict"] for row in json.loads(out)] == ["reproduced", "unexplained"]
-    assert err.count("\n") == 1 and "Z. Cigolle: a slip: 0.34046 degrees is published and 0.33689 measured" in err
+    measured = rows.rows("Cigolle")
+    assert [row["verdict"] for row in measured] == ["reproduced", "unexplained"]
+    (line,) = rows.unexplained(measured)
+    assert "Z. Cigolle: a slip: 0.34046 degrees is published and 0.33689 measured" in line
 
 
 @pytest.mark.usefixtures("rows_are_kept")
-def test_sources_are_chosen_by_words(run):
-    assert [source.name[:6] for source in work.chosen("XEOKIT, smith")] == ["J. Smi", "xeokit"]
-    assert work.chosen("all") == list(SOURCES)
-    status, out, err = run("published", "--source", "knuth")
-    assert (status, out) == (2, "") and err.count("\n") == 1 and "--source knuth: a word of one of these names" in err
+def test_sources_are_chosen_by_words():
+    assert [source.name[:6] for source in rows.chosen("XEOKIT, smith")] == ["J. Smi", "xeokit"]
+    assert rows.chosen("all") == list(SOURCES) and rows.chosen("knuth") == []
 
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("rows_are_kept")
-def test_what_is_counted_is_what_is_printed(run):
+def test_what_is_counted_is_what_is_printed():
     """Of the sources that take no samples: layouts, light, depth, points on rings."""
     words = "smith,drobot,jo kyeong,ols,shared_exponent,kemen,golubev,normal_pack"
-    status, out, _ = run("published", "--source", words, "--format", "json")
-    rows = json.loads(out)
-    verdicts = {row["figure"]: row["verdict"] for row in rows}
-    assert status == 0 and len(rows) == 36
+    verdicts = {row["figure"]: row["verdict"] for row in rows.rows(words)}
+    assert len(verdicts) == 36
     others = [figure for figure, verdict in verdicts.items() if verdict not in ("reproduced", "holds")]
     # Of Kemen's sixteen steps those where his code is another one than ours.
     kemen = [f"step at {km:g} km, C = 1" for km in (0.001, 0.01, 0.1)]

@@ -9,11 +9,12 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ....encodings.catalogue import DEPTH_ENCODINGS, LIGHT_BUFFERS
-from ....encodings.codecs.codec import Codec
-from ....encodings.normals.optimised_rings import points_needed
-from ....encodings.vec import Vec3
-from ....gbuffer.layouts.presets import LAYOUTS
+from normalbench.encodings.catalogue import DEPTH_ENCODINGS, LIGHT_BUFFERS
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.normals.optimised_rings import points_needed
+from normalbench.encodings.vec import Vec3
+from normalbench.gbuffer.layouts.presets import LAYOUTS
+
 from .measures import InACube, Quality, codec_of
 
 SIDE = 256
