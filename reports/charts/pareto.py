@@ -75,10 +75,6 @@ class Error:
         """Less is better, and `step` is no difference."""
         return -error if self.more_is_better else math.log(error)
 
-    def of_loss(self, loss: float) -> float:
-        """The error of a loss."""
-        return -loss if self.more_is_better else math.exp(loss)
-
     @property
     def step(self) -> float:
         """The tolerance in `loss`."""

@@ -14,9 +14,6 @@ from .....gbuffer.codecs.harness import check_functions
 from .....gbuffer.codecs.own.own_passes import tried
 from .....gbuffer.gl.device import device
 
-# The planes of a code, to the planes as they come back from the storage.
-Store = Callable[[Any, Any], Any]
-
 
 def is_in(kind: Kind) -> Callable[[Any], bool]:
     """(codec) -> whether its encoding is the catalogue's."""
