@@ -11,7 +11,6 @@ options alone. With xdist every worker measures what its own tests ask for, at m
 from __future__ import annotations
 
 import argparse
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -101,21 +100,6 @@ def _broken(item: pytest.Item, mark: pytest.Mark) -> str:
     except (AssertionError, UsageError) as error:
         return str(error)
     return ""
-
-
-def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
-    """A file of gates, where it is named on the command line: a test for each gate."""
-    if file_path.suffix == ".toml" and _is_named(file_path, parent.config):
-        from .gate_files import GateFile
-
-        return GateFile.from_parent(parent, path=file_path)
-    return None
-
-
-def _is_named(path: Path, config: pytest.Config) -> bool:
-    # Session.isinitpath forgets a file that lies in a folder that is named as well.
-    here = config.invocation_params.dir
-    return str(path) in [os.path.abspath(here / word.partition("::")[0]) for word in config.args]  # noqa: PTH100 # no link
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 
 from normalbench.bench.door.gates import baseline, measured
-from normalbench.bench.door.pytest_plugin import gate_files as pytest_gates
 from normalbench.bench.ground.machine import devices
 from normalbench.bench.ground.options.option import fields_of
 from normalbench.bench.tables.quality import measure as quality
@@ -32,7 +31,7 @@ PASSES = f"""
 @pytest.fixture(scope="session")
 def loaded():
     """Everything that is imported on first use is: pytest inside pytest forgets what it imports itself."""
-    assert pytest_gates and baseline
+    assert baseline
     for one in measured.measured(TABLES["quality"], {"encoding": "xy", "normals": "sphere", "count": 4096}):
         assert one.worst
 
@@ -213,24 +212,6 @@ def test_an_image_may_be_held_to_limits(inside):
         ["E*hybrid fp32 octahedral rgba8 nearest rgba32f 2 studio *: psnr_db is *, not at least 90"]
     )
     result.stdout.fnmatch_lines(["E*worst normal: (*) comes back as (*), 0.* degrees off"])
-
-
-def test_a_file_of_gates_is_tests(inside, pytester):
-    """Where it is named, and only there: any other TOML file is left alone."""
-    gate = '[[gate]]\nencoding = "xy"\nnormals = "sphere"\ncount = 4096\npsnr_db = "at least {}"\n'
-    pytester.makefile(".toml", gates=gate.format(5) + gate.format(50) + 'colour = "x"\n' + gate.format(50), other="[x]")
-    inside(test_a="def test_it(): pass").assert_outcomes(passed=1)
-    inside(".", "./gates.toml").assert_outcomes(passed=2, failed=2)
-    result = inside("gates.toml", "-v")
-    result.assert_outcomes(passed=1, failed=2)
-    result.stdout.fnmatch_lines(
-        ["gates.toml::gate 1 PASSED*", "gates.toml::gate 2 FAILED*", "gates.toml::gate 3 FAILED*"]
-    )
-    result.stdout.fnmatch_lines(["*gates.toml, gate 2: unknown option 'colour'; known: encoding, *"])
-    result.stdout.fnmatch_lines(["xy rgba8 nearest sphere jax: psnr_db is *, not at least 50", "  worst normal: (*"])
-    result = inside("other.toml")
-    result.assert_outcomes(errors=1)
-    result.stdout.fnmatch_lines(["*other.toml: 'x' is not known; a file of gates has only [[][[]gate]] tables"])
 
 
 BOTH = """
