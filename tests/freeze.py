@@ -190,10 +190,14 @@ def _rounded(value: Any) -> Any:
 
 def facts() -> dict[str, str]:
     """Return what the last bits of a row depend on."""
+    from normalbench.bench.ground.machine.systems.system_files import processor_lines
     from normalbench.bench.keep.machine import machine
 
     known = machine()
-    return {name: known[name] for name in SAME if name in known}
+    # Processors of one name may have other instructions, which XLA compiles for.
+    flags = next((line for line in processor_lines() if line.startswith("flags")), "")
+    named = {name: known[name] for name in SAME if name in known}
+    return named | {"instructions": hashlib.sha256(flags.encode()).hexdigest()[:12]}
 
 
 def asked(share: int, seed: str) -> list[str]:
