@@ -19,7 +19,7 @@ from typing import Any
 from ....gbuffer.defines.kernels import PLANES
 from ...ground.machine.children import python
 from ...ground.machine.cores import cores
-from ...ground.options.gpu_families import FAMILIES, MOBILE, NVRTC, RADV, TITLES, TURNIP, V3DV
+from ...ground.options.gpu_families import FAMILIES, MOBILE, NVRTC, RADV, TITLES
 from ...ground.output import cache as kept
 from . import null_device
 from .compiler import DRIVERS
@@ -124,9 +124,8 @@ def missing(library: str = RADV) -> str:
 
 def _null_device(library: str) -> None:
     """Builds what a driver is told of a GPU that is not there, where it needs it. Raises NullDeviceError."""
-    source = {TURNIP: mobile.SOURCE, V3DV: mobile.SOURCE}.get(library, null_device.SOURCE)
     if library != RADV:
-        null_device.library(source)
+        null_device.library(mobile.SOURCE if library in MOBILE else null_device.SOURCE)
 
 
 def compile_all(

@@ -16,9 +16,6 @@
 #endif
 
 void run_six(size_t count, const float *given, float *made, uint32_t *words);
-#ifdef RUN_TABLE_COUNT
-void run_set_table(size_t at, const float *texels, uint32_t width, uint32_t height);
-#endif
 
 static void limit(int what, unsigned long long most) {
     struct rlimit now;
@@ -48,15 +45,6 @@ int main(int words, char **word) {
     limit(RLIMIT_DATA, RUN_MEMORY);
     limit(RLIMIT_FSIZE, RUN_FILE);
     limit(RLIMIT_CORE, 0);
-#endif
-#ifdef RUN_TABLE_COUNT
-    for (size_t at = 0; at < RUN_TABLE_COUNT; ++at) {
-        char name[32];
-        snprintf(name, sizeof name, "table%u.size", (unsigned)at);
-        uint32_t *size = (uint32_t *)read_all(name, 2 * sizeof *size);
-        snprintf(name, sizeof name, "table%u.bin", (unsigned)at);
-        run_set_table(at, (float *)read_all(name, (size_t)16 * size[0] * size[1]), size[0], size[1]);
-    }
 #endif
     float *given = (float *)read_all("given.bin", count * RUN_GIVEN * sizeof *given);
     float *made = (float *)calloc(count * RUN_MADE + 1, sizeof *made);
