@@ -1,16 +1,213 @@
-"""Steps that draw a frame each: a row of figures, and pictures of it where somebody asks for them."""
+"""Steps that render frames: a row of figures against a reference, and pictures where somebody asks for them."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, Generic, Protocol, TypeVar
 
+import numpy as np
+
+from ...gbuffer.display import CLIPPED_ALONE, Display
+from ...gbuffer.frame.plan import Plan
+from ...gbuffer.gl.device import Device, FormatError
+from ...gbuffer.gl.shader import ShaderError
+from ...gbuffer.pipelines import PIPELINES, Pipeline
+from ...gbuffer.render import Timing
+from ...gbuffer.scenes.catalogue import SceneMaker
+from ...gbuffer.scenes.scene import Scene
+from ...gbuffer.scenes.setting import Setting
+from ..ground.machine.devices import require_device, require_jax
 from ..ground.machine.memory import give_back_what_is_freed
+from ..ground.options.counts import MAX_REPEATS, in_range
+from ..ground.output.errors import UsageError
+from ..ground.output.writing import check_folder
+from ..measures.metrics.images import flip, require_flip, squared_error
+from ..measures.metrics.totals import psnr_db
+from ..subjects.normals.normal_names import SEES_NOTHING
 from .table import Row, Step, Tick
+
+STAGES = tuple(dict.fromkeys(stage.name for pipeline in PIPELINES.values() for stage in pipeline.stages))
+# Why a device may not be able to give a row.
+UNMEASURABLE = (ShaderError, FormatError)
+# A scene that covers less of its picture, in percent, leaves few pixels to judge by.
+LEAST_COVERED = 100 / 3
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A rendered image.
+
+    Attributes:
+        linear: light, float32 of shape (height, width, 3).
+        display: how it is shown.
+        times: of a frame that was timed, its columns.
+        flip: FLIP against the reference, (height, width); None where it was not asked for.
+    """
+
+    linear: np.ndarray
+    display: Display = field(default=CLIPPED_ALONE, kw_only=True)
+    times: Row = field(default_factory=dict, kw_only=True)
+    flip: np.ndarray | None = field(default=None, kw_only=True)
+
+    @cached_property
+    def shown(self) -> np.ndarray:
+        """The image as a display shows it, in [0, 1]."""
+        return self.display.image(self.linear)
+
+
+class Measurable(Protocol):
+    """One row to measure: a value that can be hashed, with a name, and what it is measured against."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def reference(self) -> Any: ...
+
+
+CaseT = TypeVar("CaseT", bound=Measurable)
+FrameT = TypeVar("FrameT", bound=Frame)
+
+
+class Bench(ABC, Generic[CaseT, FrameT]):
+    """Measures cases, each reference once.
+
+    Args:
+        device: where.
+        repeats: frames that times are taken over; none are taken for 0.
+        with_flip: whether FLIP is wanted.
+    """
+
+    def __init__(self, device: Device, repeats: int, with_flip: bool):
+        self.device, self._repeats, self._with_flip = device, repeats, with_flip
+        self._references: dict[CaseT, list[FrameT]] = {}
+        # Cases of one scene follow each other, and a head takes longer to make than to render.
+        self._scene = lru_cache(maxsize=1)(_made_scene)
+
+    @abstractmethod
+    def about(self, case: CaseT) -> Row:
+        """Return a row without figures."""
+
+    @abstractmethod
+    def frames(self, case: CaseT, repeats: int = 0) -> list[FrameT]:
+        """Render a case, at each of its moments; times are taken of the last one where there are repeats."""
+
+    @abstractmethod
+    def display(self, case: CaseT, frames: list[FrameT]) -> Display:
+        """Return how a reference, and with it what is compared with it, is shown."""
+
+    @abstractmethod
+    def figures(self, case: CaseT, frames: list[FrameT], exact: list[FrameT]) -> Row:
+        """Return what a row says of frames beside their reference's; at least `skipped` where nothing can be said."""
+
+    def reference(self, case: CaseT) -> list[FrameT]:
+        """Return the frames of a case's reference."""
+        case = case.reference
+        return self._references[case] if case in self._references else self._kept(case, self.frames(case))
+
+    def _kept(self, case: CaseT, frames: list[FrameT]) -> list[FrameT]:
+        display = self.display(case, frames)
+        return self._references.setdefault(case, [replace(frame, display=display) for frame in frames])
+
+    def measure(self, case: CaseT) -> tuple[Row, FrameT | None]:
+        """Return one row, and its first frame; one that the device cannot give has its reason in `skipped`, and none.
+
+        Raises:
+            UsageError: the scene draws nothing.
+        """
+        row = self.about(case)
+        try:
+            frames = self.frames(case, self._repeats)
+            exact = self._kept(case, frames) if case == case.reference else self.reference(case)
+            frames = [replace(frame, display=exact[0].display) for frame in frames]
+            row |= self.figures(case, frames, exact)
+        except UNMEASURABLE as error:
+            return row | {"skipped": str(error)}, None
+        if row["skipped"]:
+            return row, None
+        row |= frames[-1].times
+        if self._with_flip:
+            maps = [flip(frame.shown, other.shown) for frame, other in zip(frames, exact, strict=True)]
+            row["flip"] = float(np.mean([np.mean(pixels) for pixels in maps]))
+            return row, replace(frames[0], flip=maps[0])
+        return row, frames[0]
+
+    def scene(self, maker: SceneMaker, setting: Setting) -> Scene:
+        """Make a scene, or take that of the last call where it is the same."""
+        return self._scene(maker, setting)
+
+
+def _made_scene(maker: SceneMaker, setting: Setting) -> Scene:
+    return maker.make(setting)
+
+
+def image_figures(frames: Sequence[Frame], exact: Sequence[Frame]) -> Row:
+    """Compare images as displayed, with the mean over frames: `mse`, `psnr_db`, and the pixels that are no numbers."""
+    errors = [squared_error(frame.shown, other.shown) for frame, other in zip(frames, exact, strict=True)]
+    mse = float(np.mean([error for error, _ in errors]))
+    return {"mse": mse, "psnr_db": psnr_db(mse), "invalid": sum(broken for _, broken in errors)}
+
+
+def time_columns(timings: Mapping[str, Timing], clock: str) -> Row:
+    """Return the medians of each pass and the frame, its quartiles' distance, all in milliseconds, and the clock."""
+    row: Row = {f"ms_{name}": timing.median for name, timing in timings.items()}
+    return row | {"ms_frame_spread": timings["frame"].spread, "clock": clock}
+
+
+def described(pipeline: Pipeline, plan: Plan, setting: Setting, asked: int) -> Row:
+    """Return what a row says of how it was rendered; what makes no difference to the pipeline is None.
+
+    Args:
+        asked: samples a pixel as asked for; `plan.samples` is what the device gives.
+    """
+    kept = pipeline.has_gbuffer
+    return {
+        "pipeline": pipeline.name,
+        "layout": plan.layout.name if kept else None,
+        "light_buffer": plan.light_buffer.name if kept else None,
+        "light_targets": plan.light_targets if kept else None,
+        "scale": plan.scale if pipeline.scaled else None,
+        "objects": setting.objects,
+        "lights": setting.lights,
+        "shadow": plan.shadows,
+        "size": f"{plan.size[0]}x{plan.size[1]}",
+        "samples": plan.samples,
+        "samples_asked": asked,
+        "seed": setting.seed,
+    }
+
+
+def require_surface(maker: SceneMaker, is_seen: bool) -> None:
+    """Raise UsageError where no surface of a scene is seen."""
+    if not is_seen:
+        raise UsageError(f"{maker.name}: {SEES_NOTHING}")
+
+
+def says_little(scene: str, covered: float) -> Iterator[str]:
+    """Say what has to be said of a scene that covers so many percent of its picture; nothing of one that fills it."""
+    if 0 < covered < LEAST_COVERED:
+        what = f"{scene}: surfaces cover {covered:.0f} % of the picture"
+        yield f"{what}; a camera in the file that comes nearer gives more pixels to judge by"
+
+
+def checked_device(repeats: int, *, is_flip_wanted: bool = False, least: int = 0) -> Device:
+    """Return the device that frames are rendered on.
+
+    Raises:
+        UsageError: repeats beyond what is possible.
+        MissingError: there is no device, no JAX, or no FLIP.
+    """
+    require_jax()
+    device = require_device()
+    in_range("--repeats", repeats, least, MAX_REPEATS)
+    if is_flip_wanted:
+        require_flip()
+    return device
 
 
 @dataclass(frozen=True)
@@ -26,6 +223,13 @@ class Shot:
     bench: Any
     case: Any
     images: Path | None
+
+
+def shot_steps(bench: Any, cases: Sequence[Any], images: Path | None, key: Callable[[Any], Row]) -> list[Step]:
+    """Make a step of each case. Raises UsageError where pictures cannot be written."""
+    if images:
+        check_folder(images)
+    return [Step(key(case), Shot(bench, case, images), case.name) for case in cases]
 
 
 def by_shots(write: Callable[[Path, Row, Any, Any], None]) -> Callable[[Sequence[Step], Tick], Iterator[list[Row]]]:

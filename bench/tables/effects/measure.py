@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -18,14 +17,12 @@ from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.pipelines import Pipeline
 from ....gbuffer.render import Rendering, rendering
 from ....gbuffer.scenes.catalogue import SceneMaker
-from ....gbuffer.scenes.scene import Scene
 from ....gbuffer.scenes.setting import Setting
 from ...ground.angles import angles_deg
 from ...ground.output.errors import MissingError, tell
-from ...measures.metrics.images import flip, squared_error
 from ...measures.metrics.occlusion_error import method_error
 from ...measures.metrics.totals import psnr_db
-from ..render.measure import UNMEASURABLE
+from ..shots import Bench, Frame, image_figures, time_columns
 from .table import TABLE
 
 Row = dict[str, Any]
@@ -62,93 +59,62 @@ class Case:
 
 
 @dataclass(frozen=True)
-class Drawn:
+class Drawn(Frame):
     """A frame.
 
     Attributes:
-        linear: the image in linear light, (height, width, 3).
         own: the effect's own image, (height, width, channels).
         normals: what the G-buffer gives back, (height, width, 3).
         covered: where the effect is; bool of shape (height, width).
         hits: where the first ray of each pixel meets something, (height, width, 4), as `Effect.hits` says; None of an
             effect without rays.
-        display: how the image is shown.
-        times: milliseconds by pass, and the clock.
     """
 
-    linear: np.ndarray
     own: np.ndarray
     normals: np.ndarray
     covered: np.ndarray
     hits: np.ndarray | None
-    display: Display
-    times: Row
-
-    @property
-    def shown(self) -> np.ndarray:
-        """An image of light as a display shows it, in [0, 1]."""
-        return self.display.image(self.linear)
 
 
-class Bench:
+class EffectsBench(Bench[Case, Drawn]):
     """Measures cases, each reference once.
 
     Args:
-        device: where.
-        repeats: frames that times are taken over; none are taken for 0.
+        device, repeats, with_flip: as of every bench.
         rays: rays a point of the method's own error; 0 for none.
-        with_flip: whether FLIP is wanted.
     """
 
     def __init__(self, device: Device, repeats: int, rays: int, with_flip: bool):
-        self._device, self._repeats, self._rays, self._with_flip = device, repeats, rays, with_flip
-        self._references: dict[Case, Drawn] = {}
+        super().__init__(device, repeats, with_flip)
+        self._rays = rays
         self._methods: dict[Case, Row] = {}
-        # Cases of one scene follow each other, and a head takes longer to make than to render.
-        self._scene = lru_cache(maxsize=1)(_made_scene)
 
-    def reference(self, case: Case) -> Drawn:
-        """The frame of a case's reference."""
-        case = case.reference
-        if case not in self._references:
-            drawn = self._drawn_case(case)
-            self._references[case] = replace(drawn, display=case.maker.display(drawn.linear[drawn.covered]))
-        return self._references[case]
-
-    def measure(self, case: Case) -> tuple[Row, Drawn | None]:
-        """One row of the table, and the frame; a row that the device cannot give has its reason in `skipped`."""
+    def about(self, case: Case) -> Row:
         row = TABLE.empty(stage.name for stage in case.effect.passes()) | _case_columns(case)
-        row["device"] = self._device.renderer
-        try:
-            exact, drawn = self.reference(case), self._drawn_case(case)
-        except UNMEASURABLE as error:
-            return row | {"skipped": str(error)}, None
-        if not np.any(exact.covered):
-            return row | {"skipped": f"{case.effect.effect.name} shows nothing in this picture"}, None
-        drawn = replace(drawn, display=exact.display)
-        row |= (
-            _distance_columns(drawn, exact) | _image_columns(drawn, exact) | drawn.times | self._method(case.reference)
-        )
-        if self._with_flip:
-            row["flip"] = float(np.mean(flip(drawn.shown, exact.shown)))
-        return row, drawn
+        return row | {"device": self.device.renderer}
 
-    def _drawn_case(self, case: Case) -> Drawn:
-        scene = self._scene(case.maker, case.setting)
-        with rendering(self._device, case.pipeline, scene, case.plan) as made:
+    def frames(self, case: Case, repeats: int = 0) -> list[Drawn]:
+        effect, scene = case.effect.effect, self.scene(case.maker, case.setting)
+        with rendering(self.device, case.pipeline, scene, case.plan) as made:
             made.draw()
             position, direction, *_ = made.gbuffer()
-            effect = case.effect.effect
             own, hits = made.read(effect.result)[0], made.read(effect.hits)[0] if effect.hits else None
             covered = drawn_at(own, position[..., 2] != 0)
-            times = self._time_columns(case, made) if self._repeats else {}
-            return Drawn(made.image(), own[..., :3], direction[..., :3], covered, hits, Display(0.0), times)
+            times = _effect_times(case, made, repeats) if repeats else {}
+            return [Drawn(made.image(), own[..., :3], direction[..., :3], covered, hits, times=times)]
 
-    def _time_columns(self, case: Case, made: Rendering) -> Row:
-        timings, clock = made.timings(self._repeats)
-        names = [stage.name for stage in case.effect.passes()]
-        row: Row = {f"ms_{name}": timings[name].median for name in (*names, "frame")}
-        return row | {"ms_effect": sum(timings[name].median for name in names), "clock": clock}
+    def display(self, case: Case, frames: list[Drawn]) -> Display:
+        (frame,) = frames
+        return case.maker.display(frame.linear[frame.covered])
+
+    def figures(self, case: Case, frames: list[Drawn], exact: list[Drawn]) -> Row:
+        (drawn,), (other,) = frames, exact
+        if not np.any(other.covered):
+            return {"skipped": f"{case.effect.effect.name} shows nothing in this picture"}
+        image = image_figures(frames, exact)
+        lost = np.count_nonzero(~np.isfinite(drawn.own[other.covered]).all(axis=-1))
+        row = _distance_columns(drawn, other) | {"psnr_db": image["psnr_db"]}
+        return row | {"invalid": max(image["invalid"], int(lost))} | self._method(case.reference)
 
     def _method(self, case: Case) -> Row:
         """How far the effect from exact normals is from rays; nothing where there is no oracle or no ray caster."""
@@ -159,17 +125,21 @@ class Bench:
         return self._methods[case]
 
     def _method_columns(self, case: Case) -> Row:
-        scene = self._scene(case.maker, case.setting)
+        scene = self.scene(case.maker, case.setting)
         try:
-            found = method_error(self._device, case.effect, scene, case.plan.size, rays=self._rays)
+            found = method_error(self.device, case.effect, scene, case.plan.size, rays=self._rays)
         except MissingError as error:
             tell(f"method_rms stays empty: {error}")
             return {}
         return {"method_rms": found.rms, "method_mean": found.mean}
 
 
-def _made_scene(maker: SceneMaker, setting: Setting) -> Scene:
-    return maker.make(setting)
+def _effect_times(case: Case, made: Rendering, repeats: int) -> Row:
+    """Time the effect's passes, and the frame."""
+    columns = time_columns(*made.timings(repeats))
+    names = [f"ms_{stage.name}" for stage in case.effect.passes()]
+    row: Row = {name: columns[name] for name in (*names, "ms_frame", "clock")}
+    return row | {"ms_effect": sum(row[name] for name in names)}
 
 
 def drawn_at(own: np.ndarray, surfaces: np.ndarray) -> np.ndarray:
@@ -214,12 +184,6 @@ def _angles(drawn: Drawn, exact: Drawn) -> np.ndarray:
     one, other = drawn.normals[exact.covered], exact.normals[exact.covered]
     there = np.any(other != 0, axis=-1)
     return np.nan_to_num(angles_deg(other[there], one[there]), nan=180.0) if np.any(there) else np.zeros(1)
-
-
-def _image_columns(drawn: Drawn, exact: Drawn) -> Row:
-    mse, broken = squared_error(drawn.shown, exact.shown)
-    lost = np.count_nonzero(~np.isfinite(drawn.own[exact.covered]).all(axis=-1))
-    return {"psnr_db": psnr_db(mse), "invalid": max(broken, int(lost))}
 
 
 def _case_columns(case: Case) -> Row:

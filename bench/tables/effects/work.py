@@ -20,22 +20,19 @@ from ....gbuffer.render import check
 from ....gbuffer.scenes.catalogue import SceneMaker
 from ....gbuffer.scenes.setting import Setting
 from ...ground.choose import choose, choose_one
-from ...ground.machine.devices import require_device, require_jax
-from ...ground.options.counts import MAX_REPEATS, in_range
+from ...ground.options.counts import in_range
 from ...ground.options.effect_names import effects_named, lacking, pipeline_with
 from ...ground.options.targets import checked_setting, checked_target, what_is_left
 from ...ground.output.errors import UsageError
-from ...ground.output.writing import check_folder
-from ...measures.metrics.images import require_flip
 from ...subjects.codecs.layout_names import layouts_named
 from ...subjects.codecs.names import codecs_named
 from ...subjects.scenes.scene_names import scene_makers_named
 from ..plans import attempt, with_codecs
-from ..shots import Shot, by_shots
+from ..shots import by_shots, checked_device, shot_steps
 from ..table import Row, Sheet, Step, Work
 from . import pictures
 from .charts import charts
-from .measure import Bench, Case, group_of, in_order
+from .measure import Case, EffectsBench, group_of, in_order
 from .table import DEPTHS, TABLE, EffectsOptions, EffectsOutputs
 
 MAX_RAYS = 2**16
@@ -134,17 +131,10 @@ def _is_possible(device: Device, case: Case, is_metal_rough: bool, complaints: l
 
 
 def _steps(options: EffectsOptions, outputs: EffectsOutputs) -> list[Step]:
-    require_jax()
-    device = require_device()
-    in_range("--repeats", options.repeats, 0, MAX_REPEATS)
+    device = checked_device(options.repeats, is_flip_wanted=options.flip)
     in_range("--rays", options.rays, 0, MAX_RAYS)
-    if options.flip:
-        require_flip()
-    made = cases(options, device)
-    if outputs.images:
-        check_folder(outputs.images)
-    bench = Bench(device, options.repeats, options.rays, options.flip)
-    return [Step(_key(case, options), Shot(bench, case, outputs.images), case.name) for case in made]
+    bench = EffectsBench(device, options.repeats, options.rays, options.flip)
+    return shot_steps(bench, cases(options, device), outputs.images, lambda case: _key(case, options))
 
 
 def _key(case: Case, options: EffectsOptions) -> Row:
@@ -171,7 +161,7 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
 
 WORK = Work(
     steps=_steps,
-    measure=by_shots(pictures.write),
+    measure=by_shots(lambda folder, row, drawn, exact: pictures.write(folder, row, drawn, exact[0])),
     finish=in_order,
     summary=_summary,
     warnings=_warnings,

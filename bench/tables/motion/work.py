@@ -14,10 +14,9 @@ from ...ground.machine.devices import found_device, require_jax
 from ...ground.options.counts import check_seed, checked_numbers, in_range
 from ...ground.options.targets import checked_setting, checked_target, what_is_left
 from ...ground.output.errors import UsageError, by_reason, tell
-from ...ground.output.writing import check_folder
 from ...subjects.codecs.names import check_twin, codecs_named, fitting
 from ..charts import having
-from ..shots import Shot, by_shots
+from ..shots import by_shots, shot_steps
 from ..table import Row, Sheet, Step, Work
 from . import pictures, turning
 from .charts import wobble_chart
@@ -113,10 +112,7 @@ def _steps(options: MotionOptions, outputs: MotionOutputs) -> list[Step]:
     made = cases(options, device)
     if not device and picture_turns(options):
         tell(f"no frames are rendered, so columns of highlights and images stay empty: {missing}")
-    if outputs.images:
-        check_folder(outputs.images)
-    bench = Bench(device, outputs.images is not None)
-    return [Step(_key(case), Shot(bench, case, outputs.images), case.name) for case in made]
+    return shot_steps(Bench(device, outputs.images is not None), made, outputs.images, _key)
 
 
 def _check(outputs: MotionOutputs, made: Sequence[Step]) -> None:

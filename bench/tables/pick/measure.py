@@ -32,12 +32,12 @@ from ...measures.metrics.images import squared_error
 from ...measures.metrics.totals import psnr_db
 from ...shaders.code.twin import has_twin
 from ...subjects.normals.normal_sets import NORMAL_SETS, NormalSet, from_arrays
+from .. import shots
 from ..mix import judge
 from ..mix.patches import in_domain
 from ..mix.table import USES
 from ..mix.verdict import DONE
 from ..quality import measure as quality
-from ..render import measure as render
 from .answer import AFFORDABLE, IMAGE, answered, floor, image_name, price, why_left_out, why_unfit
 from .prices import Costs
 from .table import TABLE
@@ -398,7 +398,7 @@ class Pictures:
             key = _figures_key("image", case.codec, known, *asked, self._device.renderer)
             try:
                 found |= kept.kept(key, lambda maker=maker: self._image_columns(case, maker))
-            except (LayoutError, *render.UNMEASURABLE):
+            except (LayoutError, *shots.UNMEASURABLE):
                 continue
         if case.codec.encoding.domain != "sphere":
             lost = {maker.name: self.lost_percent(case, maker) for maker in case.makers}
@@ -425,7 +425,7 @@ class Pictures:
         0 to 1.
 
         Raises:
-            LayoutError, or one of render.UNMEASURABLE: there is no room for the code.
+            LayoutError, or one of shots.UNMEASURABLE: there is no room for the code.
         """
         layout = LAYOUTS["fp32"].with_codec(case.codec)
         by_emulation = has_twin(case.codec.encoding)
@@ -445,7 +445,7 @@ class Pictures:
         if question not in self._references:
             self._references[question] = Reference(*self._drawn(case, maker, LAYOUTS["fp32"]))
             covered = 100.0 * float(np.mean(self._references[question].held_by("sphere")))
-            for line in render.says_little(maker.name, covered):
+            for line in shots.says_little(maker.name, covered):
                 tell(line)
         return self._references[question]
 
@@ -453,7 +453,7 @@ class Pictures:
         """Images lit by what JAX makes of the normals. No shader is compiled for the code, which takes a second."""
 
         def keeps(position: np.ndarray, n: np.ndarray) -> np.ndarray:
-            render.require_surface(maker, len(n) > 0)
+            shots.require_surface(maker, len(n) > 0)
             return quality.round_trip(case.codec, n, position)
 
         return self._drawn(case, maker, LAYOUTS["fp32"], keeps)[0]

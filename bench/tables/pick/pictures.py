@@ -15,7 +15,7 @@ from ....reports.charts import pictures
 from ....reports.page.codec_key import CodecKey
 from ....reports.page.pixels import ImagePixels, Pictured, Subject, read_png
 from ...ground.output.writing import files_of, whole_file
-from ..render import measure as render
+from .. import shots
 from ..table import Row
 from .answer import AGAINST, BEST, CHEAPER, FEWER_BITS, MORE_EXACT, MOST_EXACT, images, places_of
 from .measure import Case, Pictures
@@ -29,7 +29,7 @@ def write(folder: Path, chosen: Sequence[Case], rows: Sequence[Row], drawing: Pi
     """The images of every code that has a place, and of the exact normals."""
     for case, maker in ((one, maker) for one in placed(chosen, rows) for maker in one.makers):
         # A code that the device has no room for has no image.
-        with suppress(LayoutError, *render.UNMEASURABLE):
+        with suppress(LayoutError, *shots.UNMEASURABLE):
             for power, (image, exact) in drawing.shown(case, maker).items():
                 scene = _scene_stem(maker.name, "" if power is None else f"{power:g}")
                 _write(folder / f"{scene}-reference.png", exact)

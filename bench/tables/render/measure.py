@@ -2,38 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from ....encodings.catalogue import LIGHT_BUFFERS
-from ....gbuffer.display import CLIPPED_ALONE, Display, measured_exposure
+from ....gbuffer.display import Display, measured_exposure
 from ....gbuffer.frame.plan import Plan
-from ....gbuffer.gl.device import Device, FormatError
-from ....gbuffer.gl.shader import ShaderError
+from ....gbuffer.gl.device import Device
 from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.pipelines import PIPELINES, Pipeline
 from ....gbuffer.render import Rendering, bytes_per_pixel, rendering
 from ....gbuffer.scenes.catalogue import SceneMaker
-from ....gbuffer.scenes.scene import KINDS, Scene
+from ....gbuffer.scenes.scene import KINDS
 from ....gbuffer.scenes.setting import Setting
 from ...ground.angles import angles_deg
-from ...ground.output.errors import UsageError
-from ...measures.metrics.images import flip, squared_error
+from ...measures.metrics.images import squared_error
 from ...measures.metrics.totals import Worst, psnr_db
-from ...subjects.normals.normal_names import SEES_NOTHING
+from ..shots import STAGES, UNMEASURABLE, Bench, Frame, described, image_figures, require_surface, time_columns
 from .table import TABLE
 
-STAGES = tuple(dict.fromkeys(stage.name for pipeline in PIPELINES.values() for stage in pipeline.stages))
-# Why a device may not be able to give a row.
-UNMEASURABLE = (ShaderError, FormatError)
 # What 8 bits show as 0.
 BLACK = 0.5 / 255
-# A scene that covers less of its picture, in percent, leaves few pixels to judge by.
-LEAST_COVERED = 100 / 3
 # Codecs are ranked among rows that agree in these.
 SAME = (
     *("scene", "power", "effects", "environment", "specular_antialiasing", "least_roughness", "pipeline"),
@@ -83,11 +75,10 @@ class Case:
         parts = (scene, self.pipeline.name, self.plan.layout.name, self.plan.layout.codec.name)
         return " ".join(parts if self.pipeline.has_gbuffer else parts[:2])
 
-    def scenes(self) -> Iterator[Scene]:
-        """The scene at each moment."""
+    def moments(self) -> Iterator[Setting]:
+        """What the scene is made with at each moment."""
         for frame in range(self.frames):
-            scene = self.maker.make(replace(self.setting, time=frame / self.frames))
-            yield scene if self.power is None else scene.with_power(self.power)
+            yield replace(self.setting, time=frame / self.frames)
 
     @property
     def coverage(self) -> Case:
@@ -110,161 +101,91 @@ class Case:
 
 
 @dataclass(frozen=True)
-class Drawn:
+class Drawn(Frame):
     """One frame.
 
     Attributes:
-        linear: the image, float32 of shape (height, width, 3).
         normals, kinds: what the G-buffer says, (height, width, 3) and (height, width); None where there is no G-buffer
             or it has several samples a pixel. The kind of what is not covered is -1.
-        display: how it is shown.
     """
 
-    linear: np.ndarray
     normals: np.ndarray | None
     kinds: np.ndarray | None
-    display: Display = CLIPPED_ALONE
-    flip: np.ndarray | None = None
-
-    @cached_property
-    def shown(self) -> np.ndarray:
-        """An image of light as a display shows it, in [0, 1]."""
-        return self.display.image(self.linear)
 
 
-def _drawn_images(made: Rendering, pipeline: Pipeline) -> Drawn:
-    made.draw()
-    if not pipeline.has_gbuffer or made.frame.plan.surface_samples > 1:
-        return Drawn(made.image(), None, None)
-    position, direction, *_ = made.gbuffer()
-    kinds = np.where(position[..., 2] != 0, direction[..., 3], -1).astype(np.int32)
-    return Drawn(made.image(), direction[..., :3], kinds)
-
-
-def require_surface(maker: SceneMaker, is_seen: bool) -> None:
-    """Raises UsageError where no surface of a scene is seen."""
-    if not is_seen:
-        raise UsageError(f"{maker.name}: {SEES_NOTHING}")
-
-
-def says_little(scene: str, covered: float) -> Iterator[str]:
-    """What is to be said of a scene that covers so many percent of its picture; nothing of one that fills it."""
-    if 0 < covered < LEAST_COVERED:
-        what = f"{scene}: surfaces cover {covered:.0f} % of the picture"
-        yield f"{what}; a camera in the file that comes nearer gives more pixels to judge by"
-
-
-class Bench:
-    """Measures cases, each reference once.
-
-    Args:
-        device: where.
-        repeats: frames that times are taken over; none are taken for 0.
-        with_flip: whether FLIP is wanted.
-    """
+class RenderBench(Bench[Case, Drawn]):
+    """Measures cases, each reference once."""
 
     def __init__(self, device: Device, repeats: int, with_flip: bool):
-        self._device, self._repeats, self._with_flip = device, repeats, with_flip
-        self._references: dict[Case, list[Drawn]] = {}
+        super().__init__(device, repeats, with_flip)
+        self._masks: dict[Case, list[np.ndarray]] = {}
         self._reference_columns: dict[Case, Row] = {}
 
-    def reference(self, case: Case) -> list[Drawn]:
-        """The frames of a case's reference."""
-        case = case.reference
-        if case not in self._references:
-            self._keep_reference(case, self._frames(case))
-        return self._references[case]
+    def about(self, case: Case) -> Row:
+        stages = dict.fromkeys((*STAGES, *(stage.name for stage in case.pipeline.stages)))
+        return TABLE.empty(stages) | _case_columns(case) | {"device": self.device.renderer}
 
-    def _keep_reference(self, case: Case, frames: list[Drawn]) -> None:
+    def frames(self, case: Case, repeats: int = 0) -> list[Drawn]:
+        frames: list[Drawn] = []
+        for setting in case.moments():
+            scene = self.scene(case.maker, setting)
+            lit = scene if case.power is None else scene.with_power(case.power)
+            is_last = len(frames) == case.frames - 1
+            with rendering(self.device, case.pipeline, lit, case.plan) as made:
+                frames.append(_drawn_images(made, case.pipeline, repeats if is_last else 0))
+        return frames
+
+    def display(self, case: Case, frames: list[Drawn]) -> Display:
         exposure = case.exposure
         if exposure is None:
             covered = self._covered_masks(case, frames)
             pixels = [frame.linear[where] for frame, where in zip(frames, covered, strict=True)]
             exposure = measured_exposure(np.concatenate(pixels))
-        display = Display(exposure, case.tone_mapping)
-        self._references[case] = [replace(frame, display=display) for frame in frames]
+        return Display(exposure, case.tone_mapping)
 
-    def _covered_masks(self, case: Case, reference: list[Drawn]) -> list[np.ndarray]:
-        """Where there is opaque surface in each frame, bool of shape (height, width).
+    def _covered_masks(self, case: Case, exact: list[Drawn]) -> list[np.ndarray]:
+        """Where there is opaque surface in each frame of a reference, bool of shape (height, width).
 
         Raises:
             UsageError: nowhere; figures of no pixels would say that every code is exact.
         """
-        if reference[0].kinds is None and case.coverage not in self._references:
-            self._references[case.coverage] = self._frames(case.coverage)
-        frames = self._references[case.coverage] if reference[0].kinds is None else reference
-        covered = [frame.kinds >= 0 for frame in frames if frame.kinds is not None]
-        require_surface(case.maker, any(where.any() for where in covered))
-        return covered
+        coverage = case.coverage if exact[0].kinds is None else case.reference
+        if coverage not in self._masks:
+            frames = self.frames(coverage) if exact[0].kinds is None else exact
+            self._masks[coverage] = [frame.kinds >= 0 for frame in frames if frame.kinds is not None]
+        require_surface(case.maker, any(where.any() for where in self._masks[coverage]))
+        return self._masks[coverage]
 
-    def _frames(self, case: Case, then: Callable[[Rendering], None] = lambda _: None) -> list[Drawn]:
-        """A case's frames; `then` is called with the last one, still on the device."""
-        frames: list[Drawn] = []
-        for number, scene in enumerate(case.scenes(), 1):
-            with rendering(self._device, case.pipeline, scene, case.plan) as made:
-                frames.append(_drawn_images(made, case.pipeline))
-                if number == case.frames:
-                    then(made)
-        return frames
-
-    def measure(self, case: Case) -> tuple[Row, Drawn | None]:
-        """One row of the table, and the first frame; a row that the device cannot give has its reason in `skipped`, and
-        no frame.
-
-        Raises:
-            UsageError: the scene draws nothing.
-        """
-        stages = dict.fromkeys((*STAGES, *(stage.name for stage in case.pipeline.stages)))
-        row = TABLE.empty(stages) | _case_columns(case) | {"device": self._device.renderer}
-        times: Row = {}
-        try:
-            frames = self._frames(
-                case, lambda made: times.update(_time_columns(made, self._repeats)) if self._repeats else None
-            )
-            if case == case.reference and case not in self._references:
-                self._keep_reference(case, frames)
-            reference = self.reference(case)
-            covered = self._covered_masks(case, reference)
-        except UNMEASURABLE as error:
-            return row | {"skipped": str(error)}, None
-        frames = [replace(frame, display=reference[0].display) for frame in frames]
+    def figures(self, case: Case, frames: list[Drawn], exact: list[Drawn]) -> Row:
+        covered = self._covered_masks(case, exact)
         if case.reference not in self._reference_columns:
-            self._reference_columns[case.reference] = _reference_columns(reference, covered)
-        row |= (
-            times | self._reference_columns[case.reference] | self._comparison_columns(case, frames, reference, covered)
-        )
-        maps = self._flip_maps(frames, reference)
-        if maps:
-            row["flip"] = float(np.mean([np.mean(one) for one in maps]))
-        return row, replace(frames[0], flip=maps[0] if maps else None)
-
-    def _flip_maps(self, frames: list[Drawn], reference: list[Drawn]) -> list[np.ndarray]:
-        """FLIP of each frame, pixel by pixel; nothing where it is not wanted."""
-        pairs = zip(frames, reference, strict=True)
-        return [flip(one.shown, other.shown) for one, other in pairs] if self._with_flip else []
-
-    def worst(self, case: Case) -> Worst | None:
-        """The normal of a case's first frame that its G-buffer gives back farthest off; None where there is none."""
-        try:
-            return _farthest(self._frames(case)[0], self.reference(case)[0])
-        except UNMEASURABLE:
-            return None
-
-    def _comparison_columns(
-        self, case: Case, frames: list[Drawn], reference: list[Drawn], covered: list[np.ndarray]
-    ) -> Row:
-        pairs = list(zip(frames, reference, strict=True))
-        errors = [squared_error(one.shown, other.shown) for one, other in pairs]
-        mse = float(np.mean([error for error, _ in errors]))
-        row: Row = {"mse": mse, "psnr_db": psnr_db(mse), "exact": mse == 0}
-        row["invalid"] = sum(broken for _, broken in errors)
-        row["psnr_covered_db"] = _psnr_of_covered(pairs, covered)
+            self._reference_columns[case.reference] = _reference_columns(exact, covered)
+        pairs = list(zip(frames, exact, strict=True))
+        row = self._reference_columns[case.reference] | image_figures(frames, exact)
+        row |= {"exact": row["mse"] == 0, "psnr_covered_db": _psnr_of_covered(pairs, covered)}
         # Where the G-buffer has a size of its own, its pixels are not the reference's.
         if case.pipeline.has_gbuffer and case.plan.scale == 1 and frames[0].normals is not None:
             has_kind = "kind" in case.plan.layout.components
-            apart = [_normal_error(one, other, has_kind) for one, other in pairs]
+            apart = [_normal_error(frame, other, has_kind) for frame, other in pairs]
             row["normal_psnr_db"] = psnr_db(float(np.mean(apart)))
         return row
+
+    def worst(self, case: Case) -> Worst | None:
+        """Return the normal of a case's first frame that its G-buffer gives back farthest off; None without one."""
+        try:
+            return _farthest(self.frames(case)[0], self.reference(case)[0])
+        except UNMEASURABLE:
+            return None
+
+
+def _drawn_images(made: Rendering, pipeline: Pipeline, repeats: int) -> Drawn:
+    made.draw()
+    normals = kinds = None
+    if pipeline.has_gbuffer and made.frame.plan.surface_samples == 1:
+        position, direction, *_ = made.gbuffer()
+        normals, kinds = direction[..., :3], np.where(position[..., 2] != 0, direction[..., 3], -1).astype(np.int32)
+    image = made.image()
+    return Drawn(image, normals, kinds, times=time_columns(*made.timings(repeats)) if repeats else {})
 
 
 def _reference_columns(reference: list[Drawn], covered: list[np.ndarray]) -> Row:
@@ -307,25 +228,6 @@ def _normal_error(one: Drawn, other: Drawn, has_kind: bool) -> float:
     return float(np.mean((one.normals[compared].astype(np.float64) - other.normals[compared]) ** 2))
 
 
-def described(pipeline: Pipeline, plan: Plan, setting: Setting, asked: int) -> Row:
-    """What a row says of how it was rendered; what makes no difference to the pipeline is None."""
-    kept = pipeline.has_gbuffer
-    return {
-        "pipeline": pipeline.name,
-        "layout": plan.layout.name if kept else None,
-        "light_buffer": plan.light_buffer.name if kept else None,
-        "light_targets": plan.light_targets if kept else None,
-        "scale": plan.scale if pipeline.scaled else None,
-        "objects": setting.objects,
-        "lights": setting.lights,
-        "shadow": plan.shadows,
-        "size": f"{plan.size[0]}x{plan.size[1]}",
-        "samples": plan.samples,
-        "samples_asked": asked,
-        "seed": setting.seed,
-    }
-
-
 def _case_columns(case: Case) -> Row:
     plan, pipeline = case.plan, case.pipeline
     row = described(pipeline, plan, case.setting, case.asked)
@@ -364,14 +266,6 @@ def _is_exact_but_for_normals(case: Case) -> bool:
     """Whether a code lies in the exact layout, whose bytes nobody asked about."""
     layout, exact = case.plan.layout, LAYOUTS["fp32"]
     return case.pipeline.has_gbuffer and layout.name == exact.name and layout != exact
-
-
-def _time_columns(made: Rendering, repeats: int) -> Row:
-    if not repeats:
-        return {}
-    timings, clock = made.timings(repeats)
-    row: Row = {f"ms_{name}": timing.median for name, timing in timings.items()}
-    return row | {"ms_frame_spread": timings["frame"].spread, "clock": clock}
 
 
 def shown_scene(row: Row) -> str:

@@ -17,25 +17,23 @@ from ....gbuffer.pipelines import PIPELINES
 from ....gbuffer.scenes.catalogue import SceneMaker
 from ....gbuffer.scenes.scene import Scene
 from ...ground.choose import choose, choose_one
-from ...ground.machine.devices import require_device, require_jax
-from ...ground.options.counts import MAX_REPEATS, in_range
+from ...ground.options.counts import in_range
 from ...ground.options.effect_names import effects_named, lacking, name_of, pipeline_with
 from ...ground.options.scene_names import powers_named
 from ...ground.options.targets import SHADOWS, TARGETS, check_scale, checked_setting, checked_target, what_is_left
 from ...ground.output.errors import UsageError, tell
-from ...ground.output.writing import check_folder, without
-from ...measures.metrics.images import require_flip
+from ...ground.output.writing import without
 from ...subjects.codecs.kinds.named import light_codecs_named
 from ...subjects.codecs.layout_names import layouts_named
 from ...subjects.codecs.names import codecs_named
 from ...subjects.environments.scenes_under import scenes_under
 from ...subjects.scenes.scene_names import scene_makers_named
 from ..plans import suited, with_codecs
-from ..shots import Shot, by_shots
+from ..shots import by_shots, checked_device, described, says_little, shot_steps
 from ..table import Measured, Row, Sheet, Step, Work
 from . import pictures
 from .charts import charts
-from .measure import Bench, Case, described, in_order, ranked, says_little, shown_scene
+from .measure import Case, RenderBench, in_order, ranked, shown_scene
 from .table import TABLE, RenderOptions, RenderOutputs
 
 MAX_FRAMES = 1000
@@ -73,7 +71,6 @@ def cases(options: RenderOptions, device: Device) -> list[Case]:
     in_range("--frames", options.frames, 0, MAX_FRAMES)
     size, samples = checked_target(options.size, options.samples, max(options.frames, 1), device)
     setting = checked_setting(options.objects, options.lights, options.seed)
-    in_range("--repeats", options.repeats, 0, MAX_REPEATS)
     check_scale(options.scale)
     in_range("--least-roughness", options.least_roughness, 0.0, 1.0)
     plans = [
@@ -147,15 +144,9 @@ def _exposure(asked: str | None, maker: SceneMaker) -> float | None:
 
 
 def _steps(options: RenderOptions, outputs: RenderOutputs) -> list[Step]:
-    require_jax()
-    device = require_device()
-    if options.flip:
-        require_flip()
-    made = cases(options, device)
-    if outputs.images:
-        check_folder(outputs.images)
-    bench = Bench(device, options.repeats, options.flip)
-    return [Step(_key(case, options), Shot(bench, case, outputs.images), case.name) for case in made]
+    device = checked_device(options.repeats, is_flip_wanted=options.flip)
+    bench = RenderBench(device, options.repeats, options.flip)
+    return shot_steps(bench, cases(options, device), outputs.images, lambda case: _key(case, options))
 
 
 def _key(case: Case, options: RenderOptions) -> Row:

@@ -10,7 +10,8 @@ from ....gbuffer.pipelines import Pipeline
 from ....gbuffer.render import rendering
 from ....gbuffer.scenes.catalogue import SCENES
 from ....gbuffer.scenes.setting import Setting
-from ..render.measure import STAGES, Row, described
+from ..shots import STAGES, described, time_columns
+from ..table import Row
 from .table import TABLE
 
 
@@ -46,8 +47,7 @@ def measure(device: Device, point: Point) -> Row:
     with rendering(device, point.pipeline, scene, point.plan) as made:
         timings, clock = made.timings(point.repeats)
         triangles = made.triangles()
-    for name, timing in timings.items():
-        row |= {f"ms_{name}": timing.median, f"ms_{name}_spread": timing.spread}
+    row |= time_columns(timings, clock) | {f"ms_{name}_spread": timing.spread for name, timing in timings.items()}
     row["ms_frame_each"] = " ".join(f"{sample:.4f}" for sample in timings["frame"].samples)
     row |= {f"triangles_{name}": count for name, count in triangles.items()}
-    return row | {"triangles": sum(triangles.values()), "clock": clock}
+    return row | {"triangles": sum(triangles.values())}

@@ -6,7 +6,7 @@ from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device
 from ....gbuffer.pipelines import PIPELINES
 from ...ground.choose import choose
-from ...ground.options.counts import MAX_OBJECTS, MAX_REPEATS, checked_numbers, in_range
+from ...ground.options.counts import MAX_OBJECTS, checked_numbers
 from ...ground.options.targets import (
     SHADOWS,
     TARGETS,
@@ -33,7 +33,6 @@ def points(options: SweepOptions, device: Device) -> list[Point]:
     auto = SOFTWARE_SIZE if device.is_software else SIZE
     size, samples = checked_target(auto if options.size == "auto" else options.size, options.samples, 1, device)
     check_scale(options.scale)
-    in_range("--repeats", options.repeats, 1, MAX_REPEATS)
     pipelines = choose("pipeline", options.pipeline, PIPELINES)
     # Read once: a layout's own encoder is looked at, which takes seconds.
     asked = None if options.layout is None else layouts_named(options.layout)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from ...ground.machine.devices import require_device, require_jax
 from ...ground.output.writing import without
+from ..shots import checked_device
 from ..table import Measured, Row, Sheet, Step, Tick, Work
 from . import measure
 from .charts import charts
@@ -14,8 +14,7 @@ from .table import TABLE, SweepOptions, SweepOutputs
 
 
 def _steps(options: SweepOptions, _: SweepOutputs) -> list[Step]:
-    require_jax()
-    device = require_device()
+    device = checked_device(options.repeats, least=1)
     made = points(options, device)
     return [Step(point.key(device), (device, point), point.name) for point in made]
 

@@ -14,7 +14,7 @@ from normalbench.bench.measures.metrics.totals import psnr_db
 from normalbench.bench.run.measuring import Nothing, asked, measured
 from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.bench.tables.effects import work as effects_work
-from normalbench.bench.tables.effects.measure import Bench, drawn_at, in_order, moved_percent
+from normalbench.bench.tables.effects.measure import EffectsBench, drawn_at, in_order, moved_percent
 from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.catalogue import LIGHT_BUFFERS
 from normalbench.gbuffer.frame.plan import Plan
@@ -122,7 +122,7 @@ def test_a_scene_is_made_once_for_all_rows_of_it(gl):
     options = {"effect": EFFECT, "size": "96x72", "lights": 2, "storage": "rg8,rgb10a2", "depth": "none"}
     cases = effects_work.cases(TABLES["effects"].options(**options, encoding="octahedral"), gl)
     maker = replace(cases[0].maker, make=room)
-    bench = Bench(gl, repeats=0, rays=0, with_flip=False)
+    bench = EffectsBench(gl, repeats=0, rays=0, with_flip=False)
     rows = [bench.measure(replace(case, maker=maker))[0] for case in cases]
     assert [row["storage"] for row in rows] == ["rg8", "rgb10a2"] and made == [Setting(lights=2)]
 

@@ -12,10 +12,10 @@ from written import as_document
 
 from normalbench.bench.measures.metrics import images as image_metrics
 from normalbench.bench.tables.registry import TABLES
-from normalbench.bench.tables.render import measure as rendering
-from normalbench.bench.tables.render.measure import STAGES
+from normalbench.bench.tables.render.measure import SAME, RenderBench, ranked
 from normalbench.bench.tables.render.table import RenderOptions
 from normalbench.bench.tables.render.work import cases
+from normalbench.bench.tables.shots import STAGES
 from normalbench.encodings.catalogue import ENCODINGS, LIGHT_BUFFERS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
@@ -69,9 +69,9 @@ def test_rows_say_what_was_rendered_and_how_far_it_is_off(run):
 
 def test_ranks_are_those_of_new_rows():
     """Rows that are kept stay as they were measured."""
-    about = dict.fromkeys(rendering.SAME)
+    about = dict.fromkeys(SAME)
     rows = [about | {"psnr_db": db, "normal_psnr_db": db} for db in (40.0, 50.0)]
-    assert [row["rank"] for row in rendering.ranked(rows)] == [2, 1] and not any("rank" in row for row in rows)
+    assert [row["rank"] for row in ranked(rows)] == [2, 1] and not any("rank" in row for row in rows)
 
 
 def test_rows_stand_by_bits_and_then_the_best_first(run):
@@ -196,11 +196,22 @@ def test_two_layouts_with_two_encoders_of_one_name_are_measured_each(gl):
     encodings += [replace(encoding, name="mine", functions=encoding.prefix) for encoding in encodings]
     (case,) = cases(RenderOptions(size="64x48", lights=4, scene="room", pipeline="deferred", encoding="xy"), gl)
     layouts = [LAYOUTS["fp32"].with_codec(Codec(encoding, STORAGES["rgba8"])) for encoding in encodings]
-    bench = rendering.Bench(gl, 0, False)
+    bench = RenderBench(gl, 0, False)
     rows = [bench.measure(replace(case, plan=replace(case.plan, layout=layout)))[0] for layout in layouts]
     assert [row["encoding"] for row in rows] == ["xyz", "octahedral", "mine", "mine"]
     xyz, octahedral, *mine = (row["normal_psnr_db"] for row in rows)
     assert mine == [xyz, octahedral] and xyz != octahedral
+
+
+def test_a_measured_exposure_does_not_depend_on_the_rows_before(gl):
+    """A forward pipeline's covered pixels come from the G-buffer that is also the hybrid pipeline's reference."""
+    options = {"size": "64x48", "lights": 4, "scene": "gloss", "encoding": "xy", "exposure": "auto"}
+    exposures = []
+    for names in ("forward,hybrid", "hybrid"):
+        bench = RenderBench(gl, 0, False)
+        rows = [bench.measure(case)[0] for case in cases(RenderOptions(**options, pipeline=names), gl)]
+        exposures.append(rows[-1]["exposure"])
+    assert exposures[0] == exposures[1] != 0
 
 
 def test_flip_is_measured_where_it_is_asked_for(run):

@@ -16,7 +16,7 @@ from PIL import Image
 from normalbench.bench.door.cli import app as cli
 from normalbench.bench.run.measuring import beside
 from normalbench.bench.tables.registry import TABLES
-from normalbench.bench.tables.render.measure import STAGES
+from normalbench.bench.tables.shots import STAGES
 from normalbench.bench.tables.sweep import measure as sweep
 from normalbench.bench.tables.sweep.charts import charts, frame_label
 from normalbench.gbuffer.scenes.catalogue import SCENES
