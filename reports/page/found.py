@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..charts.pareto import Error, Panel
+from ..charts.pareto import Panel
 from ..sheets import Row
 from .codec_key import CodecKey
 from .live import Live
@@ -29,9 +29,9 @@ class SphereMap:
 
 @dataclass(frozen=True)
 class Front:
-    """Cost against error: panels for each GPU family."""
+    """Cost against error: panels for each GPU family, and what the decibels are of."""
 
-    error: Error
+    label: str
     panels: Sequence[Panel]
 
 

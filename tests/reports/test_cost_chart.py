@@ -16,7 +16,7 @@ from normalbench.bench.tables.cost.charts import HEIGHT, front_chart
 from normalbench.bench.tables.registry import TABLES
 from normalbench.reports.charts import wire
 from normalbench.reports.charts.chart import Axis, Scale, lines_apart
-from normalbench.reports.charts.pareto import Panel, Point, decibels
+from normalbench.reports.charts.pareto import Panel, Point
 
 # Instructions to encode and to decode (normalbench cost --isa --family navi31,dg2), and PSNR in rgba8 (quality).
 CODECS = {
@@ -50,8 +50,7 @@ def test_names_far_apart_stand_beside_their_points():
 
 def test_the_dearest_codec_leaves_the_others_room():
     """octahedral_precise takes 120 instructions where the others take up to 15: they have over a third of the axis."""
-    panel = Panel("encode", "instructions", points(), is_counted=True)
-    chart = front_chart("cost-0", "Instructions", [panel], decibels("PSNR"))
+    chart = front_chart("cost-0", "PSNR", [Panel("encode", points())])
     ((_, part),) = chart.parts()
     assert part.x.share(15) - part.x.share(0) > 0.35
     (panel,) = wire.spec(chart)["panels"]
@@ -59,25 +58,22 @@ def test_the_dearest_codec_leaves_the_others_room():
 
 
 def test_one_chart_has_a_switch_between_gpus_and_one_alone_has_none():
-    panels = [
-        Panel(f"encode on {name}", "instructions", points(at), "encode", name, is_usual=name == "dg2")
-        for at, name in enumerate(FAMILIES)
-    ]
-    made = wire.spec(front_chart("cost-0", "Instructions", panels, decibels("PSNR")))
+    panels = [Panel("encode", points(at), name, is_usual=name == "dg2") for at, name in enumerate(FAMILIES)]
+    made = wire.spec(front_chart("cost-0", "PSNR", panels))
     assert made["switch"]["values"] == list(FAMILIES) and made["switch"]["usual"] == "dg2"
     (panel,) = made["panels"]
     assert set(panel["tables"][-1]["machine"]["names"]) == set(FAMILIES)
-    alone = wire.spec(front_chart("cost-0", "Instructions", [Panel("encode on navi31", "i", points())], decibels("P")))
-    assert not alone["switch"] and alone["panels"][0]["name"] == "encode on navi31"
+    alone = wire.spec(front_chart("cost-0", "PSNR", panels[:1]))
+    assert not alone["switch"] and alone["panels"][0]["name"] == "encode"
 
 
 def test_a_file_and_the_page_show_the_same_of_the_usual_gpu(agree):
     panels = [
-        Panel("", "instructions", points(at, side), kind, name, is_counted=True, is_usual=name == "dg2")
+        Panel(kind, points(at, side), name, is_usual=name == "dg2")
         for at, name in enumerate(FAMILIES)
         for side, kind in enumerate(("encode", "decode"))
     ]
-    shown = agree(front_chart("cost-0", "Instructions", panels, decibels("PSNR")))
+    shown = agree(front_chart("cost-0", "PSNR", panels))
     assert [panel.marks["points"] for panel in shown] == [5, 5]
 
 

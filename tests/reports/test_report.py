@@ -367,8 +367,8 @@ def test_charts_of_odd_rows_keep_their_lines_apart_and_are_read_by_a_browser():
     chart = image_chart(0, "gloss", [image | {"layout": name} for name in ("thin", "wide")])
     assert chart.y.names == ("xy rgba8 thin", "xy rgba8 wide")
     made.append(wire.spec(chart))
-    panel = pareto.Panel('$x"', "instructions", [pareto.Point("xy", math.inf, 40.0, 16, codec="xy rgba8")])
-    front = front_chart("cost-0", HOSTILE, [panel], pareto.decibels('PSNR of "a\\"'))
+    panel = pareto.Panel('$x"', [pareto.Point("xy", math.inf, 40.0, 16, codec="xy rgba8")])
+    front = front_chart("cost-0", HOSTILE, [panel])
     json.dumps([*made, wire.spec(front)], allow_nan=False)
 
 

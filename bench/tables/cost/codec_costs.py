@@ -28,10 +28,9 @@ class Where:
 
 @dataclass(frozen=True)
 class Total:
-    """A sum, how wide the interval is that it is known to lie in, and whether it counts both sides of a branch."""
+    """A sum, and whether it counts both sides of a branch."""
 
     cost: float
-    spread: float
     branches: bool
 
 
@@ -49,9 +48,7 @@ class Costs:
         """
         rows = [(sign, self._known_row(key, column)) for sign, key in self._parts(codec, where, operation)]
         cost = sum(sign * row[column] for sign, row in rows)
-        return Total(
-            cost, sum(row.get("spread") or 0.0 for _, row in rows), any(row.get("branches") for _, row in rows)
-        )
+        return Total(cost, any(row.get("branches") for _, row in rows))
 
     def _parts(self, codec: Codec, where: Where, operation: str) -> list[tuple[int, tuple[Any, ...]]]:
         """The keys of the rows that add up to it, each with its sign."""

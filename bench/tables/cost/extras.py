@@ -16,7 +16,7 @@ from ....encodings.codecs.variants import MARK
 from ....encodings.storages.rules import storage_of
 from ....encodings.storages.storage import Storage
 from ....reports.charts.looks import as_text
-from ....reports.charts.pareto import Panel, Point, decibels
+from ....reports.charts.pareto import Panel, Point
 from ....reports.page.codec_key import CodecKey
 from ....reports.page.found import Front, Listing, plain_text
 from ....reports.page.verdict import BACKENDS, LEADING, is_number
@@ -67,7 +67,7 @@ def _fronts(tables: Mapping[str, Sequence[Row]], usual: str, remarks: list[str])
         errors = _errors([row for row in rows if str(row.get(by)) == where], lost)
         panels = list(_panels(costs, errors, usual, lost))
         if panels:
-            yield Front(decibels(f"PSNR of {what} {as_text(where)}"), panels)
+            yield Front(f"PSNR of {what} {as_text(where)}", panels)
     if costs:
         remarks += [f"No place in cost against error, for {why}: {', '.join(names)}." for why, names in lost.items()]
 
@@ -125,10 +125,7 @@ def _panels(
         for operation in OPERATIONS:
             points = list(_points(rows, operation, errors, lost))
             if points:
-                title = f"{operation}: instructions for {machine}, {usual_stage(family)} shaders"
-                unit = "instructions, with its storage's"
-                about = {"kind": operation, "machine": machine, "is_counted": True, "is_usual": family == usual}
-                yield Panel(title, unit, points, **about)
+                yield Panel(operation, points, machine, is_usual=family == usual)
 
 
 def _points(

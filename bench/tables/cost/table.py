@@ -8,7 +8,7 @@ from typing import Annotated
 
 from ....reports.sheets import View
 from ...ground.options.gpu_families import CHOICES, titled
-from ...ground.options.option import Arithmetics, Encodings, Option, Plot, Seed
+from ...ground.options.option import Arithmetics, Encodings, Option
 from ...shaders.languages.source_options import SourceOptions
 from .. import shared_columns as shared
 from ..quality.table import COMMON
@@ -46,12 +46,6 @@ class CostOptions(SourceOptions):
         Option("--size", "WIDTHxHEIGHT of the target that is timed. Default: 64x64 in software, or 1024x1024."),
     ] = None
     repeats: Annotated[int, Option("--repeats", "Repetitions that medians are taken over.")] = 9
-    count: Annotated[int, Option("--count", "--plot: normals in uniform sets.")] = 2**20
-    seed: Seed = 0
-    normals: Annotated[
-        str, Option("--normals", "--plot: normal sets, comma-separated, or all; `normalbench list` shows them.")
-    ] = "playground"
-    error: Annotated[str, Option("--error", "--plot: psnr, mean or max, the largest angle.")] = "psnr"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,7 +55,6 @@ class CostOutputs:
     disassembly: Annotated[
         Path | None, Option("--disassembly", "Write what each family's compiler made into this folder.")
     ] = None
-    plot: Plot = None
 
 
 def _count_column(name: str, says: str, drops: int = 0) -> Column:

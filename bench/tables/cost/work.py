@@ -12,15 +12,12 @@ from pathlib import Path
 from typing import Any
 
 from ....encodings.codecs.encoding import Encoding
-from ....encodings.storages.storage import STORAGES, Storage
 from ....gbuffer.defines.kernels import STAGES
 from ....gbuffer.defines.packings import PACKINGS, Packing, packings_of
-from ....reports.charts import pareto
 from ....reports.charts.chart import Chart
 from ...ground.choose import choose
 from ...ground.options import gpu_families as families
-from ...ground.options import listing
-from ...ground.options.counts import MAX_REPEATS, check_seed, checked_count, in_range
+from ...ground.options.counts import MAX_REPEATS, in_range
 from ...ground.options.storage_names import storages_said
 from ...ground.output.errors import MissingError, UsageError
 from ...ground.output.writing import check_folder, whole_file
@@ -91,22 +88,10 @@ class Costing:
         """The kernels that rows were counted in, by the rows' names; once they are counted."""
         return {TABLE.name_of(row): text for row, text in self.listed if text}
 
-    @property
-    def drawn_storages(self) -> list[Storage]:
-        """The storages whose error can be measured. Raises UsageError where none is."""
-        found = dict.fromkeys(packing.storage for packing in self.packings if packing.storage)
-        if not found:
-            raise UsageError(f"--plot needs a storage whose error is measured; known: {', '.join(STORAGES)}")
-        return list(found)
-
 
 def costing(options: CostOptions) -> Costing:
     """What the options name. Raises UsageError for what is unknown or out of range."""
     in_range("--repeats", options.repeats, 2, MAX_REPEATS)
-    checked_count(options.count)
-    check_seed(options.seed)
-    choose("error", options.error, pareto.ERRORS)
-    choose("normal set", options.normals, listing.NORMAL_SETS)
     made = Costing(
         options,
         _encodings(options),
@@ -154,8 +139,6 @@ def _check(asked: Costing, outputs: CostOutputs) -> None:
         check_folder(outputs.disassembly)
         if "isa" not in chosen:
             raise UsageError("--disassembly is of what compilers make; ask for --isa")
-    if outputs.plot:
-        _ = asked.drawn_storages
 
 
 @dataclass(frozen=True, eq=False)
@@ -261,20 +244,10 @@ def _write(done: Measured, _: Tick) -> None:
         write_sources(done.outputs.disassembly / SOURCES, done.steps[0].case.asked.encodings)
 
 
-def _plotted(done: Measured) -> Iterable[Chart]:
-    from ...subjects.normals.normal_sets import NORMAL_SETS
-    from .plot import charts
-
-    options, asked = done.options, done.steps[0].case.asked
-    sets = [make(options.count, options.seed) for make in choose("normal set", options.normals, NORMAL_SETS)]
-    return charts(done.rows, asked.encodings, asked.drawn_storages, sets, options.error)
-
-
 def _front_charts(found: Any) -> Iterator[Chart]:
-    """Instructions against each error of a run."""
+    """Draw instructions against each error of a run."""
     for at, front in enumerate(found.extras.get("fronts", ())):
-        subtitle = f"Instructions against {front.error.label.removesuffix(', dB')}"
-        yield front_chart(f"cost-{at}", subtitle, front.panels, front.error)
+        yield front_chart(f"cost-{at}", front.label, front.panels)
 
 
 def _listing(step: Step, row: Row) -> str | None:
@@ -317,7 +290,6 @@ WORK = Work(
     summary=_summary,
     warnings=_warnings,
     write=_write,
-    plotted=_plotted,
     joined=_front_charts,
     listing=_listing,
     lacking=_lacking,
