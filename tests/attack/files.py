@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import os
-import struct
 import zlib
 from collections.abc import Callable
 from functools import partial
@@ -46,12 +45,7 @@ from .kind import MEASURED, Attack, Kind, one_line
 
 ENDINGS = {"png16": "png", "png8": "png", "tiff": "tif", "float tiff": "tif"}
 PIXELS = ("png16", "png8", "npy", "exr", "tiff", "float tiff", "dds", "hdr", "webp")
-OFF = "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n"
-# In which changes may be harmless: most of it is a name and digits.
-CORNERS = "".join(f"vertex {x:.9f} {y:.9f} 0.000000000\n" for x, y in ((0, 0), (1, 0), (0, 1)))
-FACET = f"facet normal 0.000000000 0.000000000 1.000000000\nouter loop\n{CORNERS}endloop\nendfacet\n"
-STL = f"solid {'a name that says nothing of the shape ' * 3}\n{FACET}endsolid\n"
-MESHES = ("glb", "gltf", "gltf values", "obj", "mtl", "ply", "little ply", "big ply", "off", "text stl", "stl")
+MESHES = ("glb", "gltf", "gltf values", "obj", "mtl", "ply", "little ply", "big ply")
 TUNED = "best_fit"
 
 
@@ -128,9 +122,6 @@ def mesh_files(folder: Path) -> dict[str, bytes]:
         "gltf": document.write(folder / "x.gltf", "data").read_bytes(),
         "obj": OBJ.replace("mtllib", "mtllib colours.mtl\nmtllib").encode(),
         "mtl": b"newmtl red\nKd 1 0 0\nKs 0.5\nNs 4000\nd 0.5\nmap_Kd a.png\n",
-        "off": OFF.encode(),
-        "text stl": STL.encode(),
-        "stl": bytes(80) + struct.pack("<I", 2) + 2 * struct.pack("<12fH", 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 7),
         "ply": ply("ascii", faces, ball.positions, ball.normals),
         "little ply": ply("binary_little_endian", faces, ball.positions, ball.normals),
         "big ply": ply("binary_big_endian", [*faces, [0, 1, 2, 3]], ball.positions, ball.normals),

@@ -75,21 +75,6 @@ def obj(path: Path, count: int) -> None:
         np.savetxt(file, faces + 1, "f %d %d %d")
 
 
-def off(path: Path, count: int) -> None:
-    vertices, faces = grid(count)
-    with path.open("w") as file:
-        file.write(f"OFF\n{len(vertices)} {len(faces)} 0\n")
-        np.savetxt(file, vertices, "%.5f")
-        np.savetxt(file, faces, "3 %d %d %d")
-
-
-def stl(path: Path, count: int) -> None:
-    vertices, faces = grid(count)
-    records = np.zeros(len(faces), [("n", "<3f4"), ("v", "<9f4"), ("x", "<u2")])
-    records["v"] = vertices[faces].reshape(-1, 9)
-    path.write_bytes(bytes(80) + len(faces).to_bytes(4, "little") + records.tobytes())
-
-
 def text_ply(path: Path, count: int) -> None:
     vertices, faces = grid(count)
     path.write_bytes(ply("ascii", faces.tolist(), vertices.astype(np.float32), vertices.astype(np.float32)))
@@ -141,8 +126,6 @@ READERS: dict[str, tuple[str, int, Write, Read]] = {
     "exr": (".exr", 30_000, exr, read_capture),
     "tiff": (".tif", 30_000, lambda p, n: write_image(p, square(n, np.uint16)), read_capture),
     "obj": (".obj", 1000, obj, read_mesh_file),
-    "off": (".off", 1000, off, read_mesh_file),
-    "stl": (".stl", 1000, stl, read_mesh_file),
     "ply": (".ply", 1000, text_ply, read_mesh_file),
     "rows": ("", 1000, rows, read_run),
     "baseline": (".json", 100, baseline, read_baseline),

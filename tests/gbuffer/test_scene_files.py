@@ -242,42 +242,6 @@ def test_files_of_another_program_are_read_as_it_reads_them(tmp_path, ending):
     assert np.allclose(file.baked.normals[own], normals[order], atol=1e-6)
 
 
-@pytest.mark.parametrize("name", ["a.stl", "text.stl", "a.off"])
-def test_stl_and_off_as_another_program_writes_them(tmp_path, name):
-    """Positions to what is written of them; an STL's corners have their facet's normal, an OFF has none."""
-    ball = trimesh.creation.icosphere(2)
-    data = ball.export(file_type="stl_ascii" if name == "text.stl" else name[-3:])
-    (tmp_path / name).write_bytes(data.encode() if isinstance(data, str) else data)
-    file = read_mesh_file(tmp_path / name)
-    made = file.baked
-    assert np.allclose(made.positions[made.triangles], ball.triangles, atol=1e-6)
-    if "stl" in name:
-        assert np.allclose(made.normals[made.triangles], ball.face_normals[:, None], atol=1e-6) and file.notes == ()
-    else:
-        assert file.notes == ("there are meshes without normals: smooth ones were made",)
-
-
-def test_a_text_stl_may_have_several_solids_any_letters_and_any_spaces(tmp_path):
-    facet = (
-        "FACET NORMAL 0 0 1\n OUTER LOOP\n  vertex 0 0 {0}\r\n  Vertex 1 0 {0} VERTEX\t0 1e0 {0}\nendloop endfacet\n"
-    )
-    text = f"solid facet normal\n{facet.format(0)}endsolid\n\nSolid\n{facet.format(-2.5)}ENDSOLID vertex\n"
-    (tmp_path / "a.stl").write_text(text)
-    made = read_mesh_file(tmp_path / "a.stl").baked
-    assert made.triangles.tolist() == [[0, 1, 2], [3, 4, 5]] and np.all(made.normals == (0, 0, 1))
-    assert made.positions.tolist() == [[x, y, z] for z in (0, -2.5) for x, y in ((0, 0), (1, 0), (0, 1))]
-
-
-def test_off_polygons_comments_and_colours_are_read(tmp_path):
-    text = "COFF # a comment\n5 2 0\n# another\n" + "".join(f"{x} {y} 0 255 0 0\n" for x, y in PENTAGON)
-    (tmp_path / "a.off").write_text(text + "\n5 0 1 2 3 4 0.5\n3 0 2 1\n")
-    made = read_mesh_file(tmp_path / "a.off").baked
-    assert made.triangles.tolist() == [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 2, 1]]
-
-
-PENTAGON = [(0, 0), (2, 0), (3, 2), (1, 3), (-1, 2)]
-
-
 # Cameras and pictures
 
 

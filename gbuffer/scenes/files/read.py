@@ -18,28 +18,23 @@ from ..setting import Setting, coloured
 from .gltf import gltf_meshes, read_gltf
 from .mesh_file import MeshFile, Piece, Stored
 from .obj import obj_meshes, read_obj
-from .off import read_off
 from .ply import ply_meshes, read_ply
-from .stl import read_stl, stl_meshes
 
 READERS: Mapping[str, Callable[[Path], MeshFile]] = MappingProxyType(
     {
         ".glb": read_gltf,
         ".gltf": read_gltf,
         ".obj": read_obj,
-        ".off": read_off,
         ".ply": read_ply,
-        ".stl": read_stl,
     }
 )
-# What files say of their meshes, before anything is made up for a picture; OFF has no normals.
+# What files say of their meshes, before anything is made up for a picture.
 MESHES: Mapping[str, Callable[[Path], list[Stored]]] = MappingProxyType(
     {
         ".glb": gltf_meshes,
         ".gltf": gltf_meshes,
         ".obj": obj_meshes,
         ".ply": ply_meshes,
-        ".stl": stl_meshes,
     }
 )
 FRAMES = 1

@@ -67,7 +67,6 @@ def test_a_cloud_without_normals_is_refused_as_before(tmp_path):
         (("frames", "--frames"), "mine.glb"),
         (("render", "--scene"), "mine.glb"),
         (("render", "--scene"), "mine.obj"),
-        (("render", "--scene"), "mine.stl"),
         (("render", "--layout"), "mine.toml"),
         (("check",), "mine.toml"),
     ],

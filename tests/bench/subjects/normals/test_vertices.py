@@ -101,12 +101,9 @@ def test_normals_of_no_length_and_nan_are_left_out_and_counted(tmp_path, run):
 
 
 def test_each_kind_of_mesh_file_gives_its_normals(tmp_path):
-    """An OBJ file's two materials share vertices; an STL file's are of its facets; PLY in any order of bytes."""
+    """An OBJ file's two materials share vertices; PLY in any order of bytes."""
     (tmp_path / "a.obj").write_text(OBJ.replace("vn 0 0 2", "vn 0 3 4"))
     assert sorted_rows(vertices(tmp_path / "a.obj")[1]).tolist() == [[0, 0.6, 0.8]] * 4
-    square = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
-    (tmp_path / "a.stl").write_text(f"solid a\n{square}{square}endsolid a\n")
-    assert vertices(tmp_path / "a.stl")[1].tolist() == [[0, 0, 1]] * 3
     for order in ("ascii", "binary_little_endian", "binary_big_endian"):
         (tmp_path / "a.ply").write_bytes(ply(order, BALL.triangles.tolist(), BALL.positions, BALL.normals))
         # The poles are one vertex for all slices, and the last meridian is the first.
