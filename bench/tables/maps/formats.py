@@ -7,16 +7,16 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
+from PIL import Image
 
-from ....encodings.storages.blocks.bits import SIDE
-from ....encodings.storages.blocks.bptc import ONE, decode_bc7
+from ....encodings.storages.blocks.bits import SIDE, TEXELS
 from ....encodings.storages.blocks.eac import decode_rg11
 from ....encodings.storages.blocks.rgtc import decode_bc5
 from .encoders import ASTC, BC7, NONE, QUICKTEX, RG11, Encoder
 
 # Blocks that are decoded at once, for memory's sake.
 TOGETHER = 2**14
-CHANNELS = "rgba"
+CHANNELS, ONE = "rgba", 255
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,8 @@ class BlockFormat:
 
 
 def _bc7_texels(blocks: np.ndarray) -> np.ndarray:
-    return decode_bc7(blocks).astype(np.float32) / np.float32(ONE)
+    image = Image.frombytes("RGBA", (SIDE, SIDE * len(blocks)), blocks.tobytes(), "bcn", (7,))
+    return np.asarray(image, np.float32).reshape(-1, TEXELS, len(CHANNELS)) / np.float32(ONE)
 
 
 FORMATS: Mapping[str, BlockFormat] = MappingProxyType(
