@@ -127,7 +127,6 @@ class Sheet:
         said: paragraphs above them, the first of which is the answer.
         aside: paragraphs after those that say what is not part of the answer; a page folds them.
         keys: what the title says of every row, by column.
-        folded: whether a page shows it only when asked for.
     """
 
     title: str
@@ -137,4 +136,3 @@ class Sheet:
     said: tuple[str, ...] = ()
     aside: tuple[str, ...] = ()
     keys: Mapping[str, Any] = field(default_factory=dict)
-    folded: bool = False

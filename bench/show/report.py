@@ -11,7 +11,7 @@ from typing import Any
 
 from ...encodings.catalogue import ENCODINGS
 from ...reports.charts import drawings, wire
-from ...reports.page import embedded, markdown, page, several
+from ...reports.page import embedded, markdown, page
 from ...reports.page.found import Found, plain_text
 from ...reports.page.live import Live
 from ...reports.page.pixels import Subject, film_uri
@@ -24,7 +24,6 @@ from ..ground.output.errors import UsageError
 from ..ground.output.replacing import PAGE as MARK
 from ..ground.output.sources import sources
 from ..ground.output.writing import check_folder, check_page, check_writable, files_of, say, whole_file, write_text
-from ..keep import side_by_side
 from ..keep.runs import Done, Row, read_to_show
 from ..measures.live import checks
 from ..measures.live.kept import read_live
@@ -36,7 +35,6 @@ from ..tables.table import UNEXPECTED, Table
 from .cards import about_codecs
 from .kept_code import read_code
 
-SEVERAL = "runs.html"
 PAGE, CHARTS, PICTURES = "report.html", "charts", "pictures"
 LIVE = "live"
 # How many charts a run keeps as files; `report --charts` writes all of them.
@@ -44,26 +42,21 @@ CHARTS_OF_A_RUN = 3
 
 
 def report_command(
-    folders: Sequence[Path], as_markdown: bool, pictures_beside: bool, charts_beside: bool, output: Path | None
+    folder: Path, as_markdown: bool, pictures_beside: bool, charts_beside: bool, output: Path | None
 ) -> None:
-    """Write a page of a run, a page of several, or a text for a pull request; runs stay as they are.
+    """Write a page of a run, or a text for a pull request; the run stays as it is.
 
     Raises:
-        UsageError: a folder is not a run's, or the page cannot be written.
+        UsageError: the folder is not a run's, or the page cannot be written.
     """
     if output:
         _check_output(output, as_markdown)
-    done = [read_to_show(folder) for folder in folders]
-    if len(folders) > 1:
-        for option, is_asked in (("--pictures", pictures_beside), ("--charts", charts_beside)):
-            if is_asked:
-                raise UsageError(f"{option} is for the page of one run; a page of several compares figures")
-        _report_several(folders, done, as_markdown, output)
-    elif as_markdown:
-        write_text(lambda: markdown.markdown(gathered(folders[0], done[0])), output)
+    done = read_to_show(folder)
+    if as_markdown:
+        write_text(lambda: markdown.markdown(gathered(folder, done)), output)
     else:
         charts = "" if not charts_beside else f"{output.stem}-{CHARTS}" if output else CHARTS
-        say(f"{write_report(folders[0], done[0], output or folders[0] / PAGE, charts, pictures_beside)}\n")
+        say(f"{write_report(folder, done, output or folder / PAGE, charts, pictures_beside)}\n")
 
 
 def _check_output(output: Path, as_markdown: bool) -> None:
@@ -73,20 +66,6 @@ def _check_output(output: Path, as_markdown: bool) -> None:
         check_page(output)
     elif output.suffix.lower() in (".html", ".htm"):
         raise UsageError(f"{output}: --markdown writes text; name it {output.with_suffix('.md')}")
-
-
-def _report_several(folders: Sequence[Path], done: Sequence[Done], as_markdown: bool, output: Path | None) -> None:
-    names = side_by_side.labels([str(plain_text(folder.resolve().name)) for folder in folders])
-    runs = dict(zip(names, map(_cleaned, done), strict=True))
-    if as_markdown:
-        write_text(lambda: several.markdown(names, list(side_by_side.sheets(runs))), output)
-        return
-    target = output or Path(SEVERAL)
-    check_writable(target)
-    made = several.html(names, list(side_by_side.sheets(runs)), list(side_by_side.figures(runs)))
-    with whole_file(target) as partial:
-        partial.write_text(made, encoding="utf-8", newline="\n")
-    say(f"{target}\n")
 
 
 def _cleaned(done: Done) -> Done:

@@ -205,7 +205,6 @@ class Table:
         not_with: an option; where it is given, `run` measures the table only if it is named.
         is_measured_beside: whether `run` measures it in its second process: what takes longer in JAX or compilers than
             on the GL device.
-        parity: figures by which a page of several runs compares GLSL with JAX, on each run's device.
         is_usual: whether a gate or a test that names no table means this one.
         compilers: columns that name the compilers of a row's figures; figures of two versions are not compared.
     """
@@ -230,7 +229,6 @@ class Table:
     asked_by: str = ""
     not_with: str = ""
     is_measured_beside: bool = False
-    parity: tuple[str, ...] = ()
     is_usual: bool = False
     compilers: tuple[str, ...] = ()
 

@@ -19,7 +19,7 @@ from ..charts import spheres
 from ..charts.drawings import Drawing
 from ..charts.wire import Spec
 from ..charts.wire import codecs as drawn_codecs
-from ..sheets import Column, Row, Sheet, View, undefined
+from ..sheets import Column, Row, Sheet, View
 from . import cards, embedded, live
 from .codec_key import CodecKey
 from .data import block
@@ -83,7 +83,6 @@ class Table:
     columns: Sequence[Heading]
     rows: Sequence[Line]
     constants: str
-    folded: bool = False
     said: Sequence[str] = ()
     aside: Sequence[str] = ()
     keys: Mapping[str, Any] = field(default_factory=dict)
@@ -101,11 +100,6 @@ def table(title: str, rows: Sequence[Row], says: Callable[[str], str]) -> Table:
     return sheet_table(Sheet(title, rows), lambda name: Column(name, says(name)))
 
 
-def shown_sheet(sheet: Sheet) -> Table:
-    """A sheet whose columns need no definition."""
-    return sheet_table(sheet, undefined)
-
-
 def sheet_table(sheet: Sheet, column: Callable[[str], Column], encodings: Container[str] = ()) -> Table:
     """A sheet as a table to show.
 
@@ -117,8 +111,7 @@ def sheet_table(sheet: Sheet, column: Callable[[str], Column], encodings: Contai
     shown, constants = tables.without_constants(rows)
     heads = [Heading(column(name), tables.title_of(name), tables.is_numeric(shown, name)) for name in shown[0]]
     numbers = [head.column for head in heads if head.numeric and head.column.better]
-    # Among every row there are several back ends and conditions: the best of them all says nothing.
-    best = set() if sheet.folded else {at for one in numbers for at in _best(shown, rows, one)}
+    best = {at for one in numbers for at in _best(shown, rows, one)}
     lines = [
         Line(
             [_cell(row[head.column.name], head.numeric, (at, head.column.name) in best) for head in heads],
@@ -126,7 +119,7 @@ def sheet_table(sheet: Sheet, column: Callable[[str], Column], encodings: Contai
         )
         for at, (row, one) in enumerate(zip(shown, rows, strict=True))
     ]
-    about = {"folded": sheet.folded, "said": sheet.said, "aside": sheet.aside, "keys": sheet.keys}
+    about = {"said": sheet.said, "aside": sheet.aside, "keys": sheet.keys}
     return Table(sheet.title, heads, lines, constants.replace("_", " "), **about)
 
 

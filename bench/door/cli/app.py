@@ -288,7 +288,7 @@ class PicturePlace(StrEnum):
 
 @app.command(rich_help_panel=Group.KEEP)
 def report(
-    runs: Annotated[list[Path], typer.Argument(help="A results folder; or several, to compare.", metavar="RUN...")],
+    run: Annotated[Path, typer.Argument(help="A results folder.", metavar="RUN")],
     markdown: Annotated[
         bool, typer.Option("--markdown", help="A text for a pull request comment instead, to standard output or -o.")
     ] = False,
@@ -301,18 +301,16 @@ def report(
     ] = False,
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", help="The page. Default: report.html in the folder; runs.html for several."),
+        typer.Option("-o", "--output", help="The page. Default: report.html in the folder."),
     ] = None,
 ) -> None:
     """A run on one page: the answer, tables, pictures, charts, and how each figure was measured. Opens offline.
-
-    Several runs on one page: what differs, on which machines, and every figure side by side.
 
     The run's own files stay as they are.
     """
     from ...show.report import report_command
 
-    report_command(runs, markdown, pictures is PicturePlace.beside, charts, output)
+    report_command(run, markdown, pictures is PicturePlace.beside, charts, output)
 
 
 add_history(app)

@@ -249,7 +249,6 @@ SETS_OF_NAMED = f"{SETS},domain"
 
 TABLE = Table(
     name="quality",
-    parity=("psnr_db", "angle_mean_deg", "angle_max_deg"),
     is_usual=True,
     package=__package__ or "",
     help="What each codec loses of the normals of a set: MSE, PSNR, angles, effective bits.\n\n"
