@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import subprocess
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
@@ -53,29 +53,74 @@ def device_name() -> str:
 @contextmanager
 def prepared(path: Path, interface: Interface) -> Iterator[Run]:
     """The file on the Vulkan device. Raises MissingError, ShaderError."""
+    text = judged_text(_text(path, interface), "wgsl")
     gpu = device()
-    tables = TableGroup(gpu, interface.tables)
-    program = _program(gpu, path, interface, tables.layout)
+    if not interface.is_ours:
+        _try_apart(path, text)
+    program = Program(gpu, str(path), text, interface.tables, 2)
 
     def run(n: np.ndarray, view: np.ndarray, texels: np.ndarray) -> Ran:
-        made, words = _dispatched_rows(gpu, program, tables.group, rows_of(n, view, texels))
-        return ran_of(made, words, interface)
+        given = rows_of(n, view, texels)
+        count = len(given) // GIVEN
+        made, words = program(given, count, [MADE * count * ROW, count * ROW])
+        return ran_of(made.view(np.float32).reshape(-1, 4), words.reshape(-1, 4), interface)
 
     yield run
 
 
-class TableGroup:
-    """Look-up tables as textures of group 0, in the order of their names."""
+class Program:
+    """A compute shader, compiled, with its look-up tables as textures of group 0, in the order of their names.
 
-    def __init__(self, gpu: Any, tables: Mapping[str, np.ndarray]):
+    Args:
+        gpu: the device.
+        name: what a message calls the text.
+        text: has the entry point MAIN, which reads the first buffer of group 1 and writes the others.
+        tables: float32 of shape (height, width, channels).
+        results: how many buffers it writes.
+
+    Raises:
+        ShaderError: it does not compile; one line.
+    """
+
+    def __init__(self, gpu: Any, name: str, text: Text, tables: Mapping[str, np.ndarray], results: int):
         import wgpu
 
-        seen, kind = wgpu.ShaderStage.COMPUTE, {"sample_type": "unfilterable-float"}
-        chosen = [_texture(gpu, tables[name]) for name in sorted(tables)]
-        entries = [{"binding": at, "visibility": seen, "texture": kind} for at in range(len(chosen))]
+        self._gpu, seen = gpu, wgpu.ShaderStage.COMPUTE
+        kinds = ("read-only-storage", *["storage"] * results)
+        chosen, kind = [_texture(gpu, tables[each]) for each in sorted(tables)], {"sample_type": "unfilterable-float"}
+        textures = [{"binding": at, "visibility": seen, "texture": kind} for at in range(len(chosen))]
+        buffers = [{"binding": at, "visibility": seen, "buffer": {"type": kind}} for at, kind in enumerate(kinds)]
         bound = [{"binding": at, "resource": texture.create_view()} for at, texture in enumerate(chosen)]
-        self.layout = gpu.create_bind_group_layout(entries=entries)
-        self.group = gpu.create_bind_group(layout=self.layout, entries=bound)
+        layouts = [gpu.create_bind_group_layout(entries=entries) for entries in (textures, buffers)]
+        self._tables = gpu.create_bind_group(layout=layouts[0], entries=bound)
+        try:
+            module = tools.webgpu_module(gpu, text)
+            layout = gpu.create_pipeline_layout(bind_group_layouts=layouts)
+            compute = {"module": module, "entry_point": MAIN}
+            self._pipeline = gpu.create_compute_pipeline(layout=layout, compute=compute)
+        except wgpu.GPUError as error:
+            raise ShaderError(f"{name}: {_complaint(str(error))}") from error
+
+    def __call__(self, given: np.ndarray, count: int, sizes: Sequence[int]) -> list[np.ndarray]:
+        """Run it for so many rows: what it writes into buffers of these sizes in bytes, as uint32."""
+        import wgpu
+
+        if not count:
+            return [np.zeros(0, np.uint32) for _ in sizes]
+        usage = wgpu.BufferUsage.STORAGE | wgpu.BufferUsage.COPY_SRC
+        buffers = [self._gpu.create_buffer_with_data(data=given, usage=usage)]
+        buffers += [self._gpu.create_buffer(size=size, usage=usage) for size in sizes]
+        bound = [{"binding": at, "resource": {"buffer": buffer}} for at, buffer in enumerate(buffers)]
+        group = self._gpu.create_bind_group(layout=self._pipeline.get_bind_group_layout(1), entries=bound)
+        commands = self._gpu.create_command_encoder()
+        compute = commands.begin_compute_pass()
+        compute.set_pipeline(self._pipeline)
+        compute.set_bind_group(0, self._tables)
+        compute.set_bind_group(1, group)
+        compute.dispatch_workgroups(-(-count // GROUP))
+        compute.end()
+        self._gpu.queue.submit([commands.finish()])
+        return [np.frombuffer(self._gpu.queue.read_buffer(buffer), np.uint32) for buffer in buffers[1:]]
 
 
 def _texture(gpu: Any, table: np.ndarray) -> Any:
@@ -89,27 +134,6 @@ def _texture(gpu: Any, table: np.ndarray) -> Any:
     layout = {"bytes_per_row": width * ROW, "rows_per_image": height}
     gpu.queue.write_texture({"texture": texture}, texels, layout, (width, height, 1))
     return texture
-
-
-def _program(gpu: Any, path: Path, interface: Interface, tables: Any) -> Any:
-    """The compute pipeline of a file. Raises ShaderError."""
-    import wgpu
-
-    kinds = ("read-only-storage", "storage", "storage")
-    entries = [
-        {"binding": at, "visibility": wgpu.ShaderStage.COMPUTE, "buffer": {"type": kind}}
-        for at, kind in enumerate(kinds)
-    ]
-    buffers = gpu.create_bind_group_layout(entries=entries)
-    text = judged_text(_text(path, interface), "wgsl")
-    if not interface.is_ours:
-        _try_apart(path, text)
-    try:
-        module = tools.webgpu_module(gpu, text)
-        layout = gpu.create_pipeline_layout(bind_group_layouts=[tables, buffers])
-        return gpu.create_compute_pipeline(layout=layout, compute={"module": module, "entry_point": MAIN})
-    except wgpu.GPUError as error:
-        raise ShaderError(f"{path}: {_complaint(str(error))}") from error
 
 
 def _try_apart(path: Path, text: Text) -> None:
@@ -141,30 +165,6 @@ def _complaint(said: str) -> str:
     for mark in ("Shader '' parsing error:", "Caused by:"):
         words = words.partition(mark)[2].strip() or words
     return words[:400]
-
-
-def _dispatched_rows(gpu: Any, program: Any, tables: Any, given: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """What the shader makes of rows: float32 of shape (MADE count, 4) and uint32 of shape (count, 4)."""
-    import wgpu
-
-    count = len(given) // GIVEN
-    if not count:
-        return np.zeros((0, 4), np.float32), np.zeros((0, 4), np.uint32)
-    usage = wgpu.BufferUsage.STORAGE | wgpu.BufferUsage.COPY_SRC
-    buffers = [gpu.create_buffer_with_data(data=given, usage=usage)]
-    buffers += [gpu.create_buffer(size=rows * count * ROW, usage=usage) for rows in (MADE, 1)]
-    bound = [{"binding": at, "resource": {"buffer": buffer}} for at, buffer in enumerate(buffers)]
-    group = gpu.create_bind_group(layout=program.get_bind_group_layout(1), entries=bound)
-    commands = gpu.create_command_encoder()
-    compute = commands.begin_compute_pass()
-    compute.set_pipeline(program)
-    compute.set_bind_group(0, tables)
-    compute.set_bind_group(1, group)
-    compute.dispatch_workgroups(-(-count // GROUP))
-    compute.end()
-    gpu.queue.submit([commands.finish()])
-    made, words = (np.frombuffer(gpu.queue.read_buffer(b), np.uint32).reshape(-1, 4) for b in buffers[1:])
-    return made.view(np.float32), words
 
 
 def how() -> str:

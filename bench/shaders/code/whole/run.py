@@ -12,7 +12,6 @@ import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from .....gbuffer.gl.device import device
-from .....gbuffer.gl.shader import ShaderError
 from ....ground.compilers import tools
 from ....ground.compilers.text import own
 from ...judged import judged_text
@@ -113,34 +112,11 @@ def _hlsl(code: GBufferCode, rows: np.ndarray) -> np.ndarray:
 
 
 def _wgsl(code: GBufferCode, rows: np.ndarray) -> np.ndarray:
-    gpu = wgsl.device()
-    import wgpu
-
-    usage = wgpu.BufferUsage.STORAGE | wgpu.BufferUsage.COPY_SRC
-    tables = wgsl.TableGroup(gpu, code.tables)
-    kinds = ("read-only-storage", "storage")
-    seen = wgpu.ShaderStage.COMPUTE
-    entries = [{"binding": at, "visibility": seen, "buffer": {"type": kind}} for at, kind in enumerate(kinds)]
-    layout = gpu.create_bind_group_layout(entries=entries)
-    try:
-        module = tools.webgpu_module(gpu, judged_text(_wrapped("run_wgsl.j2", code), "wgsl"))
-        groups = gpu.create_pipeline_layout(bind_group_layouts=[tables.layout, layout])
-        program = gpu.create_compute_pipeline(layout=groups, compute={"module": module, "entry_point": MAIN})
-    except wgpu.GPUError as error:
-        raise ShaderError(f"{code.name}: {' '.join(str(error).split())[:400]}") from error
+    text = judged_text(_wrapped("run_wgsl.j2", code), "wgsl")
+    program = wgsl.Program(wgsl.device(), code.name, text, code.tables, 1)
     data = np.ascontiguousarray(rows)
-    size = len(rows) * _made(code) * data.itemsize
-    buffers = [gpu.create_buffer_with_data(data=data, usage=usage), gpu.create_buffer(size=size, usage=usage)]
-    bound = [{"binding": at, "resource": {"buffer": buffer}} for at, buffer in enumerate(buffers)]
-    commands = gpu.create_command_encoder()
-    compute = commands.begin_compute_pass()
-    compute.set_pipeline(program)
-    compute.set_bind_group(0, tables.group)
-    compute.set_bind_group(1, gpu.create_bind_group(layout=layout, entries=bound))
-    compute.dispatch_workgroups(-(-len(rows) // GROUP))
-    compute.end()
-    gpu.queue.submit([commands.finish()])
-    return np.frombuffer(gpu.queue.read_buffer(buffers[1]), np.uint32).reshape(len(rows), -1)
+    (made,) = program(data, len(rows), [len(rows) * _made(code) * data.itemsize])
+    return made.reshape(len(rows), -1)
 
 
 def _c(code: GBufferCode, rows: np.ndarray) -> np.ndarray:
