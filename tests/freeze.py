@@ -54,7 +54,7 @@ QUESTIONS: Mapping[str, tuple[str, dict[str, Any]]] = {
     "roofline": ("roofline", {}),
     "effects": ("effects", SMALL | {"encoding": "octahedral,xyz", "rays": 0}),
     "motion": ("motion", {"encoding": FEW, "count": 512, "size": "64x48", "frames": 4, "turn": "0.25"}),
-    "lights": ("lights", DRAWN | {"counts": "8", "scene": "objects"}),
+    "lights": ("lights", {"counts": "8"}),
     "depth": ("depth", {"count": 1024}),
     "frames": ("frames", {"count": 256}),
     "vectors": ("vectors", {"count": 64}),

@@ -12,13 +12,10 @@ import numpy as np
 
 from ....encodings.codecs.light_codec import LightCodec
 from ....encodings.vec import Vec4
-from ....gbuffer.codecs.light.light_passes import Resolved
 from ....gbuffer.gl.device import Device, FormatError
 from ....gbuffer.gl.shader import ShaderError
-from ....gbuffer.pipelines import Pipeline
 from ...ground.output.errors import MissingError, UsageError
 from ...shaders.code.twin import NoTwinError
-from .images import Lit, Resolves, Shot, targets_of, with_power
 from .sums import Adder, banding, chromaticity, equal_lights, gradient, has_light_twin, random_lights
 from .table import TABLE
 
@@ -53,22 +50,14 @@ class Sums:
         return chromaticity(adder) if adder.encoding.has_alpha else iter(())
 
 
-SUM_EXPERIMENTS: dict[str, Callable[[Sums, Adder], Iterator[Row]]] = {
+EXPERIMENTS: dict[str, Callable[[Sums, Adder], Iterator[Row]]] = {
     "equal": Sums.equal,
     "random": Sums.random,
     "banding": Sums.banding,
     "chromaticity": Sums.chromaticity,
 }
-IMAGE_EXPERIMENTS = ("resolve", "image")
-EXPERIMENTS = (*SUM_EXPERIMENTS, *IMAGE_EXPERIMENTS)
 # What rows are sorted by, so that light buffers stand beside each other under the same conditions.
 CONDITIONS = (
-    "scene",
-    "pipeline",
-    "power",
-    "light_targets",
-    "samples",
-    "backend",
     "sum",
     "lights",
     "order",
@@ -97,11 +86,11 @@ def _filled_row(experiment: str, encoding: LightCodec, device: Device | None, **
 
 
 def sum_rows(names: list[str], encoding: LightCodec, sums: Sums, device: Device | None) -> Iterator[Row]:
-    """Rows of some of SUM_EXPERIMENTS; where the device cannot measure, the model's alone and the reason."""
+    """Rows of some of EXPERIMENTS; where the device cannot measure, the model's alone and the reason."""
     try:
         with Adder(encoding, device) as adder:
             rounding = adder.rounding
-            found = [(name, row) for name in names for row in SUM_EXPERIMENTS[name](sums, adder)]
+            found = [(name, row) for name in names for row in EXPERIMENTS[name](sums, adder)]
     except UNMEASURABLE as error:
         for row in sum_rows(names, encoding, sums, None):
             yield row | {"skipped": str(error)}
@@ -111,73 +100,14 @@ def sum_rows(names: list[str], encoding: LightCodec, sums: Sums, device: Device 
         yield _filled_row(name, encoding, device, seed=sums.seed, **how, **row)
 
 
-def resolve_rows(
-    device: Device, shot: Shot, encodings: list[LightCodec], given: dict[int, list[int]], seen: Callable[..., None]
-) -> Iterator[Row]:
-    """Rows of `resolve`.
-
-    Args:
-        given: the samples that the device has, and what was asked for each of them; 1 is always measured.
-        seen: called with encoding, samples, the images by the device, those at one sample, and the right one.
-    """
-    all_made = {samples: Resolves(device, shot, encodings, samples) for samples in sorted({1, *given})}
-    for encoding in encodings:
-        for samples, asked in given.items():
-            made, single = all_made[samples], all_made[1]
-            described = {"scene": shot.name, "size": f"{shot.size[0]}x{shot.size[1]}", "seed": shot.seed}
-            described |= {"samples": samples, "samples_asked": ",".join(map(str, asked))}
-            if encoding in made.failed:
-                yield _filled_row("resolve", encoding, device, **described, skipped=made.failed[encoding])
-                continue
-            images: dict[str, tuple[Resolved, Resolved]] = {}
-            # The hardware averages a target's channels, and not the numbers that lie across them.
-            if has_light_twin(encoding) and not encoding.storage.is_packed:
-                images["model"] = (made.model(encoding), single.model(encoding))
-            images["gl"] = (made.device(encoding), single.device(encoding))
-            for backend, (found, aliased) in images.items():
-                figures = made.compared(found, aliased)
-                yield _filled_row("resolve", encoding, device, backend=backend, **described, **figures)
-            seen(encoding, samples, *images["gl"], made.right)
-
-
-def image_rows(
-    device: Device,
-    pipeline: Pipeline,
-    shot: Shot,
-    power: float,
-    encodings: list[LightCodec],
-    targets: list[int],
-    seen: Callable[..., None],
-) -> Iterator[Row]:
-    """Rows of `image`, of a scene whose materials all have one specular power.
-
-    Args:
-        targets: how many the light buffer may have.
-        seen: called with encoding, targets, the image and the reference.
-    """
-    lit = Lit(device, pipeline, with_power(shot, power))
-    for encoding in encodings:
-        for count in targets_of(pipeline, encoding, targets):
-            described = {"pipeline": pipeline.name, "scene": shot.name, "power": power, "seed": shot.seed}
-            described |= {"size": f"{shot.size[0]}x{shot.size[1]}", "light_targets": count}
-            try:
-                figures, image = lit.measure(encoding, count)
-            except UNMEASURABLE as error:
-                yield _filled_row("image", encoding, device, **described, skipped=str(error))
-                continue
-            yield _filled_row("image", encoding, device, **described, **figures)
-            seen(encoding, count, image, lit.reference)
-
-
 def sorted_rows(rows: list[Row]) -> list[Row]:
     """The rows by experiment and then by CONDITIONS, each in the order in which its values came up."""
     places = {
         column: {value: i for i, value in enumerate(dict.fromkeys(row[column] for row in rows))}
         for column in CONDITIONS
     }
-    return sorted(
-        rows, key=lambda row: (EXPERIMENTS.index(row["experiment"]), *(places[c][row[c]] for c in CONDITIONS))
-    )
+    order = list(EXPERIMENTS)
+    return sorted(rows, key=lambda row: (order.index(row["experiment"]), *(places[c][row[c]] for c in CONDITIONS)))
 
 
 def banded(encoding: LightCodec, peak: float, device: Device | None) -> np.ndarray:

@@ -8,15 +8,9 @@ from typing import Annotated
 from ...ground.options.option import (
     Images,
     LightBuffers,
-    Lights,
-    LightTargets,
-    Objects,
     Option,
-    Pipelines,
     Plot,
-    Scenes,
     Seed,
-    Size,
 )
 from ...shaders.languages.source_options import SourceOptions
 from .. import shared_columns as shared
@@ -29,21 +23,11 @@ KEY, HOW = Role.KEY, Role.HOW
 class LightsOptions(SourceOptions):
     """What `lights` measures. Names and numbers are comma-separated."""
 
-    experiment: Annotated[
-        str, Option("--experiment", "equal, random, banding, chromaticity, resolve, image; or all.")
-    ] = "all"
+    experiment: Annotated[str, Option("--experiment", "equal, random, banding, chromaticity; or all.")] = "all"
     light_buffer: LightBuffers = "all"
-    light_targets: LightTargets = "all"
     sums: Annotated[str, Option("--sum", "equal: what the lights sum to; random: the least.")] = "1,4"
     counts: Annotated[str, Option("--counts", "equal, random: numbers of lights.")] = "8,64,256"
     peaks: Annotated[str, Option("--peak", "banding: the light at a lamp's centre.")] = "0.1,1,2,3"
-    samples: Annotated[str, Option("--samples", "resolve: samples per pixel.")] = "1,2,4,8"
-    pipeline: Pipelines = "prepass"
-    scene: Scenes = "objects,gloss"
-    power: Annotated[str, Option("--power", "image: specular powers.")] = "1,47,256"
-    size: Size = "320x240"
-    objects: Objects = 200
-    lights: Lights = 64
     seed: Seed = 0
 
 
@@ -56,16 +40,8 @@ class LightsOutputs:
 
 
 COLUMNS = (
-    Column("experiment", "What was added up or drawn.", KEY),
+    Column("experiment", "What was added up.", KEY),
     Column("light_buffer", "The code that light is added up in.", KEY),
-    shared.LIGHT_TARGETS,
-    shared.PIPELINE,
-    shared.SCENE,
-    Column("power", "Specular power of every material.", KEY),
-    Column("size", "Width and height in pixels.", HOW, drops=3),
-    Column("samples", "Samples per pixel that the device gave.", KEY),
-    shared.SAMPLES_ASKED,
-    Column("backend", "model: JAX; gl: the GL device.", KEY),
     Column("sum", "What the lights add up to.", KEY),
     Column("lights", "How many lights.", KEY),
     Column("channel", "The channels of the light's colour that the row is of.", KEY),
@@ -96,17 +72,6 @@ COLUMNS = (
         better="less",
     ),
     Column("gl_amplification", "The same on the device.", better="less"),
-    Column("psnr_db", "The displayed image against 32-bit floats, every pixel, peak 1.", unit="dB", better="more"),
-    Column("held_psnr_db", "PSNR over pixels whose light the code can hold.", unit="dB", better="more"),
-    Column("beyond_percent", "Pixels whose light the code cannot hold.", unit="%", better="less"),
-    shared.MSE,
-    Column("invalid", "Pixels that are NaN or infinite.", better="less", shown=False),
-    Column(
-        "code_psnr_db", "Antialiasing averaged by the hardware, against the right resolve.", unit="dB", better="more"
-    ),
-    Column("light_psnr_db", "Antialiasing after decoding, against the right resolve.", unit="dB", better="more"),
-    Column("aliased_psnr_db", "One sample, against the right resolve.", unit="dB", drops=6),
-    Column("wrong_percent", "Pixels that are off by more than 8/255.", unit="%", better="less"),
     Column("rounds", "How this device rounds when it blends.", HOW),
     Column("agree_percent", "Pixels that equal the model that rounds so.", HOW, "%", drops=7),
     shared.DEVICE,
@@ -118,24 +83,14 @@ ALSO = (Column("*_lights", "What is left of the sum of that many lights."),)
 TABLE = Table(
     name="lights",
     package=__package__ or "",
-    help="What light buffers lose: adding lights up, banding, rebuilt colour, antialiasing, and the final image.\n\n"
+    help="What light buffers lose: adding lights up, banding and rebuilt colour.\n\n"
     "The model, in JAX, stands next to what the GL device does. Without a GL device the model is measured alone.",
     example="normalbench lights --experiment equal,banding --light-buffer rgbm,r11g11b10f",
     options=LightsOptions,
     outputs=LightsOutputs,
     columns=COLUMNS,
     also=ALSO,
-    # A scene under few lights, at one specular power.
-    usual=(
-        {
-            "experiment": "equal,random,banding,chromaticity,image",
-            "peaks": "0.1,1",
-            "samples": "1",
-            "scene": "gloss",
-            "power": "47",
-            "lights": 6,
-        },
-    ),
+    usual=({"peaks": "0.1,1"},),
     single={"experiment": "equal", "light_buffer": "linear", "sums": "1", "counts": "64"},
     by="experiment",
     partial=True,
@@ -147,7 +102,7 @@ TABLE = Table(
         method="The model, in JAX, stands next to what the GL device does when it blends. equal: N equal lights of a "
         "known "
         "sum. random: coloured lights with falloff in three orders. banding: one lamp's falloff. chromaticity: a "
-        "highlight's colour rebuilt from one target. image: a frame against 32-bit floats.",
+        "highlight's colour rebuilt from one target.",
         parts="experiment",
     ),
 )

@@ -11,8 +11,7 @@ from ....encodings import vec
 from ....encodings.codecs.light_codec import LightCodec
 from ....encodings.shared import chromaticity
 from ....encodings.storages.storage import STORAGES, Storage
-from ...gl.device import ADD, MULTIPLY, Device, bind, read_pixels
-from ...gl.handles import Texture, VertexArray
+from ...gl.device import ADD, MULTIPLY, Device, bind
 from ..codec_passes import storage_defines
 from ..harness import Passes, Textures, check_functions, exact
 
@@ -94,57 +93,6 @@ class LightPasses(Passes):
             self._encode.render(vertices=3)
         device.idle.use()
         return {"texels": textures[count % copies]}
-
-
-@dataclass(frozen=True)
-class Resolved:
-    """An image that was kept in a light encoding at several samples a pixel, of shape (height, width, 3).
-
-    Attributes:
-        by_code: as the hardware resolves it, which averages texels.
-        by_light: each sample decoded first.
-    """
-
-    by_code: np.ndarray
-    by_light: np.ndarray
-
-
-def resolved(device: Device, codec: LightCodec, colours: Texture, samples: int) -> Resolved:
-    """Linear light, RGBA32F of several samples a pixel, kept in a light encoding and resolved; row 0 on top.
-
-    Raises:
-        FormatError: the device cannot render to the encoding's format.
-    """
-    defines, names = light_defines(codec) | {"SAMPLES": samples}, {"LIGHT_ENCODING": codec.glsl}
-    with ExitStack() as stack:
-
-        def target(storage: Storage, samples: int = 1) -> Texture:
-            return device.owned(stack, device.target(colours.size, storage, samples))
-
-        def passed(shader: str) -> VertexArray:
-            return device.owned(stack, device.fragment_pass(shader, defines, names))
-
-        kept, texels = target(codec.storage.target, samples), target(codec.storage.target)
-        device.render(passed("encode_samples.frag"), [kept], colours=colours)
-        device.resolve(kept, texels)
-        results = [target(STORAGES["rgba32f"]) for _ in range(3)]
-        device.render(passed("decode_light.frag"), results[:2], texels=texels)
-        device.render(passed("resolve_light.frag"), results[2:], samples=kept)
-        by_code, _, by_light = (read_pixels(result)[::-1, :, :3] for result in results)
-    return Resolved(by_code, by_light)
-
-
-def read_samples(device: Device, colours: Texture, samples: int) -> np.ndarray:
-    """Every sample of an RGBA32F texture: float32 of shape (samples, height, width, 3), row 0 on top."""
-    with ExitStack() as stack:
-        one = device.owned(stack, device.fragment_pass("one_sample.frag", {"SAMPLES": samples}))
-        result = device.owned(stack, device.target(colours.size, STORAGES["rgba32f"]))
-        found = []
-        for which in range(samples):
-            one.program["which"] = which
-            device.render(one, [result], colours=colours)
-            found.append(read_pixels(result)[::-1, :, :3])
-    return np.stack(found)
 
 
 def exact_light(device: Device, codec: LightCodec, lights, given) -> tuple[np.ndarray, np.ndarray]:

@@ -3,8 +3,6 @@
 import json
 import re
 from ast import literal_eval
-from contextlib import ExitStack
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -22,9 +20,7 @@ from normalbench.bench.tables.mix.patches import SIDE, TEXELS, mixes_of, patches
 from normalbench.bench.tables.mix.table import AGREE_DEG, MOST_ADDED, OPERATIONS
 from normalbench.bench.tables.mix.verdict import judged
 from normalbench.bench.tables.registry import TABLES
-from normalbench.encodings.catalogue import LIGHT_BUFFERS
 from normalbench.encodings.storages.storage import STORAGES
-from normalbench.gbuffer.codecs.light.light_passes import resolved
 from normalbench.gbuffer.codecs.mixing.passes import MixPasses, bands
 
 COUNT, SAMPLES = 512, 4
@@ -187,23 +183,6 @@ def test_blends_of_whole_shares_are_the_source_and_the_base():
         for alpha, expected in ((1.0, source), (0.0, base)):
             got = texels.blended(base, source, np.full(64, alpha), way)
             assert np.abs(got - expected).max() * 255 < 0.01, (way, alpha)
-
-
-def test_a_resolve_is_that_of_light_buffers(gl):
-    """`lights --experiment resolve` and `mix` resolve by one mechanism: plain light and xyz, of the same samples in
-    RGBA16F, give the same means, by the hardware and decoded first."""
-    given = mixes("sphere", 20.0).meetings()
-    # What half floats hold exactly, so that neither side rounds when it stores.
-    given = replace(given, normals=np.abs(given.normals).astype(np.float16).astype(np.float32))
-    with ExitStack() as stack:
-        exact, half = (
-            stack.enter_context(MixPasses(gl, codec(f"xyz/{name}"), given, SAMPLES)) for name in ("rgba32f", "rgba16f")
-        )
-        light = resolved(gl, LIGHT_BUFFERS["rgba16f"], exact._sampled()["samples"], SAMPLES)
-        pairs = [(light.by_code, half.resolved()), (light.by_light, half.resolved_decoded())]
-    for ours, theirs in pairs:
-        flipped = theirs.normals.reshape(ours.shape)[::-1]
-        assert np.abs(ours - flipped).max() < 1e-6, np.abs(ours - flipped).max()
 
 
 def test_patches_of_a_direction_lie_as_far_apart_as_was_asked():

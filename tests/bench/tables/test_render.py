@@ -106,10 +106,6 @@ def test_a_scene_that_draws_nothing_is_refused_and_not_exact(run, tmp_path, monk
         status, out, err = run(*words, *code)
         assert (status, out) == (2, "") and "away.glb: its camera sees nothing; move it" in err, words
         assert len(err.splitlines()) == 1, err
-    status, out, err = run("lights", "--experiment", "image", *code[4:])
-    assert (status, out) == (2, "") and "away.glb: prepass cannot carry metal/rough materials" in err, err
-    status, out, err = run("lights", "--experiment", "image", "--pipeline", "hybrid", *code[4:])
-    assert (status, out) == (2, "") and "away.glb: no light reaches what its camera sees" in err, err
 
 
 def test_a_scene_that_covers_little_of_its_picture_is_said(run, tmp_path, monkeypatch):

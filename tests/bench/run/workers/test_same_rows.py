@@ -40,8 +40,7 @@ targets = [
 COMMANDS = {
     "quality": "--encoding octahedral,spheremap --storage rgba8,rg8 --normals sphere,axes --count 4096",
     "depth": "--depth linear,logarithmic --near 0.1 --count 512 --storage depth16,depth24",
-    "lights": "--experiment equal,banding,image --light-buffer linear,rgba16f --scene gloss --power 47 "
-    "--samples 2 --sum 1 --counts 4 --size 64x36",
+    "lights": "--experiment equal,banding --light-buffer linear,rgba16f --sum 1 --counts 4",
     "render": "--encoding octahedral,spheremap --scene gloss --size 64x36 --repeats 0",
     "cost": "--isa --encoding octahedral,spheremap --storage rg8 --family rdna2 --operation encode,decode",
     "motion": "--encoding octahedral --storage rg8 --turn 0.25,1 --frames 4 --count 256 --size 64x36",
