@@ -747,11 +747,11 @@ FAULTS = (
         "halves",
     ),
     Fault(
-        "bits-to-base-two",
+        "search-that-stays-at-its-start",
         BENCH,
-        "wrong constant",
-        "logs = np.log(np.maximum(means, 1e-30)) / math.log(4)",
-        "logs = np.log(np.maximum(means, 1e-30)) / math.log(2)",
+        "dropped term",
+        "                break\n            values = tried",
+        "                break\n            break",
         "test_tune.py",
     ),
     Fault(

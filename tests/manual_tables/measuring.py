@@ -92,10 +92,9 @@ def with_limits(rows: list[Row]) -> list[Row]:
 
 
 def parameters_named(rows: list[Row]) -> list[Row]:
-    """With what tuning found: parameters or a table, and how the bits are split."""
+    """With what tuning found: parameters or a table."""
     for row in rows:
-        found, split = (row[f"tuned_{name}"].removeprefix(row[name])[1:] for name in ("encoding", "storage"))
-        row["parameters"] = f"`{found.removesuffix('=FILE')}`" + f", {split.replace('_', ':')}" * bool(split)
+        row["parameters"] = f"`{row['tuned_encoding'].removeprefix(row['encoding'])[1:].removesuffix('=FILE')}`"
     return rows
 
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 
+from ....encodings.vec import Vec3
 from ...ground.output.errors import UsageError
 from ...subjects.normals.normal_sets import NormalSet, from_arrays
-from .expected_errors import Normals
 
 # A set is kept in memory, half of it in float64 for a while.
 MAX_COUNT = 2**24
@@ -17,6 +18,26 @@ MAX_COUNT = 2**24
 LEAST = 128
 # Pixels a side of the squares that an image is halved by.
 TILE = 16
+
+
+@dataclass(frozen=True)
+class Normals:
+    """Unit normals and view-space positions, float32 of shape (count, 3)."""
+
+    n: np.ndarray
+    view: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.n)
+
+    def some(self, most: int) -> Normals:
+        """At most so many of them, evenly spread over the set."""
+        step = -(-len(self) // most)
+        return Normals(self.n[::step], self.view[::step])
+
+    def planes(self) -> tuple[Vec3, Vec3]:
+        """Normals and positions as planes."""
+        return tuple(Vec3(*(jnp.asarray(c) for c in a.T)) for a in (self.n, self.view))  # type: ignore[return-value]
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ class TuneOptions(Reading):
     normals: Annotated[str, Option("--normals", "A normal set or a file of one.", files=True)] = "playground"
     storage: Annotated[str, Option("--storage", "A storage.")] = "rgba8"
     parameter: Annotated[
-        str, Option("--parameter", "An encoding's own; bits, table; comma-separated. Default: all there are.")
+        str, Option("--parameter", "An encoding's own; table; comma-separated. Default: all there are.")
     ] = "all"
     error: Annotated[str, Option("--error", "psnr, rms, mean or max, the largest angle.")] = "psnr"
     count: Annotated[int, Option("--count", "Normals in a uniform set.")] = 2**20
@@ -46,7 +46,6 @@ COLUMNS = (
     shared.CODE_SPACE,
     Column("seed", "The random seed of uniform sets and of the hold-out.", HOW, drops=1),
     Column("tuned_encoding", "What was found, by the name that --encoding takes.", HOW),
-    Column("tuned_storage", "What was found, by the name that --storage takes.", HOW),
     Column("quantity", "A parameter, or a figure of the hold-out.", KEY),
     Column("published", "Its value as published."),
     Column("tuned", "Its value as tuned."),
@@ -59,9 +58,8 @@ TABLE = Table(
     name="tune",
     package=__package__ or "",
     group=Group.OWN,
-    help="Fit an encoding's parameters and its numbers' bits to normals; what that gains on a half that was held out."
-    "\n\nWhat is found has a name that --encoding and --storage take in every command, such as "
-    "stereographic:scale=1.31.",
+    help="Fit an encoding's parameters to normals; what that gains on a half that was held out."
+    "\n\nWhat is found has a name that --encoding takes in every command, such as stereographic:scale=1.31.",
     example="normalbench tune stereographic --normals playground --storage rg8",
     options=TuneOptions,
     outputs=TuneOutputs,
@@ -74,8 +72,8 @@ TABLE = Table(
         short="Tuning",
         view=View.CODECS,
         intro="Parameters fitted to one half of a set: what do they gain on the other half?",
-        method="Tuning starts with gradient descent on a smooth model of the quantisation error, then refines with a "
-        "search on the measured error. Images are split into two halves at random, by pixel; for look-up tables, by "
-        "tiles of 16 x 16. Figures are of the half that was held out.",
+        method="Tuning is a search on the measured error, from the published values and from random ones. "
+        "Images are split into two halves at random, by pixel; for look-up tables, by tiles of 16 x 16. Figures are of "
+        "the half that was held out.",
     ),
 )

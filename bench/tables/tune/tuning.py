@@ -1,16 +1,15 @@
-"""Fits an encoding's parameters, its numbers' bits and its look-up to normals.
+"""Fits an encoding's parameters and its look-up to normals, by a search with the measured error.
 
-Descents by the gradient of the expected error find where a search by measured errors starts from: the rounding that is
-measured is the storage's own. Both are done on one half of a set; the other half is for whoever wants to know what was
-gained.
+The rounding that is measured is the storage's own. It is done on one half of a set; the other half is for whoever wants
+to know what was gained.
 """
 
 from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -18,33 +17,22 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ....encodings.codecs.codec import LEAST_BITS, Codec
+from ....encodings.codecs.codec import Codec
 from ....encodings.codecs.encoding import Encoding
-from ....encodings.storages.rules import across
-from ....encodings.storages.storage import Storage
-from ....encodings.vec import Vec3, dot, maximum, minimum
+from ....encodings.vec import Vec3, dot
 from ...measures.metrics.meter import angle_between, readable
-from .expected_errors import Normals, moved_squares, smooth_objective
+from .halves import Normals
 
-# Normals that are descended on, and that a measured error is of, at most.
-DESCENDED, MEASURED = 2**15, 2**20
-# Where descents start from, besides the published values; steps of the search after them, in shares of the range.
-STARTS, STEPS = 6, tuple(2.0**-k for k in range(4, 15))
+# Normals that a measured error is of, at most.
+MEASURED = 2**20
+# Random values that are tried, and the best of them, which searches begin at; steps, in shares of the range.
+RANDOM, STARTS, STEPS = 256, 8, tuple(2.0**-k for k in range(4, 15))
 # Digits of what is found: a name or a macro says all of it.
 DIGITS = 6
 # How many normals a texel's centre may count as, of a look-up that is fitted; infinitely many leave it alone.
 PRIORS = (0.25, 1.0, 4.0, 16.0, math.inf)
 
 Values = dict[str, float]
-
-
-@dataclass(frozen=True)
-class Tuned:
-    """A codec, the values of its parameters, and its error on the normals that it was fitted to."""
-
-    codec: Codec
-    values: Values
-    error: float
 
 
 class Scale:
@@ -69,32 +57,6 @@ class Scale:
         bent = low + np.clip(shares, 0.0, 1.0) * (high - low)
         straight = np.where(self._is_log, np.exp(np.where(self._is_log, bent, 0.0)), bent)
         return {name: float(f"{value:.{DIGITS}g}") for name, value in zip(self.names, straight, strict=True)}
-
-    def slopes(self, values: np.ndarray, slopes: np.ndarray) -> np.ndarray:
-        """A gradient by shares from one by values."""
-        low, high = self._ends
-        return slopes * np.where(self._is_log, values, 1.0) * (high - low)
-
-
-def descend(codec: Codec, normals: Normals, goal: str) -> Values:
-    """The values with the least expected error that descents from several places find."""
-    from scipy.optimize import minimize
-
-    scale = Scale(codec.encoding)
-    with jax.enable_x64(True):
-        objective = smooth_objective(codec, goal, *normals.some(DESCENDED).planes(np.float64))
-
-        def logarithm(shares: np.ndarray) -> tuple[float, np.ndarray]:
-            values = np.array(list(scale.values(shares).values()))
-            error, slope = (np.asarray(a) for a in objective(values))
-            return math.log(error), scale.slopes(values, slope) / error
-
-        random = np.random.default_rng(0)
-        published = scale.shares(codec.encoding.published)
-        starts = [published, *random.uniform(0.0, 1.0, (STARTS, len(published)))]
-        bounds = [(0.0, 1.0)] * len(published)
-        found = [minimize(logarithm, start, jac=True, method="L-BFGS-B", bounds=bounds) for start in starts]
-    return scale.values(min(found, key=lambda result: result.fun).x)
 
 
 class Measure:
@@ -123,80 +85,33 @@ class Measure:
         return found if math.isfinite(found) else math.inf
 
 
-def search(codec: Codec, normals: Normals, goal: str, starts: list[Values]) -> Tuned:
-    """From the best of some values on, each is changed by ever smaller steps as long as the measured error falls."""
+def search(codec: Codec, normals: Normals, goal: str) -> Values:
+    """The values with the least measured error that searches from the published and from the best of random ones find.
+
+    Where nothing is better than what was published it stays as it is.
+    """
     measure, scale = Measure(codec, normals, goal), Scale(codec.encoding)
-    least, values = min(((measure(start), start) for start in starts), key=lambda found: found[0])
-    for step, axis in itertools.product(STEPS, range(len(scale.names))):
-        for sign in (1, -1):
-            while True:
-                tried = scale.values(scale.shares(values) + sign * step * np.eye(len(scale.names))[axis])
-                error = measure(tried)
-                if error >= least:
-                    break
-                least, values = error, tried
-    return Tuned(codec, values, least)
+    random = np.random.default_rng(0).uniform(0.0, 1.0, (RANDOM, len(scale.names)))
+    starts = [codec.encoding.published, *sorted(map(scale.values, random), key=measure)[:STARTS]]
+    return min((_searched(measure, scale, start) for start in starts), key=measure)
 
 
-def wanted_bits(codec: Codec, values: Values, normals: Normals) -> dict[int, float]:
-    """For each free component how many bits it should have, of those that they have together.
-
-    Errors are the sum of a square A_i 4^-b_i for each, least under a sum of bits where all of these are the same:
-    b_i = B / k + log4(A_i / geometric mean of A).
-    """
-    free = free_components(codec)
-    with jax.enable_x64(True):
-        n, view = normals.some(DESCENDED).planes(np.float64)
-        code = codec.encoding.encode(n, view, **values)
-        held = type(code)(*(minimum(maximum(c, -1.0), 1.0) for c in code))
-        moved = moved_squares(codec, values, held, view)
-        means = [float(jnp.nanmean(jnp.where(jnp.isfinite(moved[i]), moved[i], jnp.nan))) for i in free]
-    logs = np.log(np.maximum(means, 1e-30)) / math.log(4)
-    shared = sum(codec.storage.bits[i] for i in free) / len(free)
-    return {i: shared + float(log) for i, log in zip(free, logs - logs.mean(), strict=True)}
+def _searched(measure: Measure, scale: Scale, values: Values) -> Values:
+    """Values that are changed by ever smaller steps, each as long as the measured error falls."""
+    ways = [np.array(way) for way in itertools.product((-1, 0, 1), repeat=len(scale.names)) if any(way)]
+    for step in STEPS:
+        while True:
+            tried = min((scale.values(scale.shares(values) + step * way) for way in ways), key=measure)
+            if measure(tried) >= measure(values):
+                break
+            values = tried
+    return values
 
 
-def free_components(codec: Codec) -> list[int]:
-    """The components whose bits may go to another: two or more numbers in fixed point, not of few values; or none."""
-    encoding = codec.encoding
-    free = [i for i in range(encoding.components) if not encoding.levels_of(i)]
-    is_fixed = codec.storage.kind != "float" and not codec.storage.is_full
-    return free if is_fixed and len(free) > 1 and not encoding.look_up and not encoding.searches else []
-
-
-def spreads(codec: Codec, wanted: Mapping[int, float]) -> Iterator[Storage]:
-    """Storages of as many bits as the codec has, each free component's within 1 of what is wanted, but its own."""
-    own = codec.storage.bits[: codec.encoding.components]
-    around = [(math.floor(wanted[i]), math.ceil(wanted[i])) if i in wanted else (b, b) for i, b in enumerate(own)]
-    for bits in dict.fromkeys(itertools.product(*around)):
-        if sum(bits) == sum(own) and bits != own and min(bits[i] for i in wanted) >= LEAST_BITS:
-            storage = across(codec.storage.kind, bits)
-            if replace(codec, storage=storage).fits:
-                yield storage
-
-
-def fitted(codec: Codec, normals: Normals, goal: str, names: list[str], with_bits: bool) -> Tuned:
-    """The values of the parameters `names`, and where `with_bits` the spread of bits, with the least measured error.
-
-    What is not better than what was published stays as it is.
-    """
+def fitted(codec: Codec, normals: Normals, goal: str, names: list[str]) -> Values:
+    """The values of the parameters `names` with the least measured error."""
     chosen = tuple(p for p in codec.encoding.parameters if p.name in names)
-    codec = replace(codec, encoding=replace(codec.encoding, parameters=chosen))
-    published = codec.encoding.published
-    found = _tuned_with_storage(codec, normals, goal, [published])
-    if not with_bits or not free_components(codec):
-        return found
-    storages = spreads(codec, wanted_bits(codec, found.values, normals))
-    others = (
-        _tuned_with_storage(replace(codec, storage=s), normals, goal, [found.values, published]) for s in storages
-    )
-    return min([found, *others], key=lambda tuned: tuned.error)
-
-
-def _tuned_with_storage(codec: Codec, normals: Normals, goal: str, starts: list[Values]) -> Tuned:
-    if codec.encoding.parameters:
-        starts = [*starts, descend(codec, normals, goal)]
-    return search(codec, normals, goal, starts)
+    return search(replace(codec, encoding=replace(codec.encoding, parameters=chosen)), normals, goal) if chosen else {}
 
 
 def fitted_table(codec: Codec, normals: Normals, goal: str) -> np.ndarray:

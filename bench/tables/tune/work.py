@@ -28,12 +28,10 @@ from ...subjects.normals.normal_names import check_rays, normal_sets_named
 from ...subjects.normals.normal_sets import NormalSet
 from ..quality import measure as quality
 from ..table import Measured, Sheet, Step, Tick, Work, each
-from .expected_errors import POWERS
 from .halves import Halves, halves_of
 from .table import TABLE, TuneOptions, TuneOutputs
-from .tuning import Tuned, fitted, fitted_table, free_components
+from .tuning import Values, fitted, fitted_table
 
-BITS = "bits"
 # Held-out figures by the goal that each is.
 FIGURES = {"psnr": "psnr_db", "mean": "angle_mean_deg", "rms": "angle_rms_deg", "max": "angle_max_deg"}
 # Of that a gain is less than what another half would say.
@@ -43,11 +41,10 @@ Row = dict[str, Any]
 
 @dataclass(frozen=True)
 class Chosen:
-    """What is tuned: a codec, the names of its parameters that are, and whether its bits or its look-up are."""
+    """What is tuned: a codec, the names of its parameters that are, and whether its look-up is."""
 
     codec: Codec
     names: list[str]
-    has_bits: bool
     has_table: bool
 
 
@@ -74,7 +71,7 @@ class Tuning:
         """Fit to one half, and measure both codecs on the other."""
         chosen, halves, goal = self.chosen, self.halves, self.options.error
         self.scales = fitted_table(chosen.codec, halves.fitting, goal) if chosen.has_table else None
-        found = fitted(chosen.codec, halves.fitting, goal, chosen.names, chosen.has_bits)
+        found = fitted(chosen.codec, halves.fitting, goal, chosen.names)
         codec = tuned_codec(chosen.codec, found, self.scales, self.table)
         before, after = (Side(c, _measured(c, halves)) for c in (chosen.codec, codec))
         self.sides = before, after
@@ -90,7 +87,7 @@ def _steps(options: TuneOptions, outputs: TuneOutputs) -> list[Step]:
     if MARK in encoding and encoding.partition(MARK)[0] in NAMES:
         raise UsageError(f"{encoding}: tune begins with what was published; name {encoding.partition(MARK)[0]}")
     chosen = chosen_of(encoding, options)
-    options = replace(options, error=choose_one("error", options.error, POWERS))
+    options = replace(options, error=choose_one("error", options.error, FIGURES))
     if table and not chosen.has_table:
         raise UsageError(f"--table: {chosen.codec.name} has no look-up that is tuned")
     if table and set(str(table)) & {MARK, ","}:
@@ -122,22 +119,19 @@ def chosen_of(name: str, options: TuneOptions) -> Chosen:
     if not codec.fits:
         raise UsageError(f"{codec.name}: {codec.misfit}")
     check_twin(encoding)
-    known = {p: p for p in (*encoding.published, *_others(codec))}
+    known = {p: p for p in (*encoding.published, *([LOOK_UP] if _has_table(codec) else []))}
     if not known:
-        raise UsageError(f"{codec.name}: nothing to tune: no parameter, look-up, or two numbers that share bits")
+        raise UsageError(f"{codec.name}: nothing to tune: no parameter and no look-up")
     names = choose("parameter", options.parameter, known)
     numbers = [name for name in names if name in encoding.published]
-    return Chosen(codec, numbers, BITS in names, LOOK_UP in names)
+    return Chosen(codec, numbers, LOOK_UP in names)
 
 
-def _others(codec: Codec) -> Iterator[str]:
-    """What else than numbers can be tuned."""
-    if free_components(codec):
-        yield BITS
+def _has_table(codec: Codec) -> bool:
+    """Whether it has a look-up that can be tuned in its storage."""
     look_up, storage = codec.encoding.look_up, codec.storage
     counts = {storage.count(i) for i in range(codec.encoding.components)}
-    if look_up and storage.kind != "float" and len(counts) == 1 and counts <= set(look_up.levels):
-        yield LOOK_UP
+    return bool(look_up) and storage.kind != "float" and len(counts) == 1 and counts <= set(look_up.levels)
 
 
 def _one(what: str, named: Callable[[str], list[Any]], text: str) -> Any:
@@ -164,15 +158,15 @@ def _halves(chosen: Chosen, options: TuneOptions) -> Halves:
     return halves_of(_one("normal set", named, options.normals), options.seed, by_tiles=chosen.has_table)
 
 
-def tuned_codec(codec: Codec, found: Tuned, scales: np.ndarray | None, table: Path | None) -> Codec:
+def tuned_codec(codec: Codec, found: Values, scales: np.ndarray | None, table: Path | None) -> Codec:
     """The codec with what was found, under the name that says it."""
     encoding: Encoding = codec.encoding
-    changed = {name: value for name, value in found.values.items() if value != encoding.published[name]}
+    changed = {name: value for name, value in found.items() if value != encoding.published[name]}
     if changed:
         encoding = encoding.with_parameters(changed)
     if scales is not None:
         encoding = encoding.with_table(scales, str(table or "FILE"))
-    return replace(codec, encoding=encoding, storage=found.codec.storage)
+    return replace(codec, encoding=encoding)
 
 
 def _measured(codec: Codec, halves: Halves) -> Row:
@@ -184,19 +178,15 @@ def _write_table(path: Path, scales: np.ndarray) -> None:
         np.save(file, scales)
 
 
-def rows(before: Side, after: Side, chosen: Chosen, found: Tuned, about: Row) -> Iterator[Row]:
+def rows(before: Side, after: Side, chosen: Chosen, found: Values, about: Row) -> Iterator[Row]:
     """A row for each parameter that was tuned, then one for each figure of the held-out half."""
     codecs = {"encoding": before.codec.encoding.name, "storage": before.codec.storage.name}
-    codecs |= {"tuned_encoding": after.codec.encoding.name, "tuned_storage": after.codec.storage.name}
+    codecs |= {"tuned_encoding": after.codec.encoding.name}
     empty = TABLE.empty() | codecs | about
     for parameter in before.codec.encoding.parameters:
         if parameter.name in chosen.names:
-            published, tuned = before.codec.encoding.published[parameter.name], found.values[parameter.name]
+            published, tuned = before.codec.encoding.published[parameter.name], found[parameter.name]
             yield empty | _row(parameter.name, published, tuned) | {"glsl": parameter.constant}
-    if chosen.has_bits:
-        for i in free_components(before.codec):
-            published, tuned = (codec.storage.bits[i] for codec in (before.codec, after.codec))
-            yield empty | _row(f"{BITS}_{'xyz'[i]}", published, tuned)
     if chosen.has_table:
         yield empty | _row("texels_changed", 0, _changed(before.codec.encoding, after.codec.encoding))
     for figure in FIGURES.values():
@@ -241,7 +231,6 @@ def _summary(found: Sequence[Row]) -> Iterator[Sheet]:
         "storage",
         "normals",
         "tuned_encoding",
-        "tuned_storage",
         "quantity",
         "published",
         "tuned",
