@@ -33,8 +33,6 @@ from normalbench.bench.ground.machine.memory import (
     look_for_garbage_seldom,
 )
 from normalbench.bench.ground.options.gpu_families import ANV, HASVK, RADV
-from normalbench.bench.ground.output.errors import MissingError
-from normalbench.bench.keep.machine import require_mobile
 from normalbench.bench.measures.metrics import published
 from normalbench.bench.run import measuring
 from normalbench.bench.shaders.isa import driver_files, isa, null_device, spirv
@@ -160,15 +158,6 @@ def nvidia(radv):  # noqa: ARG001 (asks for the other compilers)
     """NVIDIA's compiler of CUDA, which people install themselves: no machine must have it."""
     if said := tools.missing():
         pytest.skip(said)
-
-
-@pytest.fixture(scope="session")
-def phones(radv):  # noqa: ARG001 (asks for the GLSL compiler)
-    """Mesa's turnip and v3dv, which people build themselves: no machine must have them."""
-    try:
-        require_mobile()
-    except MissingError as error:
-        pytest.skip(str(error))
 
 
 def _need(libraries: list[str], tools: dict[str, str]) -> None:

@@ -17,7 +17,7 @@ from ..measures.metrics.visibility import require_rays
 from ..shaders.code.run import c, wgsl
 from ..shaders.languages.language import require_language
 from ..subjects.codecs.half.compute import half_device
-from .machine import require_intel, require_mobile, require_nvidia, require_radeons
+from .machine import require_intel, require_nvidia, require_radeons
 
 
 def _require_parquet() -> None:
@@ -39,7 +39,6 @@ CAPABILITIES: Mapping[str, Callable[[], object]] = MappingProxyType(
         "instructions on Radeons (cost --isa, pick)": require_radeons,
         "instructions on Intel (cost --isa --family intel)": require_intel,
         "instructions on NVIDIA (cost --isa --family nvidia)": require_nvidia,
-        "instructions on phones' GPUs (cost --isa --family mobile)": require_mobile,
         "render --flip, roughness": require_flip,
         "glTF files that Draco or meshoptimizer packed": _require_unpackers,
         "quality --arithmetic half by GLSL": half_device,

@@ -14,7 +14,7 @@ from ...gbuffer.gl.device import NoDeviceError, device
 from ..ground.compilers import tools
 from ..ground.machine.settings import settings
 from ..ground.machine.systems.system_files import processor_lines
-from ..ground.options.gpu_families import ANV, HASVK, MOBILE, NVRTC, RADV
+from ..ground.options.gpu_families import ANV, HASVK, NVRTC, RADV
 from ..ground.output.errors import MissingError
 from ..shaders.isa import isa, spirv
 
@@ -97,11 +97,6 @@ def require_intel() -> None:
 def require_nvidia() -> None:
     """Raises MissingError where NVIDIA's compiler of CUDA or its disassembler is missing."""
     _require(NVRTC)
-
-
-def require_mobile() -> None:
-    """Raises MissingError where the drivers of phones and small boards are not built, or the device they are given."""
-    _require(*MOBILE)
 
 
 def _require(*libraries: str) -> None:

@@ -88,20 +88,4 @@ COST_TABLES = (
         ),
         needs=("intel", "nvidia"),
     ),
-    count_table(
-        " mobile",
-        "xyz,xy,stereographic,spheremap,octahedral,per_pixel_view",
-        "--family a630,v3d42 --stage fragment --storage rgba8",
-        FRAGMENT,
-        [
-            column
-            for way in WAYS
-            for column in (
-                counted(f"{way}: Adreno 630", way, "a630"),
-                counted("waiting", way, "a630", "waiting"),
-                counted("V3D 4.2", way, "v3d42"),
-            )
-        ],
-        needs=("phones",),
-    ),
 )

@@ -9,7 +9,6 @@ from types import MappingProxyType
 RADV, ANV, HASVK = "libvulkan_radeon", "libvulkan_intel", "libvulkan_intel_hasvk"
 # NVIDIA's compiler of CUDA, which is given its own language and knows one kind of shader.
 NVRTC = "libnvrtc"
-TURNIP, V3DV = "libvulkan_freedreno", "libvulkan_broadcom"
 FRAGMENT = "fragment"
 
 
@@ -19,10 +18,10 @@ class Family:
 
     Attributes:
         title: what people call it.
-        vendor: "radeon", "intel", "nvidia", "qualcomm" or "broadcom": also the name of the group of its families.
+        vendor: "radeon", "intel" or "nvidia": also the name of the group of its families.
         library: the driver that compiles for it: of Vulkan, or NVRTC.
         names: every name that a Mesa may have for it; the first that the driver takes is used.
-        null_device: what a driver is told of a GPU that is not there, in the words of null_i915.c or null_mobile.c.
+        null_device: what a driver is told of a GPU that is not there, in the words of null_i915.c.
         stages: the kinds of shaders that are counted.
     """
 
@@ -46,12 +45,6 @@ def _nvidia(title: str, name: str) -> Family:
     return Family(title, "nvidia", NVRTC, (name,), stages=("compute",))
 
 
-def _adreno(number: int) -> Family:
-    # The chip's number has a byte for each digit, and any patch level.
-    chip = int.from_bytes([*map(int, str(number)), 255], "big")
-    return Family(f"Adreno {number}", "qualcomm", TURNIP, (f"a{number}",), f"msm {number} {chip:#010x}")
-
-
 # One for each generation, each vendor's oldest first. An Intel's words are PCI device, revision, slices, subslices of
 # each, execution units of each, and whether it has memory of its own (Mesa's pci_ids, and its tables of devices).
 FAMILIES: Mapping[str, Family] = MappingProxyType(
@@ -73,19 +66,14 @@ FAMILIES: Mapping[str, Family] = MappingProxyType(
         "sm_90": _nvidia("Hopper", "sm_90"),
         "sm_100": _nvidia("Blackwell B200", "sm_100"),
         "sm_120": _nvidia("Blackwell", "sm_120"),
-        **{f"a{number}": _adreno(number) for number in (630, 650, 660)},
-        "v3d42": Family("V3D 4.2, Raspberry Pi 4", "broadcom", V3DV, ("v3d42",), "v3d"),
     }
 )
-# The drivers that few machines have: of these a user builds his own.
-MOBILE = (TURNIP, V3DV)
 VENDORS = tuple(dict.fromkeys(family.vendor for family in FAMILIES.values()))
 
 # What a user may name: a family, or a vendor for all of its families.
 CHOICES: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {name: (name,) for name in FAMILIES}
     | {vendor: tuple(name for name, family in FAMILIES.items() if family.vendor == vendor) for vendor in VENDORS}
-    | {"mobile": tuple(name for name, family in FAMILIES.items() if family.library in MOBILE)}
 )
 # What people call each driver.
 TITLES = MappingProxyType(
@@ -94,8 +82,6 @@ TITLES = MappingProxyType(
         ANV: "Intel anv",
         HASVK: "Intel hasvk",
         NVRTC: "NVIDIA NVRTC",
-        TURNIP: "Qualcomm turnip",
-        V3DV: "Broadcom v3dv",
     }
 )
 

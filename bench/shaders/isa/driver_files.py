@@ -12,21 +12,15 @@ from pathlib import Path
 
 from ...ground.machine import children
 from ...ground.machine.systems.people import how_to_install
-from ...ground.options.gpu_families import MOBILE, RADV, TITLES
-from .mobile import driver as mobile
+from ...ground.options.gpu_families import RADV, TITLES
 
 # What would have a driver compile in another way, or the loader load something else; the session's other variables
 # stay.
-UNWANTED = (
-    *("RADV_", "ACO_", "AMD_", "ANV_", "INTEL_", "NIR_", "MESA_", "VK_", "NORMALBENCH_NULL_"),
-    *("TU_", "IR3_", "FD_", "V3D_", "V3DV_"),
-)
+UNWANTED = (*("RADV_", "ACO_", "AMD_", "ANV_", "INTEL_", "NIR_", "MESA_", "VK_", "NORMALBENCH_NULL_"),)
 
 
 def no_driver(library: str) -> str:
     """What to install where there is no description of a driver."""
-    if library in MOBILE:
-        return f"no {TITLES[library]}: no Vulkan driver file names {library}; {mobile.INSTALL}"
     said = f"no {TITLES[library]}: no Vulkan driver file names {library}"
     return f"{said}; install Mesa's ({how_to_install('mesa-vulkan-drivers', counts=True)})"
 
@@ -46,7 +40,6 @@ def _descriptions() -> Iterator[Path]:
     data = os.environ.get("XDG_DATA_DIRS") or "/usr/local/share:/usr/share"
     for root in ("~/.local/share", "/etc", *data.split(os.pathsep)):
         yield from sorted(Path(root).expanduser().glob("vulkan/icd.d/*.json"))
-    yield from mobile.descriptions()
 
 
 def _library(path: Path) -> str:

@@ -19,12 +19,11 @@ from typing import Any
 from ....gbuffer.defines.kernels import PLANES
 from ...ground.machine.children import python
 from ...ground.machine.cores import cores
-from ...ground.options.gpu_families import FAMILIES, MOBILE, NVRTC, RADV, TITLES
+from ...ground.options.gpu_families import FAMILIES, NVRTC, RADV, TITLES
 from ...ground.output import cache as kept
 from . import null_device
 from .compiler import DRIVERS
 from .driver_files import driver_file, no_driver
-from .mobile import driver as mobile
 from .null_device import NullDeviceError
 from .nvidia import tools
 from .nvidia.child import ARCHITECTURE
@@ -35,7 +34,7 @@ REFUSAL = "Unknown family"
 # After so many jobs that were never answered a family is given up.
 MOST_LOST = 5
 # What decides what a child makes of a job, beside the driver.
-OWN_FILES = ("compiler.py", "child.py", "null_i915.c", "null_drm.h", "mobile/null_mobile.c")
+OWN_FILES = ("compiler.py", "child.py", "null_i915.c", "null_drm.h")
 
 
 @dataclass(frozen=True)
@@ -125,7 +124,7 @@ def missing(library: str = RADV) -> str:
 def _null_device(library: str) -> None:
     """Builds what a driver is told of a GPU that is not there, where it needs it. Raises NullDeviceError."""
     if library != RADV:
-        null_device.library(mobile.SOURCE if library in MOBILE else null_device.SOURCE)
+        null_device.library()
 
 
 def compile_all(
@@ -264,8 +263,6 @@ def _variables(family: str, name: str) -> dict[str, str]:
     if FAMILIES[family].library == NVRTC:
         return {ARCHITECTURE: name}
     words = FAMILIES[family].null_device
-    if FAMILIES[family].library in MOBILE:
-        return mobile.variables(words)
     return null_device.variables(words) if words else {"RADV_FORCE_FAMILY": name}
 
 

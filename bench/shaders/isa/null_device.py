@@ -1,6 +1,6 @@
-"""GPUs that are not there: null_i915.c and mobile/null_mobile.c, each built once into the user's cache folder.
+"""An Intel GPU that is not there: null_i915.c, built once into the user's cache folder.
 
-A library's name there says what it was built of and what it holds: another source, or a damaged file, is built again.
+The library's name there says what it was built of and what it holds: another source, or a damaged file, is built again.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ class NullDeviceError(Exception):
         self.is_missing = is_missing
 
 
-def library(source: Path | None = None) -> Path:
-    """The shared library of a source, Intel's by default, that stands for a GPU. Raises NullDeviceError."""
-    folder, source = _library_folder(), source or SOURCE
-    stem = f"{source.stem}-{kept.key_of(source.read_bytes(), SHARED.read_bytes(), platform.machine())[:16]}"
-    return _kept_library(folder, stem) or _built_library(folder, stem, source)
+def library() -> Path:
+    """The shared library that stands for a GPU. Raises NullDeviceError."""
+    folder = _library_folder()
+    stem = f"{SOURCE.stem}-{kept.key_of(SOURCE.read_bytes(), SHARED.read_bytes(), platform.machine())[:16]}"
+    return _kept_library(folder, stem) or _built_library(folder, stem)
 
 
 def _kept_library(folder: Path, stem: str) -> Path | None:
@@ -75,13 +75,13 @@ def _library_name(stem: str, path: Path) -> str:
         return ""
 
 
-def _built_library(folder: Path, stem: str, source: Path) -> Path:
+def _built_library(folder: Path, stem: str) -> Path:
     try:
         kept.make_folder(folder)
         # Others see a whole file or none: it is moved there once it is complete.
         with tempfile.TemporaryDirectory(dir=folder) as made:
             whole = Path(made) / "library.so"
-            _compile(whole, source)
+            _compile(whole)
             path = folder / _library_name(stem, whole)
             whole.replace(path)
             return path.resolve()
@@ -90,18 +90,18 @@ def _built_library(folder: Path, stem: str, source: Path) -> Path:
         raise NullDeviceError(f"{said}; XDG_CACHE_HOME names another one") from error
 
 
-def _compile(path: Path, source: Path) -> None:
-    files = {source.name: own(source), SHARED.name: own(SHARED)}
-    words = ["-O1", "-shared", "-fPIC", "-o", path.name, source.name]
+def _compile(path: Path) -> None:
+    files = {SOURCE.name: own(SOURCE), SHARED.name: own(SHARED)}
+    words = ["-O1", "-shared", "-fPIC", "-o", path.name, SOURCE.name]
     try:
         done = tools.run(COMPILER, words, path.parent, files, SECONDS)
     except MissingError as error:
         raise NullDeviceError(NO_COMPILER, is_missing=True) from error
     except tools.ToolError as error:
-        raise NullDeviceError(f"{error} for {source.name}") from error
+        raise NullDeviceError(f"{error} for {SOURCE.name}") from error
     if done.status or not path.exists():
         last = [line.strip() for line in done.err.splitlines() if line.strip()][-1:]
-        said = f"{COMPILER} does not compile {source.name}: {last[0][:200] if last else f'status {done.status}'}"
+        said = f"{COMPILER} does not compile {SOURCE.name}: {last[0][:200] if last else f'status {done.status}'}"
         raise NullDeviceError(
             f"{said}; the headers of libc may be missing ({how_to_install('gcc libc6-dev', counts=True)})"
         )

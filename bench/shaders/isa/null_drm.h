@@ -1,6 +1,6 @@
-/* What the null devices share: a GPU that is not there, as libdrm lists it, in the process that loads it and in no other.
+/* A GPU that is not there, as libdrm lists it, in the process that loads it and in no other.
 
-   A device defines has_gpu, list_gpu and answer. It works on its own file alone: DRM requests on any other file, and the
+   null_i915.c defines has_gpu, list_gpu and answer. It works on its own file alone: DRM requests on any other file, and the
    opening of any other DRM device, fail with ENODEV and never reach the kernel.
 
    Structures and numbers are those of the kernel's include/uapi/drm/drm.h and of libdrm's xf86drm.h, written out so that
@@ -22,15 +22,12 @@
 /* libdrm's devices. */
 struct pci_place { uint16_t domain; uint8_t bus, device, function; };
 struct pci_names { uint16_t vendor, device, subvendor, subdevice; uint8_t revision; };
-struct platform_names { char **compatible; };
 struct drm_device { char **nodes; int available_nodes, bus; void *place, *names; };
-enum { NODES = 3, PRIMARY_NODE = 0, RENDER_NODE = 2, PCI = 0, PLATFORM = 2, MOST = 2 };
+enum { NODES = 3, RENDER_NODE = 2, PCI = 0, MOST = 1 };
 
 /* DRM's own requests; a driver's begin at COMMANDS. */
-enum { GET_VERSION = 0x00, GET_CAPABILITY = 0x0c, SYNC_CREATE = 0xbf, COMMANDS = 0x40 };
+enum { GET_CAPABILITY = 0x0c, SYNC_CREATE = 0xbf, COMMANDS = 0x40 };
 struct capability { uint64_t name, value; };
-struct version { int32_t major, minor, patch; struct text { size_t length; char *text; } name, date, about; };
-_Static_assert(sizeof(struct version) == 64, "drm.h");
 
 /* Reading and mapping it gives zeros, as memory that was just allocated does. */
 static char NODE[] = "/dev/zero";
@@ -58,19 +55,6 @@ static inline struct drm_device *pci_gpu(unsigned vendor, unsigned device, unsig
   static struct drm_device found = {DRM_NODES, 1 << RENDER_NODE, PCI, &place, &names};
   names.vendor = vendor, names.device = device, names.revision = revision;
   return &found;
-}
-
-/* libdrm asks twice for a version: for the lengths of its texts, and then for the texts. */
-static inline void fill(struct text *asked, const char *text) {
-  size_t length = strlen(text);
-  if (asked->text) memcpy(asked->text, text, asked->length < length ? asked->length : length);
-  asked->length = length;
-}
-
-static inline int tell_version(struct version *asked, int major, int minor, const char *name) {
-  asked->major = major, asked->minor = minor, asked->patch = 0;
-  fill(&asked->name, name), fill(&asked->date, "20080528"), fill(&asked->about, "a null device");
-  return 0;
 }
 
 int drmGetDevices2(uint32_t flags, struct drm_device **devices, int most) {

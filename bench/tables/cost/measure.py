@@ -18,7 +18,6 @@ from ...ground.options.gpu_families import FAMILIES, NVRTC
 from ...ground.output.errors import MissingError
 from ...shaders.isa import disassembly, intel_disassembly, isa, occupancy, spirv
 from ...shaders.isa.isa import Compiled, Failure, Job, Kernel, Outcome
-from ...shaders.isa.mobile import ir3_disassembly, qpu_disassembly
 from ...shaders.isa.nvidia import sass
 from ...shaders.isa.nvidia.source import cuda_of
 from ...subjects.codecs.half.kernels import half_operation
@@ -40,8 +39,6 @@ STATISTICS = {
     "code_bytes": (("Code size",),),
     "stall_cycles": (("Stall cycles",),),
 }
-# Bytes in which a vendor's driver counts code, where it is not one.
-CODE_UNITS = {"qualcomm": 4}
 # Of the whole kernel. What the driver's model calls latency and throughput is a maximum over units and over what waits
 # for what: one kernel's less another's is nobody's cost.
 WHOLE = {
@@ -55,8 +52,6 @@ READERS: Mapping[str, Any] = {
     "radeon": disassembly,
     "intel": intel_disassembly,
     "nvidia": sass,
-    "qualcomm": ir3_disassembly,
-    "broadcom": qpu_disassembly,
 }
 KINDS = tuple(dict.fromkeys(name for reader in READERS.values() for name in reader.KINDS))
 LISTED = ("issue_slots", "executed_slots", *KINDS, "packed", "branches", "loops", "looped")
@@ -245,8 +240,6 @@ def _figures(row: Row, outcome: Outcome, empty: Outcome) -> tuple[Row, str]:
     kernel, nothing = compared
     for column, names in STATISTICS.items():
         row[column] = _difference(_total(kernel, names), _total(nothing, names))
-    if row["code_bytes"] is not None and row["family"] in FAMILIES:
-        row["code_bytes"] *= CODE_UNITS.get(FAMILIES[row["family"]].vendor, 1)
     for column, names in WHOLE.items():
         row[column] = _total(kernel, names)
     ours, theirs = (_listed(k.assembly, int(_total(k, INSTRUCTIONS) or -1), row["family"]) for k in compared)
@@ -296,7 +289,6 @@ def _listed(assembly: str, total: int, family: str) -> Mapping[str, int | None] 
     # What some vendors' listings say alone.
     some: dict[str, int | None] = {"packed": read.packed(assembly)} if hasattr(read, "packed") else {}
     some |= {"looped": len(set().union(*read.loops(assembly)))} if hasattr(read, "loops") else {}
-    some |= read.slots(assembly) if hasattr(read, "slots") else {}
     return {"issue_slots": read.issue_slots(counts, family), **counts, **some, "branches": branches, "loops": loops}
 
 
@@ -319,7 +311,7 @@ def _executed_slots(case: Case, row: Row, assembly: str) -> float | None:
 
 def listings_of(family: str) -> Any:
     """What reads the listings of a family's vendor: `names`, `kinds`, `jumps`, `issue_slots`, `rates` and GUARDS, and
-    of some `packed`, `slots`, and `loops` with `kinds_in_order`."""
+    of some `packed`, and `loops` with `kinds_in_order`."""
     known = FAMILIES.get(family)
     return READERS[known.vendor] if known else disassembly
 

@@ -30,8 +30,7 @@ class CostOptions(SourceOptions):
         Option(
             "--family",
             f"GPUs, comma-separated: {', '.join(CHOICES['radeon'])}, or radeon for these; {titled('intel')}, or intel "
-            f"for these; {titled('nvidia')}, or nvidia for these; "
-            f"{titled('mobile')}, or mobile for these, whose drivers you build; all.",
+            f"for these; {titled('nvidia')}, or nvidia for these; all.",
             in_run=True,
         ),
     ] = "radeon"
@@ -72,14 +71,12 @@ COLUMNS = (
         "instructions",
         "Instructions of one lane, less those of an empty kernel that moves the same numbers. The columns full_rate, "
         "conversion, quarter_rate, transcendental, scalar, memory, waiting, control_flow and other_alu add up to it "
-        "where there is a disassembly. "
-        "Qualcomm: cycles that a program waits in words count.",
+        "where there is a disassembly.",
     ),
     _count_column(
         "issue_slots",
         "How long they keep the vector unit busy, in full-rate instructions: on GCN slow ones count 4, on RDNA a "
-        "transcendental one issues once and runs in another unit. Broadcom: instructions. Empty "
-        "for Intel, NVIDIA and Qualcomm.",
+        "transcendental one issues once and runs in another unit. Empty for Intel and NVIDIA.",
     ),
     _count_column(
         "executed_slots",
@@ -91,7 +88,7 @@ COLUMNS = (
     _count_column("full_rate", "Radeon: instructions at the full rate.", 17),
     _count_column(
         "conversion",
-        "Between floats and integers: at a quarter of the rate on Polaris and Vega. Intel, Qualcomm: also between two "
+        "Between floats and integers: at a quarter of the rate on Polaris and Vega. Intel: also between two "
         "sizes of floats. NVIDIA: also rounding to whole numbers, in the same unit.",
         13,
     ),
@@ -103,18 +100,17 @@ COLUMNS = (
     _count_column(
         "transcendental",
         "Reciprocal, root, logarithm, sine: at a quarter of the rate, from Navi on in a unit of their own. Intel: "
-        "`math`, which also divides integers. NVIDIA: `MUFU`. Broadcom: instructions that hold one.",
+        "`math`, which also divides integers. NVIDIA: `MUFU`.",
     ),
     _count_column("scalar", "Radeon, Intel, NVIDIA: instructions once for all lanes.", 14),
     _count_column(
         "memory",
-        "Loads, stores, export; Radeon: interpolation, too; Intel: messages (`send`); NVIDIA: reads of constants, too; "
-        "Broadcom: instructions that only read inputs, or write results.",
+        "Loads, stores, export; Radeon: interpolation, too; Intel: messages (`send`); NVIDIA: reads of constants, too.",
         15,
     ),
     _count_column(
         "waiting",
-        "Waits and hints about order; Qualcomm: `nop`; NVIDIA: without the padding behind a kernel's end.",
+        "Waits and hints about order; NVIDIA: without the padding behind a kernel's end.",
         10,
     ),
     _count_column("control_flow", "Jumps and what ends a branch or a program. Radeon: in `scalar`.", 18),
@@ -122,7 +118,6 @@ COLUMNS = (
         "other_alu", "All other arithmetic, moves, compares and selections; interpolation, too. Radeon: empty.", 19
     ),
     _count_column("packed", "Radeon: of full_rate those on two numbers of 16 bits at once.", 20),
-    _count_column("vliw_slots", "Broadcom: operations in all instructions, of which one holds up to two.", 20),
     _count_column("branches", "Conditional jumps, more than the empty kernel's. Both sides of a branch count.", 12),
     _count_column("loops", "Jumps back, more than the empty kernel's. A loop's body counts once."),
     _count_column("looped", "Of instructions those in loops, which run again at each turn.", 21),
@@ -208,8 +203,6 @@ ALSO = (
         for driver, names in (
             ("hasvk", ("hsw", "bdw")),
             ("anv", ("skl", "tgl", "adl", "dg2")),
-            ("turnip", ("a630", "a650", "a660")),
-            ("v3dv", ("v3d42",)),
         )
         for name in names
     ),

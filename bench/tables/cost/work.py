@@ -51,18 +51,13 @@ def packings(names: str) -> list[Packing]:
     return list(dict.fromkeys(packing for several in chosen for packing in several))
 
 
-# Compilers that people have to install or build themselves.
-OWN = (families.NVRTC, *families.MOBILE)
-
-
 def chosen_families(names: str) -> list[str]:
-    """What `--family` names: families, and vendors for all of theirs. Those whose compiler people install or build
-    themselves are among all of them where it is there. Raises UsageError."""
+    """What `--family` names: families, and vendors for all of theirs. NVIDIA's, whose compiler
+    people install themselves, are among all of them where it is there. Raises UsageError."""
     found = families_named(names)
-    if names.strip().lower() != "all":
+    if names.strip().lower() != "all" or not isa.missing(families.NVRTC):
         return found
-    lost = {library for library in OWN if isa.missing(library)}
-    return [name for name in found if families.FAMILIES[name].library not in lost]
+    return [name for name in found if families.FAMILIES[name].library != families.NVRTC]
 
 
 @dataclass
