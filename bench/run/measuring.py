@@ -68,10 +68,6 @@ class Place(Protocol):
         """
         ...
 
-    def lacking(self, table: str) -> Sequence[str]:
-        """What another process turned out to lack for a table's steps."""
-        ...
-
 
 class Here:
     """Steps are measured in this process, in their order."""
@@ -82,9 +78,6 @@ class Here:
         for step, rows in zip(steps, ask.table.work.measure(steps, tick), strict=True):
             require_living_device()
             yield step, [_with_settings(row, said) for row in rows]
-
-    def lacking(self, table: str) -> Sequence[str]:  # noqa: ARG002 # as of every Place
-        return ()
 
 
 def _with_settings(row: Row, said: str) -> Row:
@@ -140,7 +133,7 @@ def measured(ask: Asked, kept: Kept, place: Place = HERE) -> Measured:
     """The finished rows: those that are kept, and the others measured now and kept as they come."""
     found = _measured_steps(ask, kept, place)
     rows = ask.table.work.finish([row for rows in found for row in rows])
-    return Measured(ask.options, ask.outputs, ask.steps, rows, place.lacking(ask.table.name), found)
+    return Measured(ask.options, ask.outputs, ask.steps, rows, found)
 
 
 def _measured_steps(ask: Asked, kept: Kept, place: Place) -> list[list[Row]]:

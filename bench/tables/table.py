@@ -75,7 +75,6 @@ class Measured:
         options, outputs: what was asked for.
         steps: what was measured.
         rows: the finished rows.
-        lacks: what workers turned out to lack.
         kept: the rows of each step, as they were measured.
     """
 
@@ -83,7 +82,6 @@ class Measured:
     outputs: Any
     steps: Sequence[Step]
     rows: Sequence[Row]
-    lacks: Sequence[str] = ()
     kept: Sequence[Sequence[Row]] = ()
 
 
@@ -146,7 +144,7 @@ class Work:
         needs: what a step is measured with besides JAX: GL, VULKAN, COMPILERS, C_COMPILER. Workers that have another
             one, or none, do not measure it.
         is_timed: whether a clock is read for a step's rows: then nothing else is measured on its machine meanwhile.
-        stays: whether measuring leaves behind what `write` takes, so that no other process can do it.
+        stays: whether measuring leaves behind what `write` or `lacking` takes, so that no other process can do it.
     """
 
     steps: Callable[[Any, Any], Sequence[Step]]
@@ -264,8 +262,8 @@ class Table:
         return " ".join(str(row[c.name]) for c in self.of_role(Role.KEY) if row.get(c.name) is not None)
 
     def lacking(self, done: Measured) -> list[str]:
-        """What the machine, or a worker, turned out to lack; each once."""
-        return list(dict.fromkeys((*self.work.lacking(done), *done.lacks)))
+        """What the machine turned out to lack; each once."""
+        return list(dict.fromkeys(self.work.lacking(done)))
 
     def drops(self, rows: Sequence[Row]) -> tuple[str, ...]:
         """The columns of rows that a narrow terminal leaves out, the first first."""

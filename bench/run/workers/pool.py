@@ -29,11 +29,6 @@ class Pool:
 
     def __init__(self, crew: Crew):
         self._crew = crew
-        self._lacks: dict[str, list[str]] = {}
-
-    def lacking(self, table: str) -> Sequence[str]:
-        """What workers turned out to lack for a table."""
-        return self._lacks.get(table, ())
 
     def measure(self, ask: Asked, steps: Sequence[Step], tick: Tick) -> Iterator[tuple[Step, list[Row]]]:
         """Each step with its rows, as they come; what no worker can measure is measured here in the end.
@@ -86,8 +81,6 @@ class Pool:
         for name, data in step.pictures.items():
             with whole_file(getattr(ask.outputs, PICTURES) / name) as partial:
                 partial.write_bytes(data)
-        lacks = self._lacks.setdefault(ask.table.name, [])
-        lacks += [reason for reason in step.lacks if reason not in lacks]
         return step.rows
 
     def _measured_here(self, ask: Asked, left: Sequence[Waiting], tick: Tick) -> Iterator[tuple[Step, list[Row]]]:

@@ -17,7 +17,7 @@ from ...ground.machine.lost import require_living_device
 from ...ground.output.cache import folder_of_this_process
 from ...ground.output.errors import MissingError, UsageError, told
 from ...tables.registry import TABLES
-from ...tables.table import Measured, Row, Step
+from ...tables.table import Row, Step
 from ..measuring import Asked, asked_together, with_parts
 from .about import About, about
 from .orders import PICTURES, Order, check_paths
@@ -29,12 +29,11 @@ TOLD = "normalbench: "
 
 @dataclass(frozen=True)
 class StepAnswer:
-    """A measured step: its name, its rows, its pictures by their place, and what the worker lacks."""
+    """A measured step: its name, its rows, and its pictures by their place."""
 
     name: str
     rows: list[Row]
     pictures: dict[str, bytes]
-    lacks: list[str]
 
 
 @dataclass(frozen=True)
@@ -111,14 +110,9 @@ def _measured(laid: Laid, wanted: Sequence[str]) -> Answer:
 def _answers(laid: Laid, wanted: Sequence[str]) -> Iterator[StepAnswer]:
     ask, chosen = laid.ask, [laid.steps[name] for name in wanted]
     rows_of = ask.table.work.measure(chosen, lambda _: None)
-    for name, step, rows in zip(wanted, chosen, rows_of, strict=True):
+    for name, rows in zip(wanted, rows_of, strict=True):
         require_living_device()
-        lacks = _lacks(ask, step, rows)
-        yield StepAnswer(name, laid.order.as_typed(list(rows)), _taken(laid.folder), lacks)
-
-
-def _lacks(ask: Asked, step: Step, rows: Sequence[Row]) -> list[str]:
-    return list(ask.table.work.lacking(Measured(ask.options, ask.outputs, [step], rows)))
+        yield StepAnswer(name, laid.order.as_typed(list(rows)), _taken(laid.folder))
 
 
 def _taken(folder: Path) -> dict[str, bytes]:

@@ -24,7 +24,7 @@ from ...ground.output.writing import check_folder, whole_file
 from ...shaders.isa import isa, spirv
 from ...subjects.codecs.user_encodings import encodings_named
 from ..families_named import families_named
-from ..table import COMPILERS, GL, Measured, Row, Sheet, Step, Tick, Work, each
+from ..table import Measured, Row, Sheet, Step, Tick, Work, each
 from . import measure, sheets
 from .charts import front_chart
 from .extras import SOURCES, extras
@@ -265,13 +265,6 @@ def write_sources(folder: Path, encodings: Iterable[Encoding]) -> None:
                 partial.write_text(encoding.glsl.read_text(encoding="utf-8"), encoding="utf-8", newline="\n")
 
 
-NEEDS = {"isa": frozenset({COMPILERS}), "time": frozenset({GL})}
-
-
-def _needs(step: Step) -> frozenset[str]:
-    return NEEDS.get(step.case.name, frozenset())
-
-
 def _missing() -> str:
     """Why `run` leaves the table out on this machine; empty where it does not."""
     return spirv.NO_COMPILER if spirv.version(spirv.COMPILER) is None else isa.missing()
@@ -289,5 +282,5 @@ WORK = Work(
     listing=_listing,
     lacking=_lacking,
     missing=_missing,
-    needs=_needs,
+    stays=True,
 )

@@ -82,7 +82,7 @@ class FakeCrew:
 
 
 def answer(names) -> Answer:
-    return Answer([StepAnswer(name, [{"of": name}], {}, []) for name in names])
+    return Answer([StepAnswer(name, [{"of": name}], {}) for name in names])
 
 
 def measured(crew: FakeCrew, ask: Asked) -> tuple[list[str], list]:

@@ -36,13 +36,12 @@ targets = [
     { format = "rgba8", holds = "specular.r specular.g specular.b" },
 ]
 """
-# Of every kind: several back ends, frames with pictures, steps that are functions, and what compilers say.
+# Of every kind: several back ends, frames with pictures, and steps that are functions.
 COMMANDS = {
     "quality": "--encoding octahedral,spheremap --storage rgba8,rg8 --normals sphere,axes --count 4096",
     "depth": "--depth linear,logarithmic --near 0.1 --count 512 --storage depth16,depth24",
     "lights": "--experiment equal,banding --light-buffer linear,rgba16f --sum 1 --counts 4",
     "render": "--encoding octahedral,spheremap --scene gloss --size 64x36 --repeats 0",
-    "cost": "--isa --encoding octahedral,spheremap --storage rg8 --family rdna2 --operation encode,decode",
     "motion": "--encoding octahedral --storage rg8 --turn 0.25,1 --frames 4 --count 256 --size 64x36",
 }
 PICTURED = ("lights", "render")
@@ -74,7 +73,7 @@ def measured(run, folder: Path, table: str, words: str, *on: str) -> tuple[list[
 
 @pytest.mark.slow
 @pytest.mark.parametrize("table", COMMANDS)
-def test_the_rows_and_pictures_are_those_of_one_process(gl, radv, run, tmp_path, table):  # noqa: ARG001
+def test_the_rows_and_pictures_are_those_of_one_process(gl, run, tmp_path, table):  # noqa: ARG001
     """Every figure to the last digit, in the same order; every picture to the last byte."""
     (tmp_path / "one").mkdir()
     (tmp_path / "two").mkdir()
