@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from speed import __main__ as program
 from speed import c_baseline, growth, simulate, throughput, timing
-from speed.simulate import ON_A_MACHINE, Costs, Load, simulated
+from speed.simulate import Costs, Load, simulated
 from speed.throughput import WHOLE
 
 from normalbench.bench.ground.output.errors import MissingError
@@ -139,17 +139,16 @@ def test_a_command_that_is_always_busy_is_the_limit():
 
 
 def test_what_an_order_costs_comes_once_for_each_worker():
-    """Steps are made in 50 s. Files of 10 orders are sent in a second each: to one worker, or to all of 100."""
+    """Steps are made in 50 s; files are sent in a second."""
     assert simulated(Load([1.0], 100, prepare=50), 1, FREE).seconds == pytest.approx(150)
     assert simulated(Load([1.0], 100, prepare=50), 100, FREE).seconds == pytest.approx(51)
-    load, costs = Load([1.0], 100, sent=1.0, orders=10), Costs(start=0, task=0, row=0, byte=1.0)
-    assert simulated(load, 1, costs).command == pytest.approx(10)
+    load, costs = Load([1.0], 100, sent=1.0), Costs(start=0, task=0, row=0, byte=1.0)
+    assert simulated(load, 1, costs).command == pytest.approx(1)
     assert simulated(load, 100, costs).command == pytest.approx(100)
 
 
-def test_of_steps_that_a_clock_is_read_for_a_machine_has_one_at_a_time():
-    assert simulated(Load([1.0], 100, is_timed=True), ON_A_MACHINE, FREE).seconds == pytest.approx(100)
-    assert simulated(Load([1.0], 100, is_timed=True), 10 * ON_A_MACHINE, FREE).seconds == pytest.approx(10)
+def test_steps_that_a_clock_is_read_for_are_measured_one_at_a_time():
+    assert simulated(Load([1.0], 100, is_timed=True), 80, FREE).seconds == pytest.approx(100)
 
 
 def test_a_record_keeps_what_else_it_holds(tmp_path, monkeypatch):

@@ -143,7 +143,8 @@ class Work:
         missing: why `run` leaves the table out on this machine; empty where it does not.
         needs: what a step is measured with besides JAX: GL, VULKAN, COMPILERS, C_COMPILER. Workers that have another
             one, or none, do not measure it.
-        is_timed: whether a clock is read for a step's rows: then nothing else is measured on its machine meanwhile.
+        is_timed: whether a clock is read for a step's rows: then the process that was asked measures it, after all
+            others.
         stays: whether measuring leaves behind what `write` or `lacking` takes, so that no other process can do it.
     """
 

@@ -7,8 +7,7 @@ import json
 import random
 import tempfile
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import closing
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -25,8 +24,6 @@ from .scheduled import scheduled
 from .timing import Row, exponent
 
 WORKERS = (1, 4, 10, 100, 1000)
-# Workers of a machine, of which one measures at a time where a clock is read.
-ON_A_MACHINE = 8
 # Tasks and bytes that are sent to measure what they cost; a row as long as most.
 TASKS, BYTES, ROW = 1000, 1 << 24, {"row": "0" * 1500}
 
@@ -55,10 +52,9 @@ class Load:
     Attributes:
         seconds: recorded times of steps, from which those of the load are drawn.
         steps: how many steps there are.
-        prepare: seconds in which a worker makes the steps of an order.
-        sent, taken: bytes to a worker for each order, and back for each step.
-        orders: into how many orders the steps are divided: a worker reads the files of its own.
-        is_timed: whether a clock is read.
+        prepare: seconds in which a worker makes the steps.
+        sent, taken: bytes to each worker, and back for each step.
+        is_timed: whether a clock is read: then the command measures them itself.
     """
 
     seconds: Sequence[float]
@@ -66,7 +62,6 @@ class Load:
     prepare: float = 0.0
     sent: float = 0.0
     taken: float = 0.0
-    orders: int = 1
     is_timed: bool = False
 
 
@@ -80,20 +75,16 @@ class Simulated:
 
 def simulated(load: Load, workers: int, costs: Costs, seed: int = 0) -> Simulated:
     """Workers take chunks as they get free. The command serves one at a time."""
-    rng, size_of = random.Random(seed), load.steps // load.orders
+    rng, hands = random.Random(seed), 1 if load.is_timed else workers
     times = rng.choices(load.seconds, k=load.steps)
-    hands = max(workers // ON_A_MACHINE, 1) if load.is_timed else workers
-    free = [(0.0, number) for number in range(hands)]
-    knows: dict[int, int] = {}
+    free, knows = [(0.0, number) for number in range(hands)], set[int]()
     clock = busy = end = 0.0
     at = 0
     while at < load.steps:
         ready, number = heapq.heappop(free)
-        order = at // size_of
         size = 1 if load.is_timed else chunk_size(load.steps - at, hands)
-        size = min(size, (order + 1) * size_of - at) if order < load.orders - 1 else min(size, load.steps - at)
-        is_new = knows.get(number) != order
-        knows[number] = order
+        is_new = number not in knows
+        knows.add(number)
         served = costs.task + size * (costs.row + load.taken * costs.byte) + is_new * load.sent * costs.byte
         clock, busy = max(clock, ready) + served, busy + served
         done = clock + sum(times[at : at + size]) + is_new * load.prepare
@@ -129,16 +120,7 @@ def loads_of(record: Mapping[str, Any]) -> dict[str, list[Load]]:
         Load(times[one["table"]], one["steps"], one["prepare"], 0.0, sizes[one["table"]], is_timed=one["timed"])
         for one in record["everything"]
     ]
-    scenes = record["scenes"]
-    render = Load(
-        times["render"],
-        scenes["count"] * scenes["rows"],
-        scenes["prepare"],
-        scenes["bytes"],
-        sizes["render"],
-        scenes["count"],
-    )
-    return {"all encodings, storages and sets": everything, f"render, {scenes['count']} scenes": [render]}
+    return {"all encodings, storages and sets": everything}
 
 
 def table(record: Mapping[str, Any]) -> list[Row]:
@@ -175,32 +157,25 @@ def step_times(table: Table) -> tuple[list[float], int]:
 
 def measured_costs() -> Costs:
     """What a task, a row and a byte cost here, with two workers of a scheduler."""
-    from normalbench.bench.run.workers.about import about
-    from normalbench.bench.run.workers.crew import Crew
-    from normalbench.bench.run.workers.link import Link
+    from distributed import Client
 
-    own, began = about(), time.perf_counter()
-    with scheduled({}, {}) as there, closing(Link(there.address)) as link:
-        crew = Crew(link, own)
-        while len(crew.admission) < 2:
-            crew.lost()
-            crew.arrival()
+    from normalbench.bench.run.workers.worker import quiet
+
+    quiet()
+    began = time.perf_counter()
+    with scheduled({}, {}) as there, Client(there.address, set_as_default=False) as client:
+        client.wait_for_workers(2)
         start = time.perf_counter() - began
         # `len` takes no time: what remains is what sending a task takes.
-        task = _through(crew, TASKS, lambda address: crew.send(address, "", len, b"")) / TASKS
-        data = bytes(BYTES)
-        byte = _through(crew, 8, lambda address: crew.send(address, "", len, data)) / (8 * BYTES)
+        task = _through(client, TASKS, b"") / TASKS
+        byte = _through(client, 8, bytes(BYTES)) / (8 * BYTES)
     return Costs(round(start, 2), round(task, 6), round(_row_cost(), 6), float(f"{byte:.2g}"))
 
 
-def _through(crew: Any, count: int, send: Callable[[str], None]) -> float:
-    """Seconds for so many tasks, each worker having one at a time."""
-    began, sent, back = time.perf_counter(), 0, 0
-    while back < count:
-        for address in crew.idle()[: count - sent]:
-            send(address)
-            sent += 1
-        back += crew.arrival() is not None
+def _through(client: Any, count: int, data: bytes) -> float:
+    """Seconds for so many tasks."""
+    began = time.perf_counter()
+    client.gather([client.submit(len, data, pure=False) for _ in range(count)])
     return time.perf_counter() - began
 
 

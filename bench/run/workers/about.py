@@ -1,43 +1,46 @@
-"""What a process says of itself: versions and sources, and what it can measure with."""
+"""What rows depend on besides their keys, as marks: two processes whose marks are the same give the same rows."""
 
 from __future__ import annotations
 
-import os
-import socket
-from collections.abc import Callable, Mapping
+import hashlib
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from types import MappingProxyType
-from typing import Any
 
 from ...ground.machine.devices import found_device
-from ...ground.machine.systems.system_files import boot
+from ...ground.machine.settings import settings
 from ...ground.machine.webgpu import adapters
 from ...ground.native import library
 from ...ground.output.sources import sources
 from ...keep.machine import compilers, processor
 from ...tables.table import C_COMPILER, COMPILERS, GL, VULKAN
 
+# What every step needs, whatever else it does.
+BASE = "version, sources, settings and processor"
 # What figures depend on: workers have the versions of the process that asks.
 PACKAGES = ("normalbench", "numpy", "jax", "jaxlib", "moderngl", "scipy", "wgpu", "embreex", "flip-evaluator")
 
-About = dict[str, Any]
-
 
 @cache
-def about() -> About:
-    """This process: `versions`, `sources`, `processor`, `host`, and in `can` what each device or tool is.
+def marks() -> Mapping[str, str]:
+    """Return the mark of this process, and of each device or tool that it can measure with, by name."""
+    texts = {BASE: _base()} | {name: ask() for name, ask in CAN.items()}
+    return {name: f"{name} {hashlib.sha256(text.encode()).hexdigest()[:12]}" for name, text in texts.items()}
 
-    Two processes whose values are the same give the same rows.
-    """
-    return {
-        "versions": {package: _version(package) for package in PACKAGES},
-        "sources": sources(),
-        "processor": processor(),
-        "host": _host(),
-        "name": f"{socket.gethostname()}:{os.getpid()}",
-        "can": {name: ask() for name, ask in CAN.items()},
-    }
+
+def marks_of(needs: Iterable[str]) -> frozenset[str]:
+    """Return the marks that another process must have to measure in place of this one."""
+    return frozenset(marks()[name] for name in (BASE, *needs))
+
+
+def named(chosen: Iterable[str]) -> str:
+    """Name what marks are of."""
+    return ", ".join(sorted(mark.rpartition(" ")[0] for mark in chosen))
+
+
+def _base() -> str:
+    return "\n".join((*map(_version, PACKAGES), sources(), str(settings()), processor()))
 
 
 def _version(package: str) -> str:
@@ -45,11 +48,6 @@ def _version(package: str) -> str:
         return version(package)
     except PackageNotFoundError:
         return "none"
-
-
-def _host() -> str:
-    # Containers of one machine share its cores, whatever they are called.
-    return boot() or socket.gethostname()
 
 
 def _gl() -> str:

@@ -1,69 +1,84 @@
-"""What carries tasks to workers and answers back: pipes to processes of this machine, or a scheduler of dask."""
+"""What travels to workers and back, and who carries it: pipes to processes of this machine, or a scheduler of dask."""
 
 from __future__ import annotations
 
-import queue
-from abc import ABC, abstractmethod
-from collections.abc import Callable
-from contextlib import suppress
-from dataclasses import dataclass, field
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+from ...tables.table import Row, Step
+from .orders import Order, step_name
+
+# How long an arrival is waited for, in seconds.
+LOOK_S = 0.5
 
 
 @dataclass(eq=False)
-class Flight:
-    """A task under way: to which worker, what it is of, and what the carrier has of its answer."""
-
-    address: str
-    what: Any
-    carried: Any = field(default=None, repr=False)
-
-
-class Lost:
-    """What is there in place of an answer that does not come."""
-
-
-LOST = Lost()
-
-
-class Carrier(ABC):
-    """Workers that are there, tasks sent to one of them, and answers as they come.
+class Task:
+    """Steps that a worker is sent together.
 
     Attributes:
-        address: what `--on` names.
+        needs: the marks that it has to have.
+        is_packed: whether the order travels with them; else its id does, which most workers know.
     """
 
-    def __init__(self, address: str):
-        self.address = address
-        self._arrived: queue.SimpleQueue[Flight] = queue.SimpleQueue()
+    order: Order
+    needs: frozenset[str]
+    steps: Sequence[Step]
+    is_packed: bool = False
 
-    @abstractmethod
-    def workers(self) -> dict[str, bool] | None:
-        """The addresses of the workers that are there, and whether each is normalbench's. None where nobody answers:
-        what was under way is lost.
+    def arguments(self) -> tuple[Order | str, frozenset[str], list[str]]:
+        """Return what `tasks.measure` is called with."""
+        order = self.order if self.is_packed else self.order.id
+        return order, self.needs, [step_name(self.order.table, step.key) for step in self.steps]
+
+    def singly(self) -> list[Task]:
+        """Make a task of each step."""
+        return [replace(self, steps=[step]) for step in self.steps]
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What becomes of a task.
+
+    Attributes:
+        steps: of each of its steps, in their order, the rows and the pictures by their place.
+        told: lines for standard error.
+        knows: whether the worker has the order; else it is to be sent along.
+        refused: why no worker measures it; empty where one does.
+        lost: how many workers were lost with it; 0 where it was measured in the end.
+    """
+
+    steps: Sequence[tuple[list[Row], dict[str, bytes]]] = ()
+    told: Sequence[str] = ()
+    knows: bool = True
+    refused: str = ""
+    lost: int = 0
+
+
+class Carrier(Protocol):
+    """Workers that are there, or may come."""
+
+    def count(self, needs: frozenset[str]) -> int:
+        """Count the workers that have some marks."""
+        ...
+
+    def room(self, needs: frozenset[str]) -> int:
+        """Count the tasks with these needs that are to be sent now."""
+        ...
+
+    def send(self, task: Task) -> None:
+        """Have a worker measure a task."""
+        ...
+
+    def arrivals(self) -> Sequence[tuple[Task, Answer | None]]:
+        """Wait a moment, and return tasks with their answers; None for one that is to be sent again.
 
         Raises:
-            UsageError: none stays.
+            UsageError, MissingError: what measuring raised; or the workers, or their scheduler, do not stay.
         """
+        ...
 
-    def connect(self) -> None:  # noqa: B027 # nothing, where workers are this process's own
-        """Connect anew, where nobody answers. Raises UsageError where that goes on."""
-
-    @abstractmethod
-    def send(self, flight: Flight, function: Callable[..., Any], *arguments: Any) -> None:
-        """Have a worker call a function; the flight arrives once there is an answer, unless its worker ends."""
-
-    def next_arrival(self, seconds: float) -> Flight | None:
-        """A flight that has arrived; None where none does in time."""
-        with suppress(queue.Empty):
-            return self._arrived.get(timeout=seconds)
-        return None
-
-    def answer(self, flight: Flight) -> Any:
-        """What a flight brings; LOST where that was lost on the way, as with the worker that has it; an exception where
-        it was none of the connection's, and would come again."""
-        return flight.carried
-
-    @abstractmethod
     def close(self) -> None:
         """End the connection, and the workers that were started for it."""
+        ...

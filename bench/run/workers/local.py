@@ -3,28 +3,34 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+from collections import Counter
+from contextlib import suppress
 from functools import partial
+from queue import Empty, SimpleQueue
 from typing import Any
 
 from ...ground.machine.memory import keep_what_is_freed
 from ...ground.output.errors import UsageError
 from ..piped import Piped, Send
-from .carrier import Carrier, Flight
+from .carrier import LOOK_S, Answer, Task
 
 # Workers that end by themselves, one for each that there should be, this often: none will stay.
 MOST_FAILURES = 3
+# A step with which more workers than this were lost is lost itself, and of several steps nobody knows which one it was.
+MOST_LOST = 3
 
 
-class LocalWorkers(Carrier):
-    """Some worker processes, which are ended with `close`."""
+class LocalWorkers:
+    """Some worker processes, each with one task at a time. They are ended with `close`."""
 
     def __init__(self, count: int):
-        super().__init__(f"local:{count}")
+        self._address = f"local:{count}"
         self._names = (f"local {number}" for number in itertools.count(1))
         self._workers: dict[str, Piped] = {}
-        # What each was sent last.
-        self._flights: dict[str, Flight] = {}
+        # What each was sent last and has not answered, and how many workers were lost with a task.
+        self._under_way: dict[str, Task] = {}
+        self._lost = Counter[Task]()
+        self._arrived = SimpleQueue[tuple[str, Answer | Exception]]()
         self._failures = 0
         try:
             for _ in range(count):
@@ -33,33 +39,49 @@ class LocalWorkers(Carrier):
             self.close()
             raise
 
-    def workers(self) -> dict[str, bool]:
-        for name, worker in list(self._workers.items()):
-            if worker.status is not None:
-                self._start_again(self._workers.pop(name))
-        return dict.fromkeys(self._workers, True)
+    def count(self, needs: frozenset[str]) -> int:  # noqa: ARG002 # each has what this process has
+        return len(self._workers)
+
+    def room(self, needs: frozenset[str]) -> int:  # noqa: ARG002
+        return len(self._workers) - len(self._under_way)
+
+    def send(self, task: Task) -> None:
+        name = next(name for name in self._workers if name not in self._under_way)
+        self._under_way[name] = task
+        self._workers[name].call(_measure, *task.arguments())
+
+    def arrivals(self) -> list[tuple[Task, Answer | None]]:
+        ended = [name for name, worker in self._workers.items() if worker.status is not None]
+        for name in ended:
+            self._start_again(self._workers.pop(name))
+        answers = [(task, self._without(task)) for name in ended if (task := self._under_way.pop(name, None))]
+        with suppress(Empty):
+            name, answer = self._arrived.get(timeout=LOOK_S)
+            if isinstance(answer, Exception):
+                raise answer
+            answers += [(self._under_way.pop(name), answer)] if name in self._under_way else []
+        return answers
+
+    def _without(self, task: Task) -> Answer | None:
+        """Answer for a task whose worker is lost; None where it is sent again."""
+        self._lost[task] += 1
+        is_lost = len(task.steps) > 1 or self._lost[task] > MOST_LOST
+        return Answer(lost=self._lost[task]) if is_lost else None
 
     def _start(self) -> None:
         name = next(self._names)
         self._workers[name] = Piped(_begin, partial(self._take, name))
 
     def _start_again(self, ended: Piped) -> None:
-        said = ended.wait()
+        lines = ended.wait()
         self._failures += (ended.status or 0) > 0
         if self._failures >= MOST_FAILURES * (len(self._workers) + 1):
-            last = said[-1].strip() if said else f"exit status {ended.status}"
-            raise UsageError(f"--on {self.address}: the workers do not stay: {last}")
+            last = lines[-1].strip() if lines else f"exit status {ended.status}"
+            raise UsageError(f"--on {self._address}: the workers do not stay: {last}")
         self._start()
 
-    def send(self, flight: Flight, function: Callable[..., Any], *arguments: Any) -> None:
-        if worker := self._workers.get(flight.address):
-            self._flights[flight.address] = flight
-            worker.call(_answer, function, *arguments)
-
-    def _take(self, name: str, answer: Any) -> None:
-        if flight := self._flights.get(name):
-            flight.carried = answer
-            self._arrived.put(flight)
+    def _take(self, name: str, answer: Answer | Exception) -> None:
+        self._arrived.put((name, answer))
 
     def close(self) -> None:
         for worker in self._workers.values():
@@ -69,13 +91,15 @@ class LocalWorkers(Carrier):
 
 
 def _begin(send: Send) -> None:  # noqa: ARG001 # as of all that a process calls
-    """What takes seconds is done before anybody waits for it."""
-    from .tasks import probe
+    """Do what takes seconds before anybody waits for it."""
+    from .about import marks
 
     keep_what_is_freed()
-    probe()
+    marks()
 
 
-def _answer(send: Send, function: Callable[..., Any], *arguments: Any) -> None:
-    """What a function returns."""
-    send(function(*arguments))
+def _measure(send: Send, *arguments: Any) -> None:
+    """Send what a task brings."""
+    from .tasks import measure
+
+    send(measure(*arguments))

@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from contextlib import closing, contextmanager
 
-from ..measuring import HERE, Here
+from ..measuring import HERE, Place
 from .carrier import Carrier
 from .local import LocalWorkers
-from .words import Local, place_named, require_dask
-
-if TYPE_CHECKING:
-    from .pool import Pool
+from .words import place_named, require_dask
 
 
 @contextmanager
-def place(on: str | None) -> Iterator[Here | Pool]:
-    """What `--on` names, as long as a command runs; this process where it names nothing.
+def place(on: str | None) -> Iterator[Place]:
+    """Give what `--on` names, as long as a command runs; this process where it names nothing.
 
     Raises:
         UsageError: a word that names no place, or an address where nobody answers.
@@ -26,24 +22,19 @@ def place(on: str | None) -> Iterator[Here | Pool]:
     if on is None:
         yield HERE
         return
-    carrier = _carrier(on)
-    try:
+    with closing(_carrier(on)) as carrier:
         # Imported while workers start.
-        from .about import about
-        from .crew import Crew
         from .pool import Pool
 
-        yield Pool(Crew(carrier, about()))
-    finally:
-        carrier.close()
+        yield Pool(carrier)
 
 
 def _carrier(on: str) -> Carrier:
     named = place_named(on)
-    if isinstance(named, Local):
-        return LocalWorkers(named.count)
+    if isinstance(named, int):
+        return LocalWorkers(named)
     require_dask()
     # It imports dask, which nothing else needs.
-    from .link import Link
+    from .scheduled import Scheduled
 
-    return Link(named.text)
+    return Scheduled(named)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from importlib.util import find_spec
 
 from ...ground.options.counts import whole_number
@@ -15,22 +14,8 @@ _LOCAL = re.compile(r"local:(?P<count>.+)")
 _ADDRESS = re.compile(r"(?:tcp|tls)://(?:[\w.-]+|\[[0-9a-fA-F:]+\]):(?P<port>\d{1,5})")
 
 
-@dataclass(frozen=True)
-class Local:
-    """So many worker processes on this machine."""
-
-    count: int
-
-
-@dataclass(frozen=True)
-class Address:
-    """A scheduler of dask that runs already."""
-
-    text: str
-
-
-def place_named(word: str) -> Local | Address:
-    """What a word of `--on` stands for.
+def place_named(word: str) -> int | str:
+    """Read a word of `--on`: so many processes of this machine, or a scheduler's address.
 
     Raises:
         UsageError: it stands for nothing.
@@ -42,16 +27,14 @@ def place_named(word: str) -> Local | Address:
             count = 0
         if not 1 <= count <= MOST_LOCAL:
             raise UsageError(f"--on {word}: from 1 to {MOST_LOCAL} worker processes, such as local:4")
-        return Local(count)
-    return Address(checked_address("--on", word))
+        return count
+    return checked_address("--on", word)
 
 
 def check_place(on: str | None) -> None:
     """Raises UsageError or MissingError for what `--on` cannot say; None will do."""
-    if on is not None:
-        named = place_named(on)
-        if isinstance(named, Address):
-            require_dask()
+    if on is not None and isinstance(place_named(on), str):
+        require_dask()
 
 
 def checked_address(option: str, word: str) -> str:

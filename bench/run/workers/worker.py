@@ -8,7 +8,6 @@ from __future__ import annotations
 import asyncio
 import logging
 import queue
-import socket
 import tempfile
 import threading
 import time
@@ -17,18 +16,16 @@ from collections.abc import Callable
 from concurrent.futures import Executor, Future
 from contextlib import suppress
 from typing import Any
-from urllib.parse import urlsplit
 
 from ...ground.machine.memory import keep_what_is_freed
 from ...ground.output.errors import UsageError, tell
+from .about import marks
 from .words import checked_address, require_dask
 
-# What a scheduler knows normalbench's workers by.
-RESOURCE = "normalbench"
+# What dask raises where it is not set up for an address, as without certificates for TLS.
+MISCONFIGURED = (RuntimeError, TypeError, ValueError)
 # What dask serves over HTTP is read by nobody; it listens all the same, so it listens here.
 HTTP = "127.0.0.1:0"
-# Dask's own variables.
-TLS, ENCRYPTED = "DASK_DISTRIBUTED__COMM__TLS__", "DASK_DISTRIBUTED__COMM__REQUIRE_ENCRYPTION"
 # How long a worker waits for its scheduler, and how often it asks, in seconds.
 PATIENCE_S, AGAIN_S = 60.0, 0.5
 # How long a worker sleeps at most while it waits for a job.
@@ -75,12 +72,16 @@ class MainThread(Executor):
 
 
 class Connection(threading.Thread):
-    """Keeps the worker joined to its scheduler; ends the main thread's work where that is gone for good."""
+    """Keeps the worker joined to its scheduler; ends the main thread's work where that is gone for good.
+
+    Attributes:
+        why: why it has not joined; empty once it has.
+    """
 
     def __init__(self, address: str, executor: MainThread):
         super().__init__(daemon=True)
         self._address, self._executor = address, executor
-        self.joined = False
+        self.why = "it has yet to join"
 
     def run(self) -> None:
         asyncio.run(self._joined_again_and_again())
@@ -89,20 +90,29 @@ class Connection(threading.Thread):
     async def _joined_again_and_again(self) -> None:
         seen = time.monotonic()
         while time.monotonic() - seen < PATIENCE_S:
-            with suppress(Exception):
+            try:
                 await self._join()
                 seen = time.monotonic()
+            except Exception as error:
+                # Dask's own error has no more than that the worker did not start.
+                cause = error.__cause__ or error
+                self.why = self.why and why(cause)
+                if self.why and isinstance(cause, MISCONFIGURED):
+                    return
             await asyncio.sleep(AGAIN_S)
 
     async def _join(self) -> None:
         from distributed import Worker
+        from distributed.comm.addressing import get_local_address_for
 
         worker = Worker(
             self._address,
-            host=interface_towards(self._address),
+            # The interface that leads to the scheduler. Dask by itself listens on all, and runs whatever reaches its
+            # port.
+            host=get_local_address_for(self._address),
             nthreads=1,
             executor=self._executor,
-            resources={RESOURCE: 1},
+            resources=dict.fromkeys(marks().values(), 1),
             local_directory=tempfile.gettempdir(),
             memory_limit=0,
             dashboard=False,
@@ -110,69 +120,28 @@ class Connection(threading.Thread):
             death_timeout=AGAIN_S * 10,
         )
         async with worker:
-            self.joined = True
+            self.why = ""
             await worker.finished()
 
 
-def check_certificates(option: str, address: str, role: str) -> None:
-    """Raises UsageError where an address asks for TLS and dask's configuration has no certificate to show, or the
-    configuration wants TLS and the address does not.
-
-    Args:
-        option: what the address was given to.
-        role: client or worker, as dask's configuration says.
-    """
-    from distributed.security import Security
-
-    given = Security()
-    if not address.startswith("tls://"):
-        if given.require_encryption:
-            raise UsageError(f"{option} {address}: {ENCRYPTED} is set, which wants an address such as tls://HOST:PORT")
-        return
-    names = (f"{TLS}{name}" for name in ("CA_FILE", f"{role.upper()}__CERT", f"{role.upper()}__KEY"))
-    named = f"{', '.join(names)} (docs/secure-workers.md)"
-    try:
-        is_there = given.get_connection_args(role).get("ssl_context") is not None
-    except OSError as error:
-        raise UsageError(f"{option} {address}: these files cannot be read: {named}: {error}") from error
-    if not is_there:
-        raise UsageError(f"{option} {address}: no certificates; set {named}")
+def why(error: BaseException) -> str:
+    """Say why a scheduler could not be reached."""
+    nobody = "" if isinstance(error, MISCONFIGURED) else "nobody answers; start a scheduler there: dask scheduler"
+    return ": ".join(filter(None, (nobody, str(error))))
 
 
-def interface_towards(address: str) -> str:
-    """The IP address of this machine from which a scheduler is reached: a worker listens on it and on no other.
-
-    Dask by itself listens on all of them, and runs whatever reaches its port.
-
-    Args:
-        address: of the scheduler, such as tcp://10.0.0.5:8786.
-
-    Raises:
-        OSError: the scheduler's name is unknown, or no network leads to it.
-    """
-    scheduler = urlsplit(address)
-    family, _, _, _, where = socket.getaddrinfo(scheduler.hostname, scheduler.port, type=socket.SOCK_DGRAM)[0]
-    # Nothing is sent: connecting a datagram socket only chooses the interface.
-    with socket.socket(family, socket.SOCK_DGRAM) as chosen:
-        chosen.connect(where)
-        found = chosen.getsockname()[0]
-    return f"[{found}]" if family == socket.AF_INET6 else found
-
-
-def serve(address: str) -> bool:
-    """Join a scheduler and measure until it is gone; whether it was there at all."""
-    from .tasks import probe
-
+def serve(address: str) -> str:
+    """Join a scheduler and measure until it is gone. Return why it could not be joined; empty if it could."""
     keep_what_is_freed()
     # What it and dask write goes with it; dask may be writing as it ends.
     with tempfile.TemporaryDirectory(prefix="normalbench-", ignore_cleanup_errors=True) as tempfile.tempdir:
         # What takes seconds is done before anybody waits for it.
-        probe()
+        marks()
         executor = MainThread()
         connection = Connection(address, executor)
         connection.start()
         executor.serve()
-    return connection.joined
+    return connection.why
 
 
 def worker_command(address: str) -> int:
@@ -185,17 +154,16 @@ def worker_command(address: str) -> int:
     checked = checked_address("worker", address)
     require_dask()
     quiet()
-    check_certificates("worker", checked, "worker")
     warnings.simplefilter("ignore")
     tell(f"joins {checked}; interrupt it to end it")
-    if not serve(checked):
-        raise UsageError(f"{checked}: nobody answers; start a scheduler there: dask scheduler")
+    if reason := serve(checked):
+        raise UsageError(f"worker {checked}: {reason}")
     tell(f"{checked} is gone")
     return 0
 
 
 def quiet() -> None:
-    """Dask says nothing of lost connections: they are seen to."""
+    """Have dask say nothing of lost connections, versions and large tasks."""
     # Its import sets levels of its own.
     import distributed  # noqa: F401
 
@@ -203,3 +171,4 @@ def quiet() -> None:
     for name in ("asyncio", "distributed", *logging.root.manager.loggerDict):
         if name.partition(".")[0] in ("asyncio", "distributed"):
             logging.getLogger(name).setLevel(logging.CRITICAL)
+    warnings.filterwarnings("ignore", module="distributed")

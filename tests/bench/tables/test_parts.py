@@ -3,6 +3,7 @@ never measured twice."""
 
 import itertools
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from normalbench.bench.keep.runs import facts_of, opened, read_run
 from normalbench.bench.measures.metrics.totals import Total, Worst, total_of
 from normalbench.bench.run.measuring import Nothing, asked, measured
 from normalbench.bench.run.workers import tasks
-from normalbench.bench.run.workers.orders import parcels_of
+from normalbench.bench.run.workers.chunks import tasks_of
 from normalbench.bench.subjects.normals import normal_sets
 from normalbench.bench.subjects.normals.normal_sets import CHUNK, SHIFTS, STEPS, TURN, hemisphere, sphere
 from normalbench.bench.tables.quality import measure as quality
@@ -125,11 +126,10 @@ def test_a_worker_measures_parts_by_their_names():
     """A step's parts are among what it makes of an order; the rows are those that this process measures."""
     one = ask(encoding="octahedral")
     (step,) = one.steps
-    (parcel,) = parcels_of(one, step.parts)
-    order = parcel.order()
-    answer = tasks.measure(order, [order.name_of(part) for part in step.parts])
-    assert not answer.wrong and not answer.refused
-    rows = [row for found in answer.steps for row in found.rows]
+    packed = (replace(task, is_packed=True) for task in tasks_of(one, step.parts, 1))
+    answers = [tasks.measure(*task.arguments()) for task in packed]
+    assert not any(answer.refused for answer in answers)
+    rows = [row for answer in answers for rows, _ in answer.steps for row in rows]
     assert TABLE.work.merge(step, rows) == rows_of(one)
 
 

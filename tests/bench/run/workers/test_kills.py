@@ -21,8 +21,8 @@ PAUSES, FEWEST = (6, 12), 8
 # The command, but that no step is given up: these workers are lost by chance, and the same step may be hit often.
 COMMAND = """
 import sys
-from normalbench.bench.run.workers import pool
-pool.MOST_LOST = 1000
+from normalbench.bench.run.workers import local
+local.MOST_LOST = 1000
 from normalbench.bench.door.cli.start import program
 program()
 """
@@ -87,11 +87,13 @@ class Joined:
 
 
 @pytest.fixture
-def workers(request):
+def workers(request, monkeypatch):
     """What is killed, by its name."""
     if request.param == "local":
         yield Local()
         return
+    # Dask counts for itself.
+    monkeypatch.setenv("DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES", "1000")
     with scheduled({}, {}, {}, {}) as there:
         yield Joined(there)
 

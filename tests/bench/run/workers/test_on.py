@@ -90,22 +90,18 @@ def test_the_start_imports_neither_dask_nor_jax():
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("gl")
-def test_steps_by_glsl_go_to_no_worker_without_gl(run, monkeypatch, tmp_path):
-    """One worker of two has no GL: rows by both back ends are those of one process, and it is said who is left out."""
-    monkeypatch.setattr("normalbench.bench.run.workers.pool.WAIT_S", 60.0)
+def test_steps_by_glsl_go_to_no_worker_without_gl(run, tmp_path):
+    """One worker of two has no GL: rows by both back ends are those of one process, and none is measured here."""
     assert run(*SMALL, "-o", str(tmp_path / "one.json"))[0] == 0
     with scheduled({}, NO_GL) as there:
         status, _, err = run(*SMALL, "-o", str(tmp_path / "two.json"), "--on", there.address)
-    assert status == 0 and "measured by this process" not in err
+    assert status == 0 and not err
     assert json.loads((tmp_path / "one.json").read_text()) == json.loads((tmp_path / "two.json").read_text())
-    # The worker without GL may join when all is done.
-    assert "left out: steps that need the GL device" in err or err == ""
 
 
 @pytest.mark.slow
 def test_what_no_worker_can_measure_is_measured_here(gl, run, monkeypatch, tmp_path):  # noqa: ARG001
     """Only workers without GL: rows by GLSL are there all the same, and a line says who measured them."""
-    monkeypatch.setattr("normalbench.bench.run.workers.pool.WAIT_S", 0.5)
     assert run(*SMALL, "-o", str(tmp_path / "one.json"))[0] == 0
     own = os.environ | NO_GL
     monkeypatch.setattr(piped, "environment", lambda: own)

@@ -3,22 +3,22 @@
 import pickle
 import random
 from collections import Counter
-from dataclasses import dataclass, field
+from concurrent.futures import CancelledError
+from threading import Event
 
 import pytest
 
 from normalbench.bench.ground.options.words import Words, given_in
+from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.run.measuring import Asked
-from normalbench.bench.run.workers.admission import Admission
-from normalbench.bench.run.workers.carrier import LOST
-from normalbench.bench.run.workers.chunks import MOST_LOST, MOST_TOGETHER, chunk_size
-from normalbench.bench.run.workers.pool import Pool
-from normalbench.bench.run.workers.tasks import Answer, StepAnswer
+from normalbench.bench.run.workers import local, pool, tasks
+from normalbench.bench.run.workers.about import BASE, marks, named
+from normalbench.bench.run.workers.carrier import Answer
+from normalbench.bench.run.workers.chunks import MOST_TOGETHER, chunk_size, tasks_of
+from normalbench.bench.run.workers.local import MOST_LOST, LocalWorkers
+from normalbench.bench.run.workers.orders import step_name
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.table import GL, VULKAN, Role, Step
-
-CAN = {GL: "llvmpipe", VULKAN: "lavapipe", "compilers": "all"}
-OWN = {"versions": {"jax": "1"}, "sources": "abc", "processor": "fast", "host": "h", "name": "me", "can": CAN}
 
 
 def asked(table: str, keys: list[dict]) -> Asked:
@@ -26,110 +26,96 @@ def asked(table: str, keys: list[dict]) -> Asked:
     return Asked(TABLES[table], options, TABLES[table].outputs(), [Step(key, None, str(key)) for key in keys])
 
 
-@dataclass
-class FakeCrew:
-    """Workers as told: `at` makes an answer of a worker and a chunk, or says that the worker is gone."""
-
-    workers: dict[str, dict]
-    at: object = None
-    generation: int = 0
-    is_deciding: bool = False
-    sent: list = field(default_factory=list)
-    under_way: dict = field(default_factory=dict)
-    gone: list = field(default_factory=list)
-    most: Counter = field(default_factory=Counter)
-
-    def __post_init__(self):
-        self.admission = Admission(OWN)
-        for address, changes in self.workers.items():
-            self.admission.take(address, OWN | {"name": address} | changes)
-
-    def expect(self):
-        pass
-
-    def idle(self):
-        return [address for address in self.admission if address not in self.under_way]
-
-    def busy_hosts(self):
-        return {self.admission.host(address) for address in self.under_way}
-
-    def send(self, address, what, function, order, names):  # noqa: ARG002
-        self.sent.append((address, what, order))
-        self.under_way[address] = (what, names)
-        self.most[self.admission.host(address)] = max(
-            self.most[self.admission.host(address)], len([a for a in self.under_way if a in self.admission])
-        )
-
-    def arrival(self):
-        if not self.under_way:
-            return None
-        address = next(iter(self.under_way))
-        chunk, names = self.under_way.pop(address)
-        found = self.at(address, names) if self.at else answer(names)
-        if found == "gone":
-            self.gone.append((chunk, True))
-            return None
-        if found == "scheduler":
-            self.gone += [(chunk, False), *((c, False) for c, _ in self.under_way.values())]
-            self.under_way.clear()
-            self.generation += 1
-            return None
-        return address, chunk, found
-
-    def lost(self):
-        gone, self.gone = self.gone, []
-        return gone
-
-
-def answer(names) -> Answer:
-    return Answer([StepAnswer(name, [{"of": name}], {}) for name in names])
-
-
-def measured(crew: FakeCrew, ask: Asked) -> tuple[list[str], list]:
-    ticks: list[str] = []
-    return ticks, list(Pool(crew).measure(ask, ask.steps, ticks.append))
-
-
 JAX = [{"backend": "jax", "encoding": f"e{n}"} for n in range(200)]
 
 
-def test_every_step_has_its_rows_once():
-    crew, ask = FakeCrew({"a": {}, "b": {}, "c": {}}), asked("quality", JAX)
-    ticks, found = measured(crew, ask)
+def rows_of(names) -> Answer:
+    return Answer([([{"of": name}], {}) for name in names])
+
+
+def measures(order, needs, names) -> Answer:  # noqa: ARG001
+    return rows_of(names)
+
+
+class Process:
+    """Stands for a process: `says` makes an answer of the arguments of a call, or ends it."""
+
+    says = staticmethod(measures)
+
+    def __init__(self, first, take):  # noqa: ARG002
+        self.ended, self.status, self._take = Event(), None, take
+
+    def call(self, _, *arguments):
+        answer = type(self).says(*arguments)
+        self.status = answer if isinstance(answer, int) else self.status
+        if not isinstance(answer, int):
+            self._take(answer)
+
+    def end(self):
+        pass
+
+    def wait(self):
+        return ["broken"]
+
+
+@pytest.fixture
+def workers(monkeypatch):
+    """Four workers of this machine, without processes; how they answer."""
+    monkeypatch.setattr(local, "Piped", Process)
+    monkeypatch.setattr(local, "LOOK_S", 0.01)
+
+    def answer(says):
+        monkeypatch.setattr(Process, "says", staticmethod(says))
+        return LocalWorkers(4)
+
+    return answer
+
+
+def measured(carrier, ask: Asked) -> tuple[list[str], list]:
+    ticks: list[str] = []
+    return ticks, list(pool.Pool(carrier).measure(ask, ask.steps, ticks.append))
+
+
+def test_every_step_has_its_rows_once(workers):
+    ask = asked("quality", JAX)
+    ticks, found = measured(workers(measures), ask)
     assert Counter(step.name for step, _ in found) == Counter(step.name for step in ask.steps)
     assert sorted(ticks) == sorted(step.name for step in ask.steps)
-    assert [isinstance(order, str) for _, _, order in crew.sent].count(False) == 3, "the order is sent to each once"
+    assert all(rows == [{"of": step_name("quality", step.key)}] for step, rows in found)
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_workers_and_schedulers_that_are_lost_at_random_lose_nothing(seed):
-    """A tenth of all tasks ends its worker, and a tenth the scheduler or the answer."""
+def test_workers_that_are_lost_at_random_lose_nothing(seed, workers, monkeypatch):
+    """A tenth of all tasks ends its worker by a signal, and a tenth reaches one that does not know the order."""
     rng = random.Random(seed)
+    monkeypatch.setattr(local, "MOST_LOST", 1000)
 
-    def at(_, names):
+    def says(order, needs, names):  # noqa: ARG001
         ends = rng.random()
-        if ends < 0.3:
-            return ["gone", "scheduler", LOST][int(ends * 10)]
-        return Answer(knows=False) if ends < 0.35 else answer(names[: rng.randint(0, len(names))])
+        return -9 if ends < 0.1 else Answer(knows=False) if ends < 0.2 else rows_of(names)
 
-    _, found = measured(FakeCrew({"a": {}, "b": {}, "c": {}, "d": {}}, at), asked("quality", JAX))
+    _, found = measured(workers(says), asked("quality", JAX))
     assert Counter(step.name for step, _ in found) == Counter(str(key) for key in JAX)
+    assert all("of" in row for _, rows in found for row in rows)
 
 
-def test_a_step_that_ends_worker_after_worker_loses_its_own_rows(capsys):
-    """The others of its chunk are measured; its row has the reason, and standard error its name."""
-    ask = asked("quality", JAX)
+def test_the_order_travels_where_it_is_not_known(workers):
+    sent: list[object] = []
+
+    def says(order, needs, names):  # noqa: ARG001
+        sent.append(order)
+        return Answer(knows=False) if isinstance(order, str) else rows_of(names)
+
+    measured(workers(says), asked("quality", JAX[:2]))
+    assert [isinstance(order, str) for order in sent] == [True, True, False, False]
+
+
+def test_a_step_that_ends_worker_after_worker_loses_its_own_rows(workers, capsys):
+    """The others that travelled with it are measured; its row has the reason, and standard error its name."""
     bad = JAX[5]
-    name = {}
-
-    def at(_, names):
-        return "gone" if name["bad"] in names else answer(names)
-
-    from normalbench.bench.run.workers.orders import step_name
-
-    name["bad"] = step_name("quality", bad)
-    crew = FakeCrew({"a": {}, "b": {}}, at)
-    _, found = measured(crew, ask)
+    name = step_name("quality", bad)
+    carrier = workers(lambda order, needs, names: -9 if name in names else rows_of(names))  # noqa: ARG005
+    _, found = measured(carrier, asked("quality", JAX))
     rows = {step.name: rows for step, rows in found}
     (lost,) = rows[str(bad)]
     assert lost["skipped"] == f"{MOST_LOST + 1} workers were lost while they measured it"
@@ -138,49 +124,83 @@ def test_a_step_that_ends_worker_after_worker_loses_its_own_rows(capsys):
     assert f"{bad}: {MOST_LOST + 1} workers were lost" in capsys.readouterr().err
 
 
-def test_a_worker_without_the_device_gets_no_step_that_needs_it(capsys):
-    """Whatever is left for it; of GL steps a worker with another device gets none either."""
-    keys = [{"backend": name, "encoding": f"e{n}"} for n in range(40) for name in ("jax", "glsl")]
-    others = {"b": {"can": CAN | {GL: "no GL 4.3 device"}}, "c": {"can": CAN | {GL: "a GPU"}}}
-    crew = FakeCrew({"a": {}, **others})
-    _, found = measured(crew, asked("quality", keys))
-    assert len(found) == len(keys)
-    needs = {(address, one.needs) for address, chunk, _ in crew.sent for one in chunk.steps}
-    assert {address for address, wanted in needs if GL in wanted} == {"a"}
-    assert {address for address, _ in needs} == {"a", "b", "c"}, "all of them measure by JAX"
-    said = capsys.readouterr().err
-    assert "steps that need the GL device, for workers with no GL 4.3 device and not llvmpipe" in said
+@pytest.mark.parametrize("wrong", [UsageError("no such thing"), TypeError("cannot be unpacked")])
+def test_an_answer_that_is_wrong_ends_the_command(wrong, workers):
+    with pytest.raises(type(wrong), match=str(wrong)):
+        measured(workers(lambda order, needs, names: wrong), asked("quality", JAX))  # noqa: ARG005
 
 
-def test_workers_of_other_versions_sources_or_processors_are_refused_by_name(capsys):
-    others = {"a": {"versions": {"jax": "2"}}, "b": {"sources": "xyz"}, "c": {"processor": "slow"}}
-    crew = FakeCrew({**others, "d": {}})
-    assert list(crew.admission) == ["d"]
-    said = capsys.readouterr().err.splitlines()
-    assert said == [
-        "normalbench: left out: worker a: it has jax 2 and not 1",
-        "normalbench: left out: worker b: it has other sources of normalbench: xyz and not abc",
-        "normalbench: left out: worker c: it has another processor: slow and not fast",
-    ]
+def test_a_worker_measures_only_what_it_would_measure_as_this_process(monkeypatch):
+    """Of other versions, sources, settings or processors nothing; of steps by GLSL nothing with another device."""
+    ask = asked("quality", [{"backend": name} for name in ("glsl", "jax")])
+    by_glsl, by_jax = tasks_of(ask, ask.steps, 1)
+    assert named(by_glsl.needs) == f"{GL}, {VULKAN}, {BASE}" and named(by_jax.needs) == BASE
+    for other, refused in ((BASE, {BASE}), (GL, {GL, ""}), (VULKAN, {VULKAN, ""})):
+        own = dict(marks()) | {other: f"{other} of another machine"}
+        monkeypatch.setattr(tasks, "marks", lambda own=own: own)
+        answers = [tasks.measure(*task.arguments()).refused for task in (by_glsl, by_jax)]
+        assert {answer.removeprefix("no worker has this ") for answer in answers} == refused, answers
 
 
-def test_of_steps_that_a_clock_is_read_for_a_machine_has_one_at_a_time():
-    """Two machines with two workers each: four workers, never more than one timed step on a machine."""
-    keys = [{"repeats": 3, "pipeline": f"p{n}"} for n in range(20)]
-    hosts = {name: {"host": name[0]} for name in ("a1", "a2", "b1", "b2")}
-    crew = FakeCrew(hosts)
-    busy = []
-    send = crew.send
+def test_what_workers_refuse_and_what_reads_a_clock_is_measured_here(workers, monkeypatch, capsys):
+    """In the end, in one go; workers are not asked for what reads a clock."""
+    here: list[str] = []
 
-    def watched(address, *words):
-        busy.append([crew.admission.host(one) for one in (*crew.under_way, address)])
-        send(address, *words)
+    def measure(ask, steps, tick):  # noqa: ARG001
+        here.extend(step.name for step in steps)
+        yield from ((step, []) for step in steps)
 
-    crew.send = watched
-    _, found = measured(crew, asked("sweep", keys))
-    assert len(found) == 20
-    assert all(len(set(hosts)) == len(hosts) for hosts in busy), busy
-    assert any(len(hosts) == 2 for hosts in busy), "both machines measure"
+    monkeypatch.setattr(pool.HERE, "measure", measure)
+    keys = [{"repeats": n % 2, "pipeline": f"p{n}"} for n in range(10)]
+    carrier = workers(lambda order, needs, names: Answer(refused="no worker has this GL device"))  # noqa: ARG005
+    _, found = measured(carrier, asked("sweep", keys))
+    assert len(found) == 10 and here == [str(key) for key in (*keys[1::2], *keys[::2])]
+    assert "sweep: 5 steps are measured by this process: no worker has this GL device" in capsys.readouterr().err
+
+
+def test_without_a_worker_for_long_this_process_measures(monkeypatch, capsys):
+    """As where no worker of a scheduler has the GL device."""
+
+    class Nobody:
+        def count(self, needs):  # noqa: ARG002
+            return 0
+
+        room = count
+
+        def arrivals(self):
+            return []
+
+    monkeypatch.setattr(pool, "WAIT_S", 0.0)
+    monkeypatch.setattr(pool.HERE, "measure", lambda ask, steps, tick: ((step, []) for step in steps))  # noqa: ARG005
+    _, found = measured(Nobody(), asked("quality", JAX))
+    assert len(found) == len(JAX)
+    assert (
+        f"quality: {len(JAX)} steps are measured by this process: no worker has all of this: {BASE}"
+        in capsys.readouterr().err
+    )
+
+
+def test_what_becomes_of_a_schedulers_task():
+    """A task that dask gives up is lost, one that went with its scheduler is sent again; any other error is raised."""
+    from distributed import KilledWorker
+
+    from normalbench.bench.run.workers.scheduled import _answer
+
+    class Future:
+        def __init__(self, status, error):
+            self.status, self._error = status, error
+
+        def exception(self, timeout):  # noqa: ARG002
+            return self._error
+
+        def result(self, timeout):  # noqa: ARG002
+            raise self._error
+
+    assert _answer(Future("error", KilledWorker("task", None, 3))) == Answer(lost=4)
+    assert _answer(Future("cancelled", CancelledError())) is None
+    assert _answer(Future("finished", TimeoutError())) is None
+    with pytest.raises(OSError, match="no space"):
+        _answer(Future("error", OSError("no space")))
 
 
 def test_every_table_whose_rows_have_times_says_so_in_its_keys():
@@ -200,22 +220,7 @@ def test_chunks_shrink_towards_the_end(waiting, workers, size):
     assert chunk_size(waiting, workers) == size
 
 
-def test_what_no_worker_can_read_ends_the_command():
-    """It would come back again and again: an order that cannot be unpacked is no worker's fault."""
-    crew = FakeCrew({"a": {}}, lambda _, names: TypeError("cannot be unpacked"))  # noqa: ARG005
-    with pytest.raises(TypeError, match="cannot be unpacked"):
-        measured(crew, asked("quality", JAX))
-
-
 def test_lists_of_names_travel():
     """With the caller's own values, which a text would lose."""
     words = pickle.loads(pickle.dumps(Words(["octahedral", "mine"], {"mine": 1})))
     assert words == "octahedral,mine" and given_in(words) == {"mine": 1}
-
-
-def test_an_answer_that_is_wrong_ends_the_command():
-    from normalbench.bench.ground.output.errors import UsageError
-
-    crew = FakeCrew({"a": {}}, lambda _, names: Answer(wrong=UsageError("no such thing")))  # noqa: ARG005
-    with pytest.raises(UsageError, match="no such thing"):
-        measured(crew, asked("quality", JAX))

@@ -11,7 +11,6 @@ from written import as_document
 
 import normalbench as nb
 from normalbench.bench.ground.output.errors import UsageError
-from normalbench.bench.run.workers import orders
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.table import Role
 from normalbench.gbuffer.scenes.mesh import sphere
@@ -67,7 +66,7 @@ def measured(run, folder: Path, table: str, words: str, *on: str) -> tuple[list[
     pictured = ("--images", str(folder / "images")) if table in PICTURED else ()
     said = run(table, *words.split(), *pictured, "-o", str(folder / "rows.json"), *on)
     assert said[0] == 0, said[2]
-    assert "are measured here" not in said[2], said[2]
+    assert "measured by this process" not in said[2], said[2]
     return rows_of(folder / "rows.json", table), pictures(folder / "images")
 
 
@@ -117,26 +116,6 @@ def test_users_files_travel(gl, run, scheduler, tmp_path, monkeypatch, is_absolu
         here = measured(run, tmp_path / f"{number}-one", table, words)
         there = measured(run, tmp_path / f"{number}-two", table, words, "--on", scheduler)
         assert len(here[0]) >= 2 and here == there, words
-
-
-@pytest.mark.slow
-def test_many_large_files_travel_each_with_its_own_steps(gl, run, scheduler, tmp_path, monkeypatch):  # noqa: ARG001
-    """Three scenes and one of the catalogue: four parcels, each with one file or none, and the rows of one process."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(orders, "APART", 0)
-    sent: list[orders.Order] = []
-    packed = orders.Parcel.order
-    monkeypatch.setattr(orders.Parcel, "order", lambda self: sent.append(packed(self)) or sent[-1])
-    for number in range(3):
-        as_document([sphere(1.0 + number, 16, 8)]).write(tmp_path / f"scene{number}.glb")
-    words = "--encoding octahedral,spheremap --storage rg8 --scene scene0.glb,gloss,scene1.glb,scene2.glb"
-    for name in ("one", "two"):
-        (tmp_path / name).mkdir()
-    here = measured(run, tmp_path / "one", "render", f"{words} --size 64x36 --repeats 0")
-    there = measured(run, tmp_path / "two", "render", f"{words} --size 64x36 --repeats 0", "--on", scheduler)
-    assert len(here[0]) == 8 and here == there
-    files = {order.id: sorted(order.files) for order in sent}
-    assert sorted(files.values()) == [[], ["scene0.glb"], ["scene1.glb"], ["scene2.glb"]]
 
 
 @pytest.mark.slow
