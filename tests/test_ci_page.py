@@ -134,7 +134,7 @@ def test_a_workflow_ends_in_what_it_promises(system, checkout):
     steps = SYSTEMS[system]()
     assert run_all([step for step in steps if step.is_of_pushes], checkout, system) == 0
     kept = {path.name for path in (checkout / "history/0123abcd").iterdir()}
-    assert kept == {"run.json", "rows.jsonl"} and (checkout / "history.png").stat().st_size > 10_000
+    assert kept == {"run.json", "rows.jsonl"}
     assert (checkout / "history.md").read_text().startswith("1 run, from ")
     assert "pass" in (checkout / "gates.md").read_text()
     for name in ("run", "before"):

@@ -10,15 +10,15 @@ from typing import Any
 
 from ..ground.choose import choose
 from ..ground.output.errors import UsageError, tell
-from ..ground.output.writing import check_plot, whole_file
 from ..tables.table import Row
 from .change_lines import LINES, SENTENCES, in_short, sentences
 from .comparison import GONE, headline, in_order, rank_key
 from .history import Change, Series, changes_of, series_of
-from .history_chart import MOST, chart
 from .past_runs import Past, named_apart, past_runs
 from .row_files import write
 
+# How many figures people are shown side by side.
+MOST = 6
 # What --by may be besides "change".
 COMMIT = "commit"
 # What a group of changes is, in the order in which groups are shown.
@@ -52,11 +52,8 @@ class Group:
         return in_order([change.line for change in self.changes])
 
 
-def history_command(
-    folders: Sequence[Path], wanted: Wanted, by: str, format: str, output: Path | None, plot: Path | None
-) -> int:
-    """Write at which commits figures changed, or the figures by commit, and draw them; the exit status is 0."""
-    check_plot(plot)
+def history_command(folders: Sequence[Path], wanted: Wanted, by: str, format: str, output: Path | None) -> int:
+    """Write at which commits figures changed, or the figures by commit; the exit status is 0."""
     runs = past_runs(folders)
     # All rows are judged, whichever are shown: how large a time's step must be depends on how many there are.
     everything = series_of(runs)
@@ -78,8 +75,6 @@ def history_command(
         )
     else:
         write([_line(runs, change) for group in groups for change in group.changes], format, output)
-    if plot:
-        _draw(plot, runs, figures[:MOST], changes)
     return 0
 
 
@@ -229,12 +224,3 @@ def _left_out(figures: Sequence[tuple[Series, str]]) -> str:
         return ""
     more = f"; {len(figures) - MOST} more figures are left out: name some by --encoding and --column"
     return f"runs whose figures are those of the line above are left out{more * (len(figures) > MOST)}"
-
-
-def _draw(path: Path, runs: Sequence[Past], figures: Sequence[tuple[Series, str]], changes: Sequence[Change]) -> None:
-    if not figures:
-        raise UsageError("--plot: no figure changed; name one by --column")
-    from ...reports.charts import draw
-
-    with whole_file(path) as partial:
-        draw.write([chart(runs, figures, changes)], (partial, path.suffix[1:].lower()))

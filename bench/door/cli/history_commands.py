@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from ...tables.table import Group
-from .formats import WRITTEN, FormatOption, format_of
+from .formats import FormatOption, format_of
 
 Runs = Annotated[
     list[Path], typer.Argument(help="Results folders, or folders that hold some.", metavar="RUN...", show_default=False)
@@ -35,10 +35,6 @@ Tables = Annotated[str | None, typer.Option("--tables", help="Tables, comma-sepa
 Encoding = Annotated[str | None, typer.Option("--encoding", help="Encodings.", rich_help_panel=SHOWN)]
 Storage = Annotated[str | None, typer.Option("--storage", help="Storages.", rich_help_panel=SHOWN)]
 Column = Annotated[str | None, typer.Option("--column", help="Figures, by their columns.", rich_help_panel=SHOWN)]
-Plot = Annotated[
-    Path | None,
-    typer.Option("--plot", help="Draw the figures over the commits: PNG, SVG or PDF.", rich_help_panel=WRITTEN),
-]
 
 
 def add_history(app: typer.Typer) -> None:
@@ -53,7 +49,6 @@ def history(
     encoding: Encoding = None,
     storage: Storage = None,
     column: Column = None,
-    plot: Plot = None,
     format: FormatOption = None,
     output: PlainOutput = None,
 ) -> int:
@@ -65,4 +60,4 @@ def history(
     from ...keep.history_command import Wanted, history_command
 
     wanted = Wanted(tables, encoding, storage, column)
-    return history_command(runs, wanted, by, format_of(format, output), output, plot)
+    return history_command(runs, wanted, by, format_of(format, output), output)

@@ -82,14 +82,6 @@ def test_a_name_that_no_row_has_is_answered_with_those_there_are(run, thirty, tm
     assert status == 2 and "holds no run" in err and err.count("\n") == 1
 
 
-def test_the_chart_has_a_panel_for_each_figure_and_names_commits(run, thirty, tmp_path):
-    path = tmp_path / "history.svg"
-    assert run("history", str(thirty), "--plot", str(path))[0] == 0
-    said = path.read_text()
-    assert all(name_of(at)[:8] in said for at in (FOLD, LONGER, SHORTER))
-    assert "psnr_db, dB" in said and said.count("instructions") == 1
-
-
 def test_only_a_step_of_times_is_named(run, tmp_path):
     """A fifth more milliseconds from a commit on, in the noise of the others."""
     noise = np.random.default_rng(1)

@@ -6,18 +6,12 @@ from pathlib import Path
 
 PROCESSOR = Path("/proc/cpuinfo")
 # The same for all containers of a machine.
-BOOT = Path("/proc/sys/kernel/random/boot_id")
 LOADED = Path("/proc/self/maps")
 
 
 def processor_lines() -> list[str]:
     """What is said of each core, as `name : value`."""
     return _lines(PROCESSOR)
-
-
-def boot() -> str:
-    """What differs from machine to machine, and from start to start of one."""
-    return next(iter(_lines(BOOT)), "").strip()
 
 
 def loaded() -> set[str]:
