@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 PROCESSOR = Path("/proc/cpuinfo")
-# The same for all containers of a machine.
 LOADED = Path("/proc/self/maps")
 
 

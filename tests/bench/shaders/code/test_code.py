@@ -13,7 +13,6 @@ from slowly import a_tenth
 
 import normalbench as nb
 from normalbench.bench.door import code_command
-from normalbench.bench.door.code_command import SHIPPED
 from normalbench.bench.shaders.code.channels import Channels
 from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.shaders.code.kinds.normal import normals
@@ -96,14 +95,14 @@ def test_the_code_of_a_codec_gives_the_catalogues_texels(language, name, tmp_pat
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("encoding", ENCODINGS)
 def test_the_code_of_every_codec_gives_the_catalogues_texels(encoding, tmp_path):
-    """As above, of every storage that fits. GLSL ES, which starts a process each time, has those that
-    people ship; Slang is given HLSL's text, and OpenGL that of GLSL ES but for precisions."""
-    quick, slow = ("hlsl", "wgsl", "c"), ("essl",)
-    for language in (*quick, *slow):
+    """As above, of every storage that fits. Slang is given HLSL's text, and OpenGL that of GLSL ES but for
+    precisions."""
+    languages = ("hlsl", "wgsl", "c", "essl")
+    for language in languages:
         require_runner(language)
     wrong = []
     for codec in (codec for codec in codecs_named(encoding, ",".join(STORAGES), "nearest") if codec.fits):
-        for language in (*quick, *slow) if codec.storage.name in SHIPPED.split(",") else quick:
+        for language in languages:
             code = code_of(codec, language)
             found = agreement(codec, language, written(tmp_path, code), code.interface)
             wrong += [] if found.holds else [f"{codec.name} in {language}: {found.says}"]

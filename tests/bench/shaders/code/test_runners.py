@@ -14,7 +14,7 @@ from languages import RUN
 from normalbench.bench.ground.compilers.text import Text
 from normalbench.bench.ground.machine.systems import landlock
 from normalbench.bench.ground.output.errors import MissingError
-from normalbench.bench.shaders.code.run import c, interface, runner
+from normalbench.bench.shaders.code.run import c, essl, interface, runner
 from normalbench.bench.shaders.code.run.interface import Interface, Ran
 from normalbench.bench.shaders.translator.writer import PUBLIC
 from normalbench.gbuffer.gl.device import NoDeviceError
@@ -246,3 +246,10 @@ def test_a_missing_tool_is_named_with_its_package(language, tool, monkeypatch):
     monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
     with pytest.raises(MissingError, match=tool):
         found.run(file_of(SPHEREMAP, language), SPHEREMAP, *given(8))
+
+
+def test_glsl_es_is_not_run_where_opengl_does_not_take_it(monkeypatch):
+    ran("essl", SPHEREMAP, given(8))
+    monkeypatch.setattr(essl, "COMPATIBLE", "ARB_no_such_thing")
+    with pytest.raises(MissingError, match=r"takes no GLSL of OpenGL ES 3\.1: it lacks ARB_no_such_thing"):
+        runner("essl").run(file_of(SPHEREMAP, "essl"), SPHEREMAP, *given(8))
