@@ -38,7 +38,7 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def large(browser, folder):
-    report_command([folder], as_markdown=False, pictures_beside=False, charts_beside=False, output=None)
+    report_command(folder, as_markdown=False, pictures_beside=False, charts_beside=False, output=None)
     page = Opened(browser, folder / "report.html", size=(1440, 900))
     yield page
     page.context.close()
