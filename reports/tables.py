@@ -6,8 +6,6 @@ import json
 import math
 import re
 from collections.abc import Sequence
-from importlib.util import find_spec
-from pathlib import Path
 from typing import Any
 
 GAP = 2
@@ -111,37 +109,6 @@ def _no_formula(value: Any) -> Any:
 def storable(value: Any) -> Any:
     """A value; of text, half characters, which a file's name may have, as escapes: no file could hold them."""
     return value.encode(errors="backslashreplace").decode() if isinstance(value, str) else value
-
-
-def has_parquet() -> bool:
-    """Whether pyarrow is installed, which is what writes Parquet."""
-    return find_spec("pyarrow") is not None
-
-
-def write_parquet(rows: Sequence[dict[str, Any]], path: Path) -> None:
-    """The rows as a Parquet file: columns keep their types, nothing is null, infinity stays infinity. Whole numbers of
-    more than 64 bits are floats."""
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
-    names = dict.fromkeys(column for row in rows for column in row)
-    columns = {name: [storable(row.get(name)) for row in rows] for name in names}
-    for name, values in columns.items():
-        if any(isinstance(value, int) and abs(value) >= LARGEST_WHOLE for value in values):
-            columns[name] = [None if value is None else float(value) for value in values]
-    # Not by its path, which pyarrow takes for an address in UTF-8.
-    with path.open("wb") as file:
-        pq.write_table(pa.table(columns), file)
-
-
-def parquet_columns(data: bytes) -> list[str]:
-    """The columns of a Parquet file. Raises ValueError where it is none, or nothing reads it."""
-    if not has_parquet():
-        raise ValueError("Parquet files need pyarrow")
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
-    return pq.read_schema(pa.BufferReader(data)).names
 
 
 def to_markdown(rows: Sequence[dict[str, Any]], total: str = "") -> str:

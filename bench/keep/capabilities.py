@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 from importlib.util import find_spec
 from types import MappingProxyType
 
-from ...reports import tables
 from ..ground.compilers import tools
 from ..ground.machine.devices import require_device, require_jax
 from ..ground.machine.systems import walls
@@ -18,11 +17,6 @@ from ..shaders.code.run import c, wgsl
 from ..shaders.languages.language import require_language
 from ..subjects.codecs.half.compute import half_device
 from .machine import require_intel, require_nvidia, require_radeons
-
-
-def _require_parquet() -> None:
-    if not tables.has_parquet():
-        raise MissingError("pip install pyarrow")
 
 
 def _require_unpackers() -> None:
@@ -49,7 +43,6 @@ CAPABILITIES: Mapping[str, Callable[[], object]] = MappingProxyType(
         "rays (method_rms of effects)": require_rays,
         "encoders in HLSL": lambda: require_language("HLSL"),
         "encoders in Slang": lambda: require_language("Slang"),
-        "-o FILE.parquet": _require_parquet,
         "what was compiled and measured is kept (the cache folder)": cache.require_folder,
     }
 )

@@ -49,8 +49,6 @@ def _is_table(data: bytes, known: Sequence[Sequence[str]]) -> bool:
 def _columns_of(data: bytes) -> list[str]:
     """The columns of a file for programs, all of them in their order; none of what is damaged."""
     try:
-        if data.startswith(b"PAR1"):
-            return tables.parquet_columns(data)
         if data.startswith(b"["):
             return list(parsed_json(data)[0])
     except (ValueError, TypeError, LookupError):
@@ -95,9 +93,4 @@ def write(
         return
     check_rows(output, dict.fromkeys(column for row in rows for column in row))
     with whole_file(output, is_checked=True) as partial:
-        if format == "parquet":
-            tables.write_parquet(rows, partial)
-        else:
-            partial.write_text(
-                tables.written(rows, format, by=by, lead=lead, total=total), encoding="utf-8", newline="\n"
-            )
+        partial.write_text(tables.written(rows, format, by=by, lead=lead, total=total), encoding="utf-8", newline="\n")

@@ -20,6 +20,3 @@ def _write_table(path: Path, rows: list[Row]) -> None:
     for suffix, written in ((".json", tables.to_json), (".csv", tables.to_csv)):
         with whole_file(path.with_suffix(suffix), is_checked=True) as partial:
             partial.write_text(written(rows), encoding="utf-8", newline="\n")
-    if tables.has_parquet():
-        with whole_file(path.with_suffix(".parquet"), is_checked=True) as partial:
-            tables.write_parquet(rows, partial)

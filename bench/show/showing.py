@@ -29,10 +29,7 @@ def show(table: Table, done: Measured, format: str, output: Path | None) -> None
         return
     check_rows(output)
     with whole_file(output, is_checked=True) as partial:
-        if format == "parquet":
-            tables.write_parquet(_flat(table, done.rows), partial)
-        else:
-            partial.write_text(written(table, done, format, FILE_WIDTH, spares=False), encoding="utf-8", newline="\n")
+        partial.write_text(written(table, done, format, FILE_WIDTH, spares=False), encoding="utf-8", newline="\n")
 
 
 def written(table: Table, done: Measured, format: str, width: int, spares: bool = True) -> str:

@@ -34,7 +34,7 @@ TRACES = ("Traceback", "Fatal Python error", "Exception ignored", "terminate cal
 # The latest moment in seconds, one of these: start-up takes a second, the page most of a minute.
 MOMENTS_S = (2.0, 2.0, 20.0, 90.0)
 # Drawn from rows, and with the times in them.
-WITH_TIMES = {".json", ".csv", ".parquet", ".html", ".jsonl", ".svg"}
+WITH_TIMES = {".json", ".csv", ".html", ".jsonl", ".svg"}
 
 
 def started(folder: Path, arguments: list[str]) -> subprocess.Popen[str]:

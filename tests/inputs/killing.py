@@ -102,7 +102,7 @@ def code(folder: Path) -> None:
 
 
 def table(folder: Path) -> None:
-    for ending in ("csv", "parquet"):
+    for ending in ("csv", "json"):
         row_files.write(
             [{"number": number, "half": number / 2} for number in range(1000)], ending, folder / f"rows.{ending}"
         )

@@ -20,7 +20,7 @@ HOME = ROOT / ".venv" / "windows"
 PYTHON = "3.12"
 NEEDED = ("wine", "x86_64-w64-mingw32-gcc", "x86_64-w64-mingw32-objdump", "Xvfb")
 # Besides what the package asks for. Rich asks for colorama on Windows alone, which pip would look for on Linux.
-MORE = ("wgpu", "pytest", "pyarrow", "colorama")
+MORE = ("wgpu", "pytest", "colorama")
 BUILTIN = Path("/usr/lib/x86_64-linux-gnu/wine/x86_64-windows/ucrtbase.dll")
 # Without .NET, a browser and a debugger, which would wait for somebody.
 QUIET = "mscoree,mshtml,winedbg.exe="

@@ -312,7 +312,7 @@ def test_reading_leaves_the_run_as_it_is_and_run_has_written_the_same_report(run
     assert time.process_time() - begin < 60, "seconds of all cores"
     assert {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()} == before
     # Elsewhere the files of rows are not beside the page.
-    links = re.compile(rb'[:,] <a href="\w+\.(csv|json|parquet)">[^<]*</a>')
+    links = re.compile(rb'[:,] <a href="\w+\.(csv|json)">[^<]*</a>')
     assert links.search(before[folder / "report.html"]) and not links.search((tmp_path / "page.html").read_bytes())
     assert (tmp_path / "page.html").read_bytes() == links.sub(b"", before[folder / "report.html"])
     names = {path.name for path in (tmp_path / "page-charts").iterdir()}

@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from ...ground.output.errors import MissingError, UsageError
+from ...ground.output.errors import UsageError
 
 WRITTEN = "What is written"
 
@@ -20,12 +20,9 @@ class Format(StrEnum):
     json = "json"
     csv = "csv"
     markdown = "markdown"
-    parquet = "parquet"
 
 
-ENDINGS: Mapping[str, Format] = MappingProxyType(
-    {".csv": Format.csv, ".json": Format.json, ".md": Format.markdown, ".parquet": Format.parquet}
-)
+ENDINGS: Mapping[str, Format] = MappingProxyType({".csv": Format.csv, ".json": Format.json, ".md": Format.markdown})
 # What a table's command writes besides its rows, by the ending of its file.
 OTHERS: Mapping[str, str] = MappingProxyType(
     {".html": "--report", ".htm": "--report"} | dict.fromkeys((".png", ".svg", ".pdf"), "--plot")
@@ -54,16 +51,8 @@ def format_of(format: Format | None, output: Path | None) -> Format:
     """How rows are written: as asked, or as the file's name says.
 
     Raises:
-        UsageError: Parquet to the terminal, or a file whose name promises a page or a chart.
-        MissingError: Parquet without pyarrow.
+        UsageError: a file whose name promises a page or a chart.
     """
-    from ....reports.tables import has_parquet
-
     if not format and output and (other := OTHERS.get(output.suffix.lower())):
         raise UsageError(f"-o writes rows, not {output.name}; {other} {output} does, where a command has it")
-    chosen = format or (ENDINGS.get(output.suffix.lower()) if output else None) or Format.table
-    if chosen is Format.parquet and output is None:
-        raise UsageError("--format parquet is not text; name a file with -o FILE.parquet")
-    if chosen is Format.parquet and not has_parquet():
-        raise MissingError("Parquet files need pyarrow; pip install pyarrow")
-    return chosen
+    return format or (ENDINGS.get(output.suffix.lower()) if output else None) or Format.table

@@ -20,9 +20,9 @@ from .errors import UsageError
 from .replacing import PLOTS, check_alike, check_replaceable
 
 # Of a run's rows, facts and tables.
-RUN, OWN_SUFFIXES = "run.json", (".json", ".jsonl", ".csv", ".parquet")
+RUN, OWN_SUFFIXES = "run.json", (".json", ".jsonl", ".csv")
 NOT_PAGES = (".pdf", ".png", ".svg", ".md", ".csv", ".json")
-FILE_SUFFIXES = (*NOT_PAGES, ".jpg", ".jpeg", ".exr", ".html", ".parquet", ".txt")
+FILE_SUFFIXES = (*NOT_PAGES, ".jpg", ".jpeg", ".exr", ".html", ".txt")
 
 
 def check_writable(path: Path, makes_folder: bool = False, mark: bytes = b"") -> None:

@@ -1,7 +1,6 @@
 """Results folders: what finished stays, what was stopped goes on, and reading never writes."""
 
 import json
-import math
 import os
 import re
 import shutil
@@ -19,20 +18,14 @@ from normalbench.bench.door.cli import app as cli
 from normalbench.bench.door.run_options import RunOptions
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.ground.output.sources import sources
-from normalbench.bench.keep import journal, table_files
+from normalbench.bench.keep import journal
 from normalbench.bench.keep.runs import ROWS, Run, opened, read_run, same_work, unfinished
 from normalbench.bench.run.measuring import files_of
 from normalbench.bench.run.workers.orders import Packing
 from normalbench.bench.shaders.isa import isa, spirv
 from normalbench.bench.shaders.languages.words import with_files
-from normalbench.bench.subjects.normals import normal_sets
-from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.table import Step
-from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.codecs.codec import Codec
-from normalbench.encodings.storages.storage import STORAGES
-from normalbench.reports import tables
 
 FACTS = {"request": {"count": 1}, "sources": "abc", "machine": {"GL": "one"}, "finished": False}
 
@@ -264,22 +257,6 @@ def test_files_within_a_name_are_known_and_travel(tmp_path, monkeypatch, word, n
 
 def test_sources_are_known_by_their_content():
     assert sources() == sources() and len(sources()) == 16
-
-
-def test_parquet_is_there_beside_csv_where_pyarrow_is_and_keeps_types(tmp_path, monkeypatch):
-    parquet = pytest.importorskip("pyarrow.parquet")
-    case = quality.Case(Codec(ENCODINGS["octahedral"], STORAGES["rgba8"]), normal_sets.axes(0, 0), "jax")
-    rows = [quality.measure(case), quality.measure(case) | {"psnr_db": math.inf, "bits": None}]
-    table_files._write_table(tmp_path / "rows", rows)
-    table = parquet.read_table(tmp_path / "rows.parquet")
-    assert table.to_pylist() == rows
-    table_files._write_table(tmp_path / "wide", [{"codes": 2**130, "bits": None}, {"codes": 3, "bits": 8}])
-    wide = parquet.read_table(tmp_path / "wide.parquet").to_pylist()
-    assert wide == [{"codes": 2.0**130, "bits": None}, {"codes": 3.0, "bits": 8}]
-    assert [str(table.schema.field(name).type) for name in ("bits", "psnr_db", "exact")] == ["int64", "double", "bool"]
-    monkeypatch.setattr(tables, "find_spec", lambda _: None)
-    table_files._write_table(tmp_path / "others", rows)
-    assert sorted(path.suffix for path in tmp_path.glob("others.*")) == [".csv", ".json"]
 
 
 @pytest.mark.usefixtures("gl")

@@ -147,7 +147,7 @@ AGAIN = {
 }
 
 
-@pytest.mark.parametrize("ending", ["csv", "json", "md", "txt", "parquet"])
+@pytest.mark.parametrize("ending", ["csv", "json", "md", "txt"])
 @pytest.mark.parametrize("case", AGAIN)
 def test_rows_replace_those_of_the_same_command(run, case, ending):
     for _ in range(2):

@@ -15,8 +15,8 @@ import typer
 from normalbench.bench.door.cli.app import _is_delicate, app
 from normalbench.bench.door.table_command import _why_nothing
 from normalbench.bench.ground.options.counts import whole_number
+from normalbench.bench.keep import capabilities
 from normalbench.bench.tables.registry import TABLES
-from normalbench.reports import tables
 
 ROW = ("quality", "--storage", "rg8", "--normals", "sphere", "--backend", "jax", "--count", "1000")
 ONE = (*ROW, "--encoding", "octahedral")
@@ -79,7 +79,6 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
     "a table for a folder of results": (("run", "-o", "x.csv"), "x.csv: run writes into a folder; name one, such as x"),
     "a folder for a file": ((*ONE, "-o", "there"), "there is a folder; name a file"),
     "a format that is not": ((*ONE, "--format", "xlsx"), "Invalid value for '--format': 'xlsx' is not one of 'table'"),
-    "Parquet on a terminal": ((*ONE, "--format", "parquet"), "name a file with -o FILE.parquet"),
     "Metal": ((*ROW, "--encoding", "mine.metal"), "mine.metal: Metal is not read"),
     "WGSL": ((*ROW, "--encoding", "mine.wgsl"), "no encoder and decoder found; the two functions must be"),
     "one function of a file": (
@@ -302,15 +301,6 @@ def test_the_name_of_a_file_says_how_it_is_written(run, tmp_path, ending, begins
     assert path.read_text().startswith("encoding,"), "what is asked for goes before the name"
 
 
-def test_parquet_has_the_rows_without_histograms(run, tmp_path):
-    pd = pytest.importorskip("pandas")
-    pytest.importorskip("pyarrow")
-    assert run(*ONE, "-o", str(tmp_path / "rows.parquet"))[0] == 0
-    (row,) = pd.read_parquet(tmp_path / "rows.parquet").to_dict("records")
-    (expected,) = rows_of(run, *ONE)
-    assert row["psnr_db"] == expected["psnr_db"] and "angle_counts" not in row
-
-
 def test_csv_has_no_histogram_and_json_has_it_as_a_list(run):
     _, out, _ = run(*ONE, "--format", "csv")
     assert "angle_counts" not in out and max(map(len, out.splitlines())) < 1000
@@ -384,11 +374,12 @@ def test_a_list_fits_the_terminal_with_a_table_for_each_kind(run, monkeypatch, w
 
 
 def test_doctor_ends_in_what_can_be_measured(run, monkeypatch):
-    monkeypatch.setattr(tables, "find_spec", lambda _: None)
+    monkeypatch.setattr(capabilities, "find_spec", lambda _: None)
     status, out, _ = run("doctor", "--format", "json")
     rows = {row["name"]: row["value"] for row in json.loads(out)}
     assert status == 0 and rows["quality, mix, depth, frames, vectors by JAX"] == "yes"
-    assert rows["-o FILE.parquet"] == "no: pip install pyarrow"
+    missing = rows["glTF files that Draco or meshoptimizer packed"]
+    assert missing == "no: no DracoPy and no meshoptimizer; pip install normalbench[compressed]"
 
 
 @pytest.mark.parametrize(
