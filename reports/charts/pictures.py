@@ -13,14 +13,6 @@ from PIL.PngImagePlugin import PngInfo
 GAIN = 30.0
 RENDER_GAIN = 16.0
 POWER = 1024.0
-CAPTIONS = {
-    "encoded": "encoded",
-    "decoded": "decoded",
-    "error": f"|error| x {GAIN:.0f}",
-    "power": f"1 - dot^{POWER:.0f}",
-    "position_error": "error",
-    "shaded": "surface",
-}
 # What the colours of a position's error stand for: powers of ten, in the scene's unit.
 DECADES = (-6, 1)
 COLOURS = "viridis"
@@ -145,29 +137,7 @@ def write_png(path: Path, pixels: np.ndarray) -> None:
     Image.fromarray(pixels).save(path, format="png", compress_type=zlib.Z_RLE, pnginfo=made_by())
 
 
-def contact_sheet(rows: dict[str, dict[str, np.ndarray]], scale: int = 2, columns: int = 1) -> np.ndarray:
-    """One picture of many: a row for each name, its pictures side by side at 1/scale, captions in the margin; the rows
-    one below the other, in so many columns."""
-    lines = []
-    for name, pictures in rows.items():
-        small = [
-            _captioned_pixels(_shrunk_pixels(picture, scale), f"{name}: {CAPTIONS[kind]}")
-            for kind, picture in pictures.items()
-        ]
-        lines.append(np.concatenate(small, axis=1))
-    high = -(-len(lines) // columns)
-    lines += [np.full_like(lines[0], 255)] * (high * columns - len(lines))
-    parts = [np.concatenate(lines[i * high : (i + 1) * high], axis=0) for i in range(columns)]
-    return np.concatenate(parts, axis=1)
-
-
-def _shrunk_pixels(pixels: np.ndarray, scale: int) -> np.ndarray:
-    height, width = (size // scale * scale for size in pixels.shape[:2])
-    cells = pixels[:height, :width].reshape(height // scale, scale, width // scale, scale, 3)
-    return np.round(cells.mean(axis=(1, 3))).astype(np.uint8)
-
-
-def _captioned_pixels(pixels: np.ndarray, text: str, height: int = 16) -> np.ndarray:
+def _captioned_pixels(pixels: np.ndarray, text: str, height: int) -> np.ndarray:
     image = Image.new("RGB", (pixels.shape[1], pixels.shape[0] + height), "white")
     image.paste(Image.fromarray(pixels), (0, height))
     ImageDraw.Draw(image).text((3, 2), text, fill="black")

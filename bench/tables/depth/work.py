@@ -328,26 +328,19 @@ def _scene(folder: Path, cases: Iterable[measure.Case]) -> Surface:
 def _write_pictures(
     cases: Iterable[measure.Case], pictured: Surface | None, folder: Path, tick: Callable[[str], None]
 ) -> None:
-    """Two pictures of each case, and for each range a sheet of them all."""
-    sheets: dict[str, dict[str, dict[str, np.ndarray]]] = {}
+    """Write two pictures of each case."""
     for case in cases:
         scene = _seen_by(case, pictured)
         camera = replace(case.camera, fov=scene.fov, aspect=scene.aspect)
         points, covered = scene.points(camera), scene.within(camera)
         found = _through(replace(case, camera=camera), points)
         errors, positions = found.errors.reshape(covered.shape), found.positions.reshape(*covered.shape, 3)
-        two = pictures.depth_pictures(errors, positions, covered)
         where = f"{scene.name}-{camera.near:g}-{camera.far:g}"
-        for kind, pixels in two.items():
+        for kind, pixels in pictures.depth_pictures(errors, positions, covered).items():
             name = f"{where}-{case.codec.name.replace('/', '-')}-{case.rebuilt}-{kind}.png"
             with whole_file(folder / name) as partial:
                 pictures.write_png(partial, pixels)
-        caption = f"{case.codec.name} by {case.rebuilt}, {errors[covered].max():.1g}".replace("_", " ")
-        sheets.setdefault(where, {})[caption] = two
         tick(case.name)
-    for where, rows in sheets.items():
-        with whole_file(folder / f"{where}.png") as partial:
-            pictures.write_png(partial, pictures.contact_sheet(rows, columns=2))
 
 
 def _through(case: measure.Case, points: measure.Points) -> measure.Measured:

@@ -28,7 +28,6 @@ KINDS = ("encoded", "decoded", "error", "power")
 PIXELS = ("angle", "codes", "bits")
 # Of those arrays: a byte for the angle, and at most three numbers of 32 bits.
 MOST_BYTES = MAX_PIXELS * 13 + 2**16
-Drawn = dict[tuple[str, Codec], dict[str, np.ndarray]]
 
 
 def stem(normals: str, key: CodecKey) -> str:
@@ -38,17 +37,15 @@ def stem(normals: str, key: CodecKey) -> str:
 
 
 def write(chosen: Sequence[measure.Case], folder: Path) -> None:
-    """The pictures of each codec, the set's own, and one sheet of the article's methods."""
-    drawn = _write_codecs(chosen, folder)
+    """Write the pictures of each codec, and the set's own."""
+    _write_codecs(chosen, folder)
     _write_originals(chosen, folder)
-    _write_sheet(drawn, folder)
 
 
-def _write_codecs(chosen: Iterable[measure.Case], folder: Path) -> Drawn:
-    """Four PNG files and one of arrays for each codec on each image set, by GLSL where that was asked for and can be
-    had. Gives the pictures of the article's methods."""
+def _write_codecs(chosen: Iterable[measure.Case], folder: Path) -> None:
+    """Write four PNG files and one of arrays for each codec on each image set, by GLSL where that was asked for and can
+    be had."""
     wanted = {(c.normal_set.name, c.codec): c for c in sorted(chosen, key=lambda c: c.backend, reverse=True)}
-    drawn: Drawn = {}
     for (normals, codec), case in wanted.items():
         if not case.normal_set.shape:
             continue
@@ -56,19 +53,11 @@ def _write_codecs(chosen: Iterable[measure.Case], folder: Path) -> Drawn:
         if not trip:
             continue
         name = stem(normals, CodecKey(codec.encoding.name, codec.storage.name, codec.rounding))
-        four = pictures.codec_pictures(trip.normals, trip.encoded, trip.decoded, trip.covered)
-        for kind, pixels in four.items():
+        made = pictures.codec_pictures(trip.normals, trip.encoded, trip.decoded, trip.covered)
+        for kind, pixels in made.items():
             _write_png(folder / f"{name}-{kind}.png", pixels)
         if trip.covered.size <= MAX_PIXELS:
             _write_pixels(folder / f"{name}.npz", codec, trip)
-        if _is_in_sheet(normals, codec):
-            drawn[(normals, codec)] = four
-    return drawn
-
-
-def _is_in_sheet(normals: str, codec: Codec) -> bool:
-    is_article = (normals, codec.storage.name) == (published.NORMALS, published.STORAGE)
-    return is_article and codec.encoding.name in published.PICTURED
 
 
 def _round_trip(case: measure.Case) -> measure.RoundTrip | None:
@@ -114,13 +103,6 @@ def write_scenes(chosen: Sequence[measure.Case], folder: Path) -> None:
     """The normals of each set that is an image, as a page's laboratory takes them."""
     for case in {case.normal_set.name: case for case in chosen if case.normal_set.shape}.values():
         write_scene(case.normal_set.name, *measure.seen(case.normal_set), folder)
-
-
-def _write_sheet(drawn: Drawn, folder: Path) -> None:
-    """One picture of the article's methods, where they were measured as the article did."""
-    sheet = {codec.encoding.name: four for (_, codec), four in drawn.items()}
-    if len(sheet) == len(published.PICTURED):
-        _write_png(folder / f"{published.NORMALS}-{published.STORAGE}.png", pictures.contact_sheet(sheet))
 
 
 def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:

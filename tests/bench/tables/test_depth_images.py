@@ -181,7 +181,7 @@ def test_pictures_are_of_the_frame(run, tmp_path, gl):  # noqa: ARG001 # its dri
     words = ("--images", str(tmp_path / "pictures"), "--fov", "60")
     rows_of(run, tmp_path / "a.npy", *words)
     names = {path.name for path in (tmp_path / "pictures").iterdir()}
-    assert {"a.npy-0.5-80.png", "a.npy-0.5-80-linear-packed16-eye_ray-shaded.png"} <= names
+    assert "a.npy-0.5-80-linear-packed16-eye_ray-shaded.png" in names
 
 
 BAD = {
