@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tempfile
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cache, partial
 from pathlib import Path
@@ -12,7 +12,6 @@ from typing import Any
 
 from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.kind import CURVE, FRAME, MOTION, NORMAL, Kind
-from ...gbuffer.gl.device import NoDeviceError
 from ...gbuffer.gl.shader import ShaderError
 from ..ground.choose import choose, unknown_name
 from ..ground.machine.memory import require_memory
@@ -20,23 +19,19 @@ from ..ground.machine.systems.people import command_line
 from ..ground.options.code import CodeOptions
 from ..ground.options.storage_names import roundings_named
 from ..ground.options.targets import that_fit, what_is_left
-from ..ground.output.errors import MissingError, UsageError, leave_out, tell
-from ..ground.output.progress import progress
-from ..ground.output.writing import check_folder, check_is_folder, say, whole_file
+from ..ground.output.errors import UsageError, leave_out, tell
 from ..ground.spelling import spelled
-from ..keep.row_files import check_rows, write
 from ..shaders.code.emit import LANGUAGES
 from ..shaders.code.files import Code, code_of, file_name, stem_of, usual_prefix
 from ..shaders.code.kinds.table import kind_of
-from ..shaders.code.run import runner
 from ..shaders.code.verify import Agreement, agreement
 from ..shaders.languages.source_options import in_names
 from ..subjects.codecs.kinds.codecs import NAMED, codecs_of_kind, kinds_named
 from ..subjects.codecs.names import codecs_named, fitting
-from .code_figures import COLUMNS, DIFFERS, NOT_RUN, VERIFIED, figures, head, rounding_of
+from .code_figures import figures, head, rounding_of
+from .code_rows import DIFFERS, NOT_RUN, WITNESSES, Row, check_codes, check_place, compared, save
 from .gbuffer_command import LAYOUT, check_no_layout, gbuffer_command, is_of_layouts
 
-Row = dict[str, Any]
 SHIPPED = "rgba8,rg8,rgb10a2,rgb8_12_12,rg16,rg16f"
 LONGEST = 60
 # Codes whose numbers may be cut off.
@@ -44,8 +39,6 @@ ROUNDED = (NORMAL, MOTION, CURVE, FRAME)
 ROUNDED_WORDS = "normals, motion, curves and tangent frames"
 # What the head of code says that was not run.
 NOT_COMPARED = "not in this run; the command below runs it and compares it with the catalogue"
-# What is run in place of a language that is not, the first that can be.
-WITNESSES = ("c", "glsl")
 
 
 def code_command(options: CodeOptions, format: str, output: Path | None) -> int:
@@ -65,18 +58,15 @@ def code_command(options: CodeOptions, format: str, output: Path | None) -> int:
     if options.prefix and len(codecs) > 1 and not options.check:
         raise UsageError(f"--prefix {options.prefix}: names of {len(codecs)} codecs would collide; name one codec")
     if options.check:
-        return _check(codecs, languages, options, format, output)
+        made = _all_made(codecs, languages, options.prefix)
+        return check_codes(made, verified, ("encoding", "storage", "rounding"), format, output)
     if output and output.is_file():
         raise UsageError(f"{output} is a file; code writes into a folder")
-    check_is_folder(output, "code writes into")
     if output and output.suffix in {language.ending for language in LANGUAGES.values()}:
         raise UsageError(
             f"{output}: code writes into a folder, as {file_name(codecs[0], languages[0])} there; name one"
         )
-    if output:
-        check_folder(output)
-    elif len(codecs) * len(languages) > 1:
-        raise UsageError("several files are written into a folder: name one with -o")
+    check_place(output, len(codecs) * len(languages))
     return _write(codecs, languages, options, output)
 
 
@@ -161,7 +151,7 @@ def _write_codec(codec: Any, languages: Sequence[str], prefix: str, output: Path
             tell(f"{codec.name} in {language}: {one.row['says']}")
         if one.code.interface.tables and output is None:
             raise UsageError(f"{codec.encoding.name} comes with look-up tables: name a folder with -o")
-        _save(one.code, one.head(), output)
+        save(one.code, one.head(), output)
     return status
 
 
@@ -246,79 +236,15 @@ def _command(codec: Any, language: str, prefix: str) -> str:
     return command_line([*words, *(["--prefix", prefix] if prefix else [])])
 
 
-def _save(code: Code, said: Iterable[str], output: Path | None) -> None:
-    if output is None:
-        say(code.text(said))
-        return
-    for name, data in code.files(said).items():
-        with whole_file(output / name) as partial:
-            partial.write_bytes(data)
-        tell(f"{output / name}")
-
-
 def verified(code: Code) -> Row:
     """A row: how a file's results compare with the catalogue's, by running it."""
     codec = code.codec
-    row: Row = {
-        "encoding": codec.encoding.name,
-        "storage": codec.storage.name,
-        "rounding": rounding_of(codec),
-        "language": code.language,
-    }
-    try:
+    row: Row = {"encoding": codec.encoding.name, "storage": codec.storage.name, "rounding": rounding_of(codec)}
+
+    def agrees() -> Agreement:
         with tempfile.TemporaryDirectory() as folder:
             for name, data in code.files([]).items():
                 (Path(folder) / name).write_bytes(data)
-            found = agreement(codec, code.language, Path(folder) / code.name, code.interface)
-        return row | _figures(found, runner(code.language).how())
-    except (MissingError, NoDeviceError) as error:
-        return row | {"verdict": NOT_RUN, "says": f"not run here: {error}"}
-    except ShaderError as error:
-        return row | {"verdict": DIFFERS, "says": f"it does not run: {error}"}
+            return agreement(codec, code.language, Path(folder) / code.name, code.interface)
 
-
-def _figures(found: Agreement, how: str) -> Row:
-    return {
-        "verdict": VERIFIED if found.holds else DIFFERS,
-        "values": found.count,
-        "texels": found.texels,
-        "differing": found.differing,
-        "steps": found.steps,
-        "run_by": how,
-        "says": f"{found.says}; run by {how}",
-    }
-
-
-def _check(
-    codecs: Sequence[Any], languages: Sequence[str], options: CodeOptions, format: str, output: Path | None
-) -> int:
-    check_rows(output, COLUMNS)
-    rows: list[Row] = []
-    made = _all_made(codecs, languages, options.prefix)
-    with progress(len(made)) as tick:
-        for code in made:
-            rows.append(verified(code))
-            tick(f"{code.codec.name} in {code.language}")
-    for line in dict.fromkeys(row["says"] for row in rows if row["verdict"] == NOT_RUN):
-        tell(line)
-    failed = [row for row in rows if row["verdict"] == DIFFERS]
-    for row in failed:
-        tell(f"{row['encoding']}/{row['storage']} in {row['language']}: {row['says']}")
-    write(_by_codec(rows) if format in ("table", "markdown") else rows, format, output, ())
-    return int(bool(failed))
-
-
-def _by_codec(rows: Sequence[Row]) -> list[Row]:
-    """A row for each codec, with a column for each language: of how many values the texel is another one."""
-    found: dict[tuple[str, str, str], Row] = {}
-    for row in rows:
-        key = (row["encoding"], row["storage"], row["rounding"])
-        about: Row = dict(zip(("encoding", "storage", "rounding"), key, strict=True))
-        found.setdefault(key, about)[row["language"]] = _said(row)
-    return list(found.values())
-
-
-def _said(row: Row) -> str:
-    if row["verdict"] != VERIFIED:
-        return row["verdict"]
-    return f"{row['differing']} of {row['values']}" if row["differing"] else "equal"
+    return row | {"language": code.language} | compared(agrees, code.language, ("texels",))

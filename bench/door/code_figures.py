@@ -19,13 +19,6 @@ from ..tables.quality import measure as quality
 
 # Figures that differ by less are the same.
 SAME = 1e-3
-# What is said of a file that was run, or could not be.
-VERIFIED, DIFFERS, NOT_RUN = "verified", "differs", "not run"
-# Of the rows that `code --check` writes; for people each language is a column.
-COLUMNS = (
-    *("encoding", "storage", "rounding", "layout", "bytes_per_pixel", "language", "verdict", "values", "texels"),
-    *("differing", "steps", "run_by", "says", *LANGUAGES),
-)
 STAGE, FAMILY, FAMILY_TITLE = "fragment", "navi21", "AMD RDNA 2 (navi21, RADV)"
 
 

@@ -4,33 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import Any
 
 from ...encodings.catalogue import ENCODINGS
-from ...gbuffer.gl.device import NoDeviceError
-from ...gbuffer.gl.shader import ShaderError
 from ...gbuffer.layouts.layout import Layout
 from ...gbuffer.layouts.presets import LAYOUTS
 from ..ground.machine.systems.people import command_line
 from ..ground.options.code import CodeOptions
-from ..ground.output.errors import MissingError, UsageError, tell
-from ..ground.output.progress import progress
-from ..ground.output.writing import check_folder, check_is_folder, say, whole_file
-from ..keep.row_files import check_rows, write
-from ..shaders.code.run import runner
+from ..ground.output.errors import UsageError, tell
 from ..shaders.code.whole.emit import GBufferCode, gbuffer_code
 from ..shaders.code.whole.head import head
 from ..shaders.code.whole.run import NOT_RUN as NEVER_RUN
 from ..shaders.code.whole.verify import agreement
 from ..shaders.translator.writer import identifier
 from ..subjects.codecs.layout_names import layouts_named
-from .code_figures import COLUMNS, DIFFERS, NOT_RUN, VERIFIED
+from .code_rows import DIFFERS, NOT_RUN, VERIFIED, WITNESSES, Row, check_codes, check_place, compared, save
 
-Row = dict[str, Any]
 LAYOUT, ENDING = "layout", ".toml"
-# What is run in place of a language that is not.
-WITNESSES = ("c", "glsl")
 
 
 def is_of_layouts(options: CodeOptions) -> bool:
@@ -61,12 +52,8 @@ def gbuffer_command(options: CodeOptions, languages: Sequence[str], format: str,
     prefixes = {one.name: options.prefix or (identifier(one.name) if len(layouts) > 1 else "") for one in layouts}
     made = [gbuffer_code(layout, language, prefixes[layout.name]) for layout in layouts for language in languages]
     if options.check:
-        return _check(made, format, output)
-    check_is_folder(output, "code writes into")
-    if output:
-        check_folder(output)
-    elif len(made) > 1:
-        raise UsageError("several files are written into a folder: name one with -o")
+        return check_codes(made, verified, ("layout", "bytes_per_pixel"), format, output)
+    check_place(output, len(made))
     return max(
         _write_layout(layout, made, replace(options, prefix=prefixes[layout.name]), output) for layout in layouts
     )
@@ -82,7 +69,9 @@ def _write_layout(layout: Layout, made: Sequence[GBufferCode], options: CodeOpti
         tell(f"{layout.name} in {row['language']}: {row['says']}; {layout.name} is not written")
     for code, row in rows if not wrong else ():
         if code.language in {one.language for one in made}:
-            _save(code, head(code, _command(code, options), row["says"]), output)
+            if code.tables and output is None:
+                raise UsageError(f"{layout.name} comes with look-up tables: name a folder with -o")
+            save(code, head(code, _command(code, options), row["says"]), output)
     return int(bool(wrong))
 
 
@@ -100,59 +89,9 @@ def _command(code: GBufferCode, options: CodeOptions) -> str:
     return command_line(["normalbench", "code", *named, "--to", code.language, *prefix])
 
 
-def _save(code: GBufferCode, said: Sequence[str], output: Path | None) -> None:
-    if output is None:
-        if code.tables:
-            raise UsageError(f"{code.layout.name} comes with look-up tables: name a folder with -o")
-        say(code.text(said))
-        return
-    for name, data in code.files(said).items():
-        with whole_file(output / name) as partial:
-            partial.write_bytes(data)
-        tell(f"{output / name}")
-
-
 def verified(code: GBufferCode) -> Row:
     """A row: how a file's results compare with the renderer's, by running it."""
     row: Row = {"layout": code.layout.name, "bytes_per_pixel": code.layout.bytes_per_pixel, "language": code.language}
     if code.language in NEVER_RUN:
         return row | {"verdict": NOT_RUN, "says": f"not run here: nothing runs layouts in {code.language}"}
-    try:
-        found = agreement(code)
-        how = runner(code.language).how()
-    except (MissingError, NoDeviceError) as error:
-        return row | {"verdict": NOT_RUN, "says": f"not run here: {error}"}
-    except ShaderError as error:
-        return row | {"verdict": DIFFERS, "says": f"it does not run: {error}"}
-    figures = {"values": found.count, "differing": found.differing, "steps": found.steps, "run_by": how}
-    verdict = VERIFIED if found.holds else DIFFERS
-    return row | {"verdict": verdict, **figures, "says": f"{found.says}; run by {how}"}
-
-
-def _check(made: Sequence[GBufferCode], format: str, output: Path | None) -> int:
-    check_rows(output, COLUMNS)
-    rows: list[Row] = []
-    with progress(len(made)) as tick:
-        for code in made:
-            rows.append(verified(code))
-            tick(f"{code.layout.name} in {code.language}")
-    for row in rows:
-        if row["verdict"] != VERIFIED:
-            tell(f"{row['layout']} in {row['language']}: {row['says']}")
-    write(_by_layout(rows) if format in ("table", "markdown") else rows, format, output, ())
-    return int(any(row["verdict"] == DIFFERS for row in rows))
-
-
-def _by_layout(rows: Sequence[Row]) -> list[Row]:
-    """A row for each layout, with a column for each language: how many surfaces have other targets."""
-    found: dict[str, Row] = {}
-    for row in rows:
-        about = {name: row[name] for name in ("layout", "bytes_per_pixel")}
-        found.setdefault(row["layout"], about)[row["language"]] = _said(row)
-    return list(found.values())
-
-
-def _said(row: Row) -> str:
-    if row["verdict"] != VERIFIED:
-        return row["verdict"]
-    return f"{row['differing']} of {row['values']}" if row["differing"] else "equal"
+    return row | compared(partial(agreement, code), code.language)

@@ -23,7 +23,7 @@ import both_ways
 import devices
 import matplotlib
 
-from normalbench.bench.door.code_command import _save
+from normalbench.bench.door.code_rows import save
 from normalbench.bench.ground.output import cache
 from normalbench.bench.keep import row_files
 from normalbench.bench.keep.runs import opened, read_run
@@ -98,7 +98,7 @@ def another_site(folder: Path) -> None:
 
 
 def code(folder: Path) -> None:
-    _save(code_of(Codec(ENCODINGS["best_fit"], STORAGES["rgba8"]), "glsl", ""), [], folder)
+    save(code_of(Codec(ENCODINGS["best_fit"], STORAGES["rgba8"]), "glsl", ""), [], folder)
 
 
 def table(folder: Path) -> None:

@@ -1,0 +1,134 @@
+"""What `code` of codecs and of layouts share: how a file's results compare, a table of that, and where files go."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import Any, Protocol, TypeVar
+
+from ...gbuffer.gl.device import NoDeviceError
+from ...gbuffer.gl.shader import ShaderError
+from ..ground.output.errors import MissingError, UsageError, tell
+from ..ground.output.progress import progress
+from ..ground.output.writing import check_folder, check_is_folder, say, whole_file
+from ..keep.row_files import check_rows, write
+from ..shaders.code.emit import LANGUAGES
+from ..shaders.code.run import runner
+
+Row = dict[str, Any]
+# What is said of a file that was run, or could not be.
+VERIFIED, DIFFERS, NOT_RUN = "verified", "differs", "not run"
+# What is run in place of a language that is not, the first that can be.
+WITNESSES = ("c", "glsl")
+# Of the rows that `code --check` writes; for people each language is a column.
+COLUMNS = (
+    *("encoding", "storage", "rounding", "layout", "bytes_per_pixel", "language", "verdict", "values", "texels"),
+    *("differing", "steps", "run_by", "says", *LANGUAGES),
+)
+
+
+class Agrees(Protocol):
+    """How a file's results differ from what they should be."""
+
+    @property
+    def count(self) -> int: ...
+    @property
+    def differing(self) -> int: ...
+    @property
+    def steps(self) -> int: ...
+    @property
+    def holds(self) -> bool: ...
+    @property
+    def says(self) -> str: ...
+
+
+class Files(Protocol):
+    """A text in a language, and the files that it consists of."""
+
+    @property
+    def language(self) -> str: ...
+    def text(self, head: Iterable[str]) -> str: ...
+    def files(self, head: Iterable[str]) -> dict[str, bytes]: ...
+
+
+FilesT = TypeVar("FilesT", bound=Files)
+
+
+def compared(agreement: Callable[[], Agrees], language: str, more: Sequence[str] = ()) -> Row:
+    """Run a file: its verdict, figures (with `more` of its agreement), and what is said of them."""
+    try:
+        agrees, how = agreement(), runner(language).how()
+    except (MissingError, NoDeviceError) as error:
+        return {"verdict": NOT_RUN, "says": f"not run here: {error}"}
+    except ShaderError as error:
+        return {"verdict": DIFFERS, "says": f"it does not run: {error}"}
+    row: Row = {"verdict": VERIFIED if agrees.holds else DIFFERS, "values": agrees.count}
+    row |= {name: getattr(agrees, name) for name in (*more, "differing", "steps")}
+    return row | {"run_by": how, "says": f"{agrees.says}; run by {how}"}
+
+
+def check_place(output: Path | None, count: int) -> None:
+    """Raise UsageError where so many files cannot be written into a folder, or to standard output without one."""
+    check_is_folder(output, "code writes into")
+    if output:
+        check_folder(output)
+    elif count > 1:
+        raise UsageError("several files are written into a folder: name one with -o")
+
+
+def save(code: Files, head: Iterable[str], output: Path | None) -> None:
+    """Write a code's files into a folder and name them, or its text to standard output."""
+    if output is None:
+        say(code.text(head))
+        return
+    for name, data in code.files(head).items():
+        with whole_file(output / name) as partial:
+            partial.write_bytes(data)
+        tell(f"{output / name}")
+
+
+def check_codes(
+    codes: Sequence[FilesT],
+    verified: Callable[[FilesT], Row],
+    about: Sequence[str],
+    format: str,
+    output: Path | None,
+) -> int:
+    """Write the table of what was verified how. Exit status: 1 where code differs.
+
+    Args:
+        verified: gives a code's row.
+        about: the columns that say what it is the code of; the first ones name it.
+    """
+    check_rows(output, COLUMNS)
+    rows: list[Row] = []
+    with progress(len(codes)) as tick:
+        for code in codes:
+            rows.append(verified(code))
+            tick(f"{_name(rows[-1], about)} in {code.language}")
+    for line in dict.fromkeys(row["says"] for row in rows if row["verdict"] == NOT_RUN):
+        tell(line)
+    failed = [row for row in rows if row["verdict"] == DIFFERS]
+    for row in failed:
+        tell(f"{_name(row, about)} in {row['language']}: {row['says']}")
+    write(_by_language(rows, about) if format in ("table", "markdown") else rows, format, output, ())
+    return int(bool(failed))
+
+
+def _name(row: Row, about: Sequence[str]) -> str:
+    return "/".join(str(row[name]) for name in about[:2] if name in ("encoding", "storage", "layout"))
+
+
+def _by_language(rows: Sequence[Row], about: Sequence[str]) -> list[Row]:
+    """A row for each codec or layout, with a column for each language: how many values have another texel."""
+    lines: dict[tuple[Any, ...], Row] = {}
+    for row in rows:
+        line = {name: row[name] for name in about}
+        lines.setdefault(tuple(line.values()), line)[row["language"]] = _in_short(row)
+    return list(lines.values())
+
+
+def _in_short(row: Row) -> str:
+    if row["verdict"] != VERIFIED:
+        return row["verdict"]
+    return f"{row['differing']} of {row['values']}" if row["differing"] else "equal"
