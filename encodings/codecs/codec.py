@@ -11,7 +11,6 @@ from functools import reduce
 import numpy as np
 
 from ..storages.dither import Dither
-from ..storages.local_range import back, bits_of_bounds, bounds, within
 from ..storages.rounding import numbers_around, store_number
 from ..storages.rules import of_count
 from ..storages.storage import BITS_32, DITHERED, FORMS, Storage, of_unit, rounds_to
@@ -103,8 +102,6 @@ class Codec:
             return f"{storage.title} is of floats, and precise rounding is for fixed point"
         if encoding.is_precise and self.rounding != "nearest":
             return "it is rounded precisely, not otherwise"
-        if encoding.is_half and encoding.patch:
-            return "a range is not computed in half arithmetic"
         if encoding.is_half and self._not_in_half:
             return f"{self._not_in_half} for half arithmetic"
         return numbers_misfit(storage, levels)
@@ -119,8 +116,8 @@ class Codec:
         """Why noise, where it is asked for, is not added by what measures it; empty where it is."""
         if not self.is_dithered:
             return ""
-        if self.encoding.is_half or self.encoding.before or self.encoding.patch:
-            return "noise is for one code in float32, of steps that are the same everywhere"
+        if self.encoding.is_half or self.encoding.before:
+            return "noise is for one code in float32"
         return self.undithered or ""
 
     @property
@@ -173,10 +170,6 @@ class Codec:
             return self.encoding.packed_bits
         return sum(self.storage.bits[: self.encoding.components]) + self.encoding.sign_bits
 
-    def bits_of_bounds(self, count: int) -> float:
-        """The bits that the ranges of patches add to each of so many normals; 0 without patches."""
-        return bits_of_bounds(self.encoding.components, self.encoding.patch, count) if self.encoding.patch else 0.0
-
     @property
     def codes(self) -> int:
         """How many codes it has: whatever its numbers in [-1, 1] can be, used or not."""
@@ -226,15 +219,7 @@ class Codec:
         code = type(code := self.encoding.encode(n, view))(*(jnp.asarray(c, dtype) for c in code))
         if noise is not None:
             code = type(code)(*(c + added for c, added in zip(code, noise, strict=False)))
-        if self.encoding.patch:
-            return self._stored_in_patches(code)
         return self.store(self._nearest_of(code, n, view) if self.encoding.is_precise else code)
-
-    def _stored_in_patches(self, code):
-        """Codes that were stored within the range of their patch, as they come back."""
-        ranges = [bounds(c, self.encoding.patch) for c in code]
-        inside = type(code)(*(within(c, *ends) for c, ends in zip(code, ranges, strict=True)))
-        return type(code)(*(back(c, *ends) for c, ends in zip(self.store(inside), ranges, strict=True)))
 
     def around(self, code) -> list:
         """The codes around a code (Vec2 or Vec3), every number rounded down or up; of fixed-point formats."""

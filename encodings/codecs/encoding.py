@@ -89,7 +89,6 @@ class Encoding:
         packed_bits: how many bits are used of a code that is one integer of 32 bits as its author's functions make it:
             its two numbers are the halves, and it is stored as it stands. 0 for any other code.
         declares_half: its author's functions are of numbers of 16 bits.
-        patch: how many normals share a range that their codes are stored within, see `local_range.py`; 0 for none.
         own: the same in its author's axes, of a code for another half than z >= 0, which tables turn.
     """
 
@@ -120,7 +119,6 @@ class Encoding:
     is_unit: bool = False
     packed_bits: int = 0
     declares_half: bool = False
-    patch: int = 0
     own: Encoding | None = None
 
     @property
@@ -156,7 +154,7 @@ class Encoding:
     def fingerprint(self) -> str:
         """16 hex digits that change with its files, constants and tables. Raises OSError where one cannot be read."""
         code = (self.prefix, self.components, self.sign_bits, self.levels, self.is_precise)
-        code = (*code, self.axis, self.sign, self.is_half, *([self.patch] if self.patch else []))
+        code = (*code, self.axis, self.sign, self.is_half)
         if self.before:
             code = (*code, self.before.name, self.before.encoding.fingerprint)
         return fingerprint(self.glsl, (code, sorted(self.constants.items())), self.tables(), self.twin)
@@ -185,7 +183,7 @@ class Encoding:
     @property
     def is_exact(self) -> bool:
         """Whether its maps are those of real numbers, which only storage rounds."""
-        return not self.is_half and self.before is None and not self.patch
+        return not self.is_half and self.before is None
 
     @property
     def published(self) -> dict[str, float]:
@@ -217,10 +215,6 @@ class Encoding:
 
         made = replace(self, encode=turned_encode, decode=turned_decode, axis=axis, sign=sign)
         return made._variant(said)
-
-    def in_patches(self, patch: int, said: str) -> Encoding:
-        """The encoding whose codes are stored within the range of so many normals that follow each other."""
-        return replace(self, patch=patch)._variant(said)
 
     def in_half(self, said: str) -> Encoding:
         """The encoding computed in floats of 16 bits, by the same code, named after `said`."""

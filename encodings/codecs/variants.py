@@ -1,5 +1,4 @@
-"""Variants of an encoding by name: `stereographic:scale=1.31`, `octahedral:axis=y`, `octahedral:arithmetic=half`,
-`octahedral:range=64`."""
+"""Variants of an encoding by name: `stereographic:scale=1.31`, `octahedral:axis=y`, `octahedral:arithmetic=half`."""
 
 from __future__ import annotations
 
@@ -9,9 +8,6 @@ from collections.abc import Mapping
 from .encoding import AXES, Encoding
 
 MARK, TABLE = ":", "table"
-# Of codes that are stored within the range of their patch: how many normals that is, and a meshlet's usual number.
-RANGE, LOCAL = "range", "local"
-LEAST_PATCH, USUAL_PATCH, MOST_PATCH = 4, 64, 2**18
 SIGNS = ("1", "-1")
 FLOAT, HALF = ARITHMETICS = ("float", "half")
 # In place of an arithmetic: float, and half as well for a file that declares numbers of 16 bits.
@@ -42,14 +38,7 @@ def known_settings(encoding: Encoding) -> dict[str, str]:
     known = {name: f"{value:g}" for name, value in encoding.published.items()}
     known |= {TABLE: "FILE.npy"} if encoding.look_up else {}
     known |= {"axis": "y", "sign": "-1"} if encoding.can_turn else {}
-    known |= {RANGE: LOCAL} if has_ranges(encoding) else {}
     return known | {"arithmetic": HALF}
-
-
-def has_ranges(encoding: Encoding) -> bool:
-    """Whether its codes may be stored within a range: numbers that are no index, and are not searched among codes."""
-    is_index = bool(encoding.levels) or encoding.is_packed or encoding.is_precise or encoding.searches
-    return not (is_index or encoding.sign_bits or encoding.look_up or encoding.is_half)
 
 
 def variant(encoding: Encoding, values: Mapping[str, str]) -> Encoding:
@@ -70,28 +59,12 @@ def variant(encoding: Encoding, values: Mapping[str, str]) -> Encoding:
     numbers = {key: _checked_number(encoding, key, values[key]) for key in own}
     made = encoding.with_parameters(numbers) if numbers else encoding
     made = _turned_encoding(made, turns) if turns else made
-    if RANGE in values:
-        if arithmetic == HALF:
-            raise ValueError("a range is not computed in half arithmetic; leave out one of the two")
-        return made.in_patches(_checked_patch(values[RANGE]), f"{MARK}{RANGE}={values[RANGE]}")
     return in_half(made) if arithmetic == HALF else made
 
 
 def in_half(encoding: Encoding) -> Encoding:
     """The encoding computed in floats of 16 bits."""
     return encoding.in_half(HALF_NAME)
-
-
-def _checked_patch(text: str) -> int:
-    if text == LOCAL:
-        return USUAL_PATCH
-    patch = int(text) if text.isdecimal() and len(text) < 9 else 0
-    if not LEAST_PATCH <= patch <= MOST_PATCH or patch & (patch - 1):
-        raise ValueError(
-            f"{RANGE} is {LOCAL} or how many normals share one, a power of two from {LEAST_PATCH} to {MOST_PATCH}, not "
-            f"{text!r}"
-        )
-    return patch
 
 
 def _checked_number(encoding: Encoding, key: str, text: str) -> float:

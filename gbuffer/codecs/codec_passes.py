@@ -28,8 +28,6 @@ def encoding_defines(encoding: Encoding, as_half: bool = False) -> dict[str, obj
     """
     if encoding.before:
         raise ShaderError(f"{encoding.name}: a chain of codecs is not drawn into a G-buffer; {BY_JAX} it by JAX")
-    if encoding.patch:
-        raise ShaderError(f"{encoding.name}: a patch's range is found before its codes are stored; JAX measures it")
     if encoding.is_half and not as_half:
         raise ShaderError(f"{encoding.name}: OpenGL computes shaders in 32 bits; {BY_JAX} half arithmetic by JAX")
     check_functions(encoding.glsl, encoding.signatures)

@@ -27,7 +27,6 @@ from ..choose import choose
 NORMAL_SETS = {
     "sphere": "directions spread evenly over the sphere, seeded",
     "hemisphere": "directions spread evenly over z >= 0, seeded",
-    "cone": "directions spread evenly within 10 degrees of +z, seeded",
     "axes": "axis-aligned, both zeros, and a few units in the last place around",
     "playground": "the scene of Pranckevicius' article rendered at 640 x 480, with four lamp arms like its own",
 }

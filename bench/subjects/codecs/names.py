@@ -30,21 +30,17 @@ def codecs_named(
     storages: str,
     roundings: str,
     arithmetics: str = FLOAT,
-    has_patches: bool = False,
     known_roundings: Sequence[str] = ROUNDINGS,
 ) -> list[Codec]:
     """Every combination of comma-separated names, users' encodings from files among them.
 
     Args:
-        has_patches: whether what is measured has neighbours that may share a range.
         known_roundings: what names of roundings may be.
 
     Raises:
-        UsageError: an unknown name, or codes within ranges where none are.
+        UsageError: an unknown name.
     """
     named = _with_chains(encodings)
-    if not has_patches and (ranged := next((one for one in named if one.patch), None)):
-        raise UsageError(f"{ranged.name}: the ranges of patches are measured by quality alone")
     chosen = with_arithmetics(named, FLOAT if arithmetics == DECLARED and not _computes_halves(named) else arithmetics)
     made = (
         Codec(encoding, storage, rounding)

@@ -36,7 +36,6 @@ PLASTIC = 1.3247179572447460
 STEPS = tuple(round(2**32 / PLASTIC**k) | 1 for k in (1, 2))
 # After 2^32 normals the sequence would come again. Each further turn is shifted by the next 32 bits of the steps.
 TURN = 2**32
-CONE_DEG = 10.0
 SHIFTS = tuple(int(2**64 / PLASTIC**k) % TURN for k in (1, 2))
 
 
@@ -180,23 +179,6 @@ def hemisphere(count: int = DEFAULT_COUNT, seed: int = 0) -> NormalSet:
     return _make_uniform("hemisphere", "uniform hemisphere, z >= 0", False, count, seed)
 
 
-def cone(count: int = DEFAULT_COUNT, seed: int = 0) -> NormalSet:
-    """`count` directions spread evenly within CONE_DEG of +z: a patch of a smooth surface."""
-    offsets = np.random.default_rng(seed).random(2)
-    low = math.cos(math.radians(CONE_DEG))
-
-    def chunk(start: int) -> Chunk:
-        index = start + np.arange(CHUNK, dtype=np.float64)
-        u, v = ((offset + index / PLASTIC**k) % 1.0 for k, offset in zip((1, 2), offsets, strict=True))
-        z = 1.0 - u * (1.0 - low)
-        # 1 - z^2 as a product, which does not cancel near the pole.
-        r, angle = np.sqrt((1.0 - z) * (1.0 + z)), 2 * np.pi * v
-        n = Vec3(*(jnp.asarray(c, jnp.float32) for c in (np.cos(angle) * r, np.sin(angle) * r, z)))
-        return Chunk(n, _straight_ahead(n.z), jnp.arange(CHUNK) < count - start)
-
-    return NormalSet("cone", f"uniform within {CONE_DEG:g} degrees of +z", None, count, None, seed, chunk)
-
-
 def from_arrays(name: str, title: str, n, view, covered, shape=None, not_finite: int | None = None) -> NormalSet:
     """A set of given normals.
 
@@ -258,5 +240,5 @@ def _playground_set() -> NormalSet:
 
 
 NORMAL_SETS: Mapping[str, Callable[[int, int], NormalSet]] = MappingProxyType(
-    {"sphere": sphere, "hemisphere": hemisphere, "cone": cone, "axes": axes, "playground": playground}
+    {"sphere": sphere, "hemisphere": hemisphere, "axes": axes, "playground": playground}
 )

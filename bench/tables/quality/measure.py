@@ -91,8 +91,8 @@ class Case:
     @property
     def domain(self) -> str | None:
         """What limits and suprema are over: "sphere", or "hemisphere" where the set or the encoding is for z >= 0; None
-        of a set that is not uniform, and of codes that have bounds beside them."""
-        if self.normal_set.area is None or self.codec.encoding.patch:
+        of a set that is not uniform."""
+        if self.normal_set.area is None:
             return None
         is_whole = self.normal_set.area == AREAS["sphere"] and self.codec.encoding.domain == "sphere"
         return "sphere" if is_whole else "hemisphere"
@@ -298,7 +298,6 @@ def _case_columns(case: Case) -> Row:
         "normals": case.normal_set.name,
         "backend": case.backend,
         "bits": case.codec.bits,
-        "bounds_bits": case.codec.bits_of_bounds(case.normal_set.count) or None,
         "background": case.normal_set.background,
         "own_error_deg": case.normal_set.own_error_deg,
         "not_finite": case.normal_set.not_finite,

@@ -84,11 +84,6 @@ COLUMNS = (
     Column("normals", "The set of normals that was measured on.", KEY),
     shared.BACKEND,
     shared.BITS,
-    Column(
-        "bounds_bits",
-        "Bits that the bounds of a patch add to each of its normals, of codes that are stored within a range.",
-        unit="bits",
-    ),
     Column("count", "How many normals were measured.", HOW, drops=13),
     Column(
         "background", "Pixels without a surface, and vertices without a direction; they do not count.", HOW, drops=3

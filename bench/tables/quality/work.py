@@ -58,7 +58,7 @@ def cases(options: QualityOptions) -> list[measure.Case]:
     count = checked_count(options.count)
     check_seed(options.seed)
     codecs = codecs_named(
-        options.encoding, options.storage, options.rounding, options.arithmetic, True, ROUNDINGS_AND_DITHERED
+        options.encoding, options.storage, options.rounding, options.arithmetic, ROUNDINGS_AND_DITHERED
     )
     backends = backends_named(options.backend, measure.BACKENDS)
     codecs, left_out = fitting(codecs)

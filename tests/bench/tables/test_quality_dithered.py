@@ -74,7 +74,6 @@ def test_what_has_no_even_steps_of_its_own_is_not_dithered():
         "steps of floats": Codec(octahedral, STORAGES["rg16f"], "dithered"),
         "rounded to the nearest": Codec(ENCODINGS["octahedral_precise"], rg8, "dithered"),
         "float32": Codec(in_half(octahedral), rg8, "dithered"),
-        "steps that are the same": Codec(replace(octahedral, patch=64), rg8, "dithered"),
         "whole numbers": Codec(replace(octahedral, packed_bits=32), rg8, "dithered"),
         "one code": Codec(replace(octahedral, before=Codec(octahedral, rg8)), rg8, "dithered"),
     }
