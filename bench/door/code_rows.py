@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 from ...gbuffer.gl.device import NoDeviceError
 from ...gbuffer.gl.shader import ShaderError
@@ -12,8 +12,12 @@ from ..ground.output.errors import MissingError, UsageError, tell
 from ..ground.output.progress import progress
 from ..ground.output.writing import check_folder, check_is_folder, say, whole_file
 from ..keep.row_files import check_rows, write
+from ..shaders.code import verify
 from ..shaders.code.emit import LANGUAGES
+from ..shaders.code.files import Code
 from ..shaders.code.run import runner
+from ..shaders.code.whole import verify as layout_verify
+from ..shaders.code.whole.emit import GBufferCode
 
 Row = dict[str, Any]
 # What is said of a file that was run, or could not be.
@@ -27,34 +31,12 @@ COLUMNS = (
 )
 
 
-class Agrees(Protocol):
-    """How a file's results differ from what they should be."""
-
-    @property
-    def count(self) -> int: ...
-    @property
-    def differing(self) -> int: ...
-    @property
-    def steps(self) -> int: ...
-    @property
-    def holds(self) -> bool: ...
-    @property
-    def says(self) -> str: ...
+CodeT = TypeVar("CodeT", Code, GBufferCode)
 
 
-class Files(Protocol):
-    """A text in a language, and the files that it consists of."""
-
-    @property
-    def language(self) -> str: ...
-    def text(self, head: Iterable[str]) -> str: ...
-    def files(self, head: Iterable[str]) -> dict[str, bytes]: ...
-
-
-FilesT = TypeVar("FilesT", bound=Files)
-
-
-def compared(agreement: Callable[[], Agrees], language: str, more: Sequence[str] = ()) -> Row:
+def compared(
+    agreement: Callable[[], verify.Agreement | layout_verify.Agreement], language: str, more: Sequence[str] = ()
+) -> Row:
     """Run a file: its verdict, figures (with `more` of its agreement), and what is said of them."""
     try:
         agrees, how = agreement(), runner(language).how()
@@ -76,7 +58,7 @@ def check_place(output: Path | None, count: int) -> None:
         raise UsageError("several files are written into a folder: name one with -o")
 
 
-def save(code: Files, head: Iterable[str], output: Path | None) -> None:
+def save(code: Code | GBufferCode, head: Iterable[str], output: Path | None) -> None:
     """Write a code's files into a folder and name them, or its text to standard output."""
     if output is None:
         say(code.text(head))
@@ -88,8 +70,8 @@ def save(code: Files, head: Iterable[str], output: Path | None) -> None:
 
 
 def check_codes(
-    codes: Sequence[FilesT],
-    verified: Callable[[FilesT], Row],
+    codes: Sequence[CodeT],
+    verified: Callable[[CodeT], Row],
     about: Sequence[str],
     format: str,
     output: Path | None,
@@ -98,25 +80,21 @@ def check_codes(
 
     Args:
         verified: gives a code's row.
-        about: the columns that say what it is the code of; the first ones name it.
+        about: the columns that say what it is the code of.
     """
     check_rows(output, COLUMNS)
     rows: list[Row] = []
     with progress(len(codes)) as tick:
         for code in codes:
             rows.append(verified(code))
-            tick(f"{_name(rows[-1], about)} in {code.language}")
+            tick(code.name)
     for line in dict.fromkeys(row["says"] for row in rows if row["verdict"] == NOT_RUN):
         tell(line)
-    failed = [row for row in rows if row["verdict"] == DIFFERS]
-    for row in failed:
-        tell(f"{_name(row, about)} in {row['language']}: {row['says']}")
+    failed = [(code, row) for code, row in zip(codes, rows, strict=True) if row["verdict"] == DIFFERS]
+    for code, row in failed:
+        tell(f"{code.name}: {row['says']}")
     write(_by_language(rows, about) if format in ("table", "markdown") else rows, format, output, ())
     return int(bool(failed))
-
-
-def _name(row: Row, about: Sequence[str]) -> str:
-    return "/".join(str(row[name]) for name in about[:2] if name in ("encoding", "storage", "layout"))
 
 
 def _by_language(rows: Sequence[Row], about: Sequence[str]) -> list[Row]:

@@ -250,7 +250,7 @@ class Shown:
 def _show(table: Table, rows: Sequence[Row]) -> bool:
     """A table's summary, and what is to be said of its rows; whether one fails."""
     say_skipped(table, rows)
-    say_lines(table.work.warnings(rows))
+    say_lines(table.warnings(rows))
     failed = say_lines(table.work.failures(rows))
     show_summary(table, rows)
     return failed

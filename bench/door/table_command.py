@@ -106,7 +106,7 @@ def _show(table: Table, done: Measured, format: str, output: Path | None) -> boo
     """Write the rows and what goes with them; whether a row fails."""
     work = table.work
     say_skipped(table, done.rows, table.lacking(done))
-    say_lines(work.warnings(done.rows))
+    say_lines(table.warnings(done.rows))
     failed = say_lines(work.failures(done.rows))
     show(table, done, format, output)
     work.write(done, lambda _: None)

@@ -262,6 +262,13 @@ class Table:
         """What a row is called: its key columns' values."""
         return " ".join(str(row[c.name]) for c in self.of_role(Role.KEY) if row.get(c.name) is not None)
 
+    def warnings(self, rows: Sequence[Row]) -> Iterator[str]:
+        """Say what is odd about rows: results that are no numbers, and what the table itself says."""
+        for row in rows:
+            if row.get("invalid"):
+                yield f"{self.name_of(row)}: {row['invalid']} results are NaN or infinite"
+        yield from self.work.warnings(rows)
+
     def lacking(self, done: Measured) -> list[str]:
         """What the machine turned out to lack; each once."""
         return list(dict.fromkeys(self.work.lacking(done)))

@@ -33,7 +33,7 @@ from ..table import Row, Sheet, Step, Work
 from . import pictures
 from .charts import charts
 from .measure import Case, EffectsBench, group_of, in_order
-from .table import DEPTHS, TABLE, EffectsOptions, EffectsOutputs
+from .table import DEPTHS, EffectsOptions, EffectsOutputs
 
 MAX_RAYS = 2**16
 NO_DEPTH = "none"
@@ -144,12 +144,6 @@ def _key(case: Case, options: EffectsOptions) -> Row:
     return key | {"repeats": options.repeats, "flip": options.flip}
 
 
-def _warnings(rows: Sequence[Row]) -> Iterator[str]:
-    for row in rows:
-        if row["invalid"]:
-            yield f"{TABLE.name_of(row)}: {row['invalid']} pixels of the image are NaN or infinite"
-
-
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     names = ("encoding", "storage", "depth", "effect_psnr_db", "effect_rms", "moved_percent", "method_rms", "psnr_db")
     for effect, pipeline, scene in dict.fromkeys(group_of(row) for row in rows):
@@ -164,7 +158,6 @@ WORK = Work(
     measure=by_shots(lambda folder, row, drawn, exact: pictures.write(folder, row, drawn, exact[0])),
     finish=in_order,
     summary=_summary,
-    warnings=_warnings,
     charts=charts,
     subjects=pictures.subjects,
 )

@@ -25,7 +25,7 @@ from .formats import FORMATS, SWIZZLES, BlockFormat, swizzles_of
 from .measure import Case
 from .order import group_of, in_order
 from .sets import MAPS
-from .table import TABLE, MapsOptions, MapsOutputs
+from .table import MapsOptions, MapsOutputs
 
 
 def cases(options: MapsOptions) -> list[Case]:
@@ -121,12 +121,6 @@ def _key(case: Case) -> Row:
     return key | {"normals": case.normal_set.name, "decoder": case.decoder, "encoder": case.block.encoder.name}
 
 
-def _warnings(rows: Sequence[Row]) -> Iterator[str]:
-    for row in rows:
-        if row["invalid"]:
-            yield f"{TABLE.name_of(row)}: {row['invalid']} decodes are NaN or infinite"
-
-
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     names = ("encoding", "block", "swizzle", "bits_per_texel", "angle_mean_deg", "angle_rms_deg", "angle_p99_deg")
     names += ("angle_max_deg", "psnr_db")
@@ -156,7 +150,6 @@ WORK = Work(
     measure=each(measure.measure),
     finish=in_order,
     summary=_summary,
-    warnings=_warnings,
     write=_write,
     charts=charts,
     missing=_missing,

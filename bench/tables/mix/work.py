@@ -119,12 +119,6 @@ def _group(row: Row) -> tuple[Any, ...]:
     return row["normals"], row["angle_deg"], row["edge_deg"], row["operation"]
 
 
-def _warnings(rows: Sequence[Row]) -> Iterator[str]:
-    for row in rows:
-        if row["invalid"]:
-            yield f"{TABLE.name_of(row)}: {row['invalid']} results are NaN or infinite"
-
-
 def _shown(done: Measured) -> Iterator[Sheet]:
     """The verdicts, each operation's worst figures by one back end, and how the device mixes; files have every row."""
     yield from _summary(done.rows)
@@ -169,6 +163,5 @@ WORK = Work(
     finish=in_order,
     shown=_shown,
     summary=_summary,
-    warnings=_warnings,
     charts=charts,
 )

@@ -22,7 +22,7 @@ from . import pictures, turning
 from .charts import wobble_chart
 from .code_wobble import Motion
 from .measure import PICTURE_SWING_DEG, Bench, Case, FrameSequence
-from .table import TABLE, MotionOptions, MotionOutputs
+from .table import MotionOptions, MotionOutputs
 
 LEAST_TURN_DEG, MOST_TURN_DEG = 1e-4, 45.0
 # One pixel or so of the default picture.
@@ -127,12 +127,6 @@ def _key(case: Case) -> Row:
     return key | ({"size": list(shots.size), "lights": shots.setting.lights} if shots else {})
 
 
-def _warnings(rows: Sequence[Row]) -> Iterator[str]:
-    for row in rows:
-        if row["invalid"]:
-            yield f"{TABLE.name_of(row)}: {row['invalid']} decodes are NaN or infinite"
-
-
 IMAGE = ("static_psnr_db", "wobble_psnr_db", "reprojected_psnr_db")
 LINE = ("encoding", "storage", "rounding", "space", "moves", "axis")
 
@@ -181,7 +175,6 @@ WORK = Work(
     check=_check,
     measure=by_shots(pictures.write),
     summary=_summary,
-    warnings=_warnings,
     charts=_charts,
     plotted=lambda done: [wobble_chart(_plotted(done.rows))],
     films=pictures.films,

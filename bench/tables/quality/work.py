@@ -151,8 +151,6 @@ def _finished(rows: Sequence[Row]) -> list[Row]:
 
 def _warnings(rows: Sequence[Row]) -> Iterator[str]:
     for row in rows:
-        if row["invalid"]:
-            yield f"{_named(row)}: {row['invalid']} decodes are NaN or infinite"
         if row["angle_sup_deg"] is not None and row["angle_max_deg"] > BY_ARITHMETIC * row["angle_sup_deg"]:
             said = f"{row['angle_max_deg']:.3g} degrees were met, {row['angle_sup_deg']:.3g} are the supremum of exact"
             yield f"{_named(row)}: {said} arithmetic; float32 loses the rest, at {row['worst_normal']}"

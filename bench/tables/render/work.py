@@ -159,10 +159,6 @@ def _key(case: Case, options: RenderOptions) -> Row:
 
 
 def _warnings(rows: Sequence[Row]) -> Iterator[str]:
-    for row in rows:
-        if row["invalid"]:
-            what = " ".join(filter(None, (row["pipeline"], row["layout"], row["encoding"], row["storage"])))
-            yield f"{what} on {row['scene']}: {row['invalid']} pixels are NaN or infinite"
     for scene, covered in _most(rows, "covered_percent").items():
         yield from says_little(scene, covered)
     for scene, black in _most(rows, "black_percent").items():

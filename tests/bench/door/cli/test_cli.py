@@ -376,7 +376,7 @@ def test_decodes_that_are_no_number_are_counted_and_said(run, monkeypatch):
     measured_instead(monkeypatch, replace(original, decode=decode))
     status, out, err = run("quality", "--encoding", "xy", "--normals", "axes", "--backend", "jax", "--format", "json")
     assert status == 0 and json.loads(out)[0]["invalid"] == 64, "one axis of six, 64 directions around it"
-    assert err == "normalbench: xy/rgba8 on axes by jax: 64 decodes are NaN or infinite\n"
+    assert err == "normalbench: xy rgba8 nearest axes jax: 64 results are NaN or infinite\n"
 
 
 @pytest.mark.parametrize(
