@@ -27,6 +27,8 @@ ENDINGS: Mapping[str, Format] = MappingProxyType({".csv": Format.csv, ".json": F
 OTHERS: Mapping[str, str] = MappingProxyType(
     {".html": "--report", ".htm": "--report"} | dict.fromkeys((".png", ".svg", ".pdf"), "--plot")
 )
+# What people may expect, and would be given a text.
+NOT_WRITTEN = (".parquet", ".xlsx")
 FormatOption = Annotated[
     Format | None,
     typer.Option(
@@ -51,8 +53,10 @@ def format_of(format: Format | None, output: Path | None) -> Format:
     """How rows are written: as asked, or as the file's name says.
 
     Raises:
-        UsageError: a file whose name promises a page or a chart.
+        UsageError: a file whose name promises a page, a chart, or a format that is not written.
     """
     if not format and output and (other := OTHERS.get(output.suffix.lower())):
         raise UsageError(f"-o writes rows, not {output.name}; {other} {output} does, where a command has it")
+    if output and output.suffix.lower() in NOT_WRITTEN:
+        raise UsageError(f"-o writes no {output.suffix}; name it {output.with_suffix('.csv').name}, or .json")
     return format or (ENDINGS.get(output.suffix.lower()) if output else None) or Format.table

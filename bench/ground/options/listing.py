@@ -34,8 +34,8 @@ NORMAL_SETS = {
 # Sets that users' files are, by how they are named.
 FILES_OF_NORMALS = {
     "FRAME.exr": "a captured frame, also .png, .tif, .dds, .hdr, .webp and .npy",
-    "MESH.glb": "what a camera sees of a mesh, also .gltf, .obj, .ply, .stl and .off",
-    "MESH.glb#vertices": "its vertex normals in object space, each vertex once, also .gltf, .obj, .ply and .stl",
+    "MESH.glb": "what a camera sees of a mesh, also .gltf, .obj and .ply",
+    "MESH.glb#vertices": "its vertex normals in object space, each vertex once, also .gltf, .obj and .ply",
     "POINTS.ply": "the normals of a point cloud in object space: nx, ny, nz and no faces",
 }
 

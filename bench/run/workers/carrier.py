@@ -47,6 +47,7 @@ class Answer:
         knows: whether the worker has the order; else it is to be sent along.
         refused: why no worker measures it; empty where one does.
         lost: how many workers were lost with it; 0 where it was measured in the end.
+        error: what measuring the step after these raised, a UsageError or MissingError; None where nothing did.
     """
 
     steps: Sequence[tuple[list[Row], dict[str, bytes]]] = ()
@@ -54,6 +55,7 @@ class Answer:
     knows: bool = True
     refused: str = ""
     lost: int = 0
+    error: Exception | None = None
 
 
 class Carrier(Protocol):

@@ -60,9 +60,11 @@ class Pool:
             elif answer.lost:
                 yield task.steps[0], [_lost_row(ask.table, task.steps[0], answer.lost)]
             else:
-                for step, (rows, pictures) in zip(task.steps, answer.steps, strict=True):
+                for step, (rows, pictures) in zip(task.steps, answer.steps, strict=not answer.error):
                     _write(ask, pictures)
                     yield step, rows
+                if answer.error:
+                    raise answer.error
         if again:
             yield from self._measured(ask, again, refused)
 

@@ -45,9 +45,6 @@ def measure(order: Order | str, needs: Set[str], wanted: Sequence[str]) -> Answe
         order: itself, or the id of one that was sent before.
         needs: the marks that this worker has to have.
         wanted: the names of steps.
-
-    Raises:
-        UsageError, MissingError: what measuring raised.
     """
     if absent := needs - set(marks().values()):
         return Answer(refused=f"no worker has this {named(absent)}")
@@ -59,9 +56,15 @@ def measure(order: Order | str, needs: Set[str], wanted: Sequence[str]) -> Answe
         return Answer(knows=False)
     if not laid.steps.keys() >= set(wanted):
         return Answer(refused="workers make other steps of the same options")
+    steps: list[tuple[list[Row], dict[str, bytes]]] = []
+    error = None
     with _in_folder(laid.folder), _listening() as lines:
-        steps = list(_answers(laid, wanted))
-    return Answer(steps, [laid.order.as_typed(line) for line in lines])
+        try:
+            for answer in _answers(laid, wanted):
+                steps.append(answer)
+        except (UsageError, MissingError) as raised:
+            error = raised
+    return Answer(steps, [laid.order.as_typed(line) for line in lines], error=error)
 
 
 def _answers(laid: Laid, wanted: Sequence[str]) -> Iterator[tuple[list[Row], dict[str, bytes]]]:

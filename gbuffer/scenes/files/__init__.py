@@ -1,1 +1,1 @@
-"""Mesh files: glTF, OBJ, PLY, STL and OFF."""
+"""Mesh files: glTF, OBJ and PLY."""

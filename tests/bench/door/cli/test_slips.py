@@ -167,6 +167,7 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
         ("quality", "--normals", "f.npy", "--space", "world", "--view-matrix", "bytes.txt"),
         "--view-matrix bytes.txt: neither numbers nor a text file of numbers: it is not text in UTF-8",
     ),
+    "Parquet, which is not written": ((*ONE, "-o", "x.parquet"), "name it x.csv, or .json"),
     "a plot of another kind": (("sweep", "--plot", "x.gif"), "x.gif"),
 }
 

@@ -16,7 +16,7 @@ from normalbench.bench.run.workers.about import BASE, marks, named
 from normalbench.bench.run.workers.carrier import Answer
 from normalbench.bench.run.workers.chunks import MOST_TOGETHER, chunk_size, tasks_of
 from normalbench.bench.run.workers.local import MOST_LOST, LocalWorkers
-from normalbench.bench.run.workers.orders import step_name
+from normalbench.bench.run.workers.orders import order_of, step_name
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.table import GL, VULKAN, Role, Step
 
@@ -128,6 +128,28 @@ def test_a_step_that_ends_worker_after_worker_loses_its_own_rows(workers, capsys
 def test_an_answer_that_is_wrong_ends_the_command(wrong, workers):
     with pytest.raises(type(wrong), match=str(wrong)):
         measured(workers(lambda order, needs, names: wrong), asked("quality", JAX))  # noqa: ARG005
+
+
+def test_steps_before_one_that_raises_are_kept(workers, monkeypatch, tmp_path):
+    """By the worker's process, and by this one."""
+    ask = asked("quality", JAX[:2])
+
+    def measure(_, steps, tick):  # noqa: ARG001
+        yield steps[0], [{"a": 1}]
+        raise UsageError("the device is lost")
+
+    monkeypatch.setattr(tasks.HERE, "measure", measure)
+    order, names = order_of(ask), [step_name("quality", step.key) for step in ask.steps]
+    laid = tasks.Laid(order, tmp_path, ask, dict(zip(names, ask.steps, strict=True)))
+    (tmp_path / "typed").mkdir()
+    monkeypatch.setattr(tasks, "_laid_down", lambda _: laid)
+    answer = tasks.measure(order, frozenset(), names)
+    assert [rows for rows, _ in answer.steps] == [[{"a": 1}]] and str(answer.error) == "the device is lost"
+    kept = []
+    with pytest.raises(UsageError, match="the device is lost"):
+        for _, rows in pool.Pool(workers(lambda *_: answer)).measure(ask, ask.steps, lambda _: None):
+            kept.append(rows)
+    assert kept == [[{"a": 1}]]
 
 
 def test_a_worker_measures_only_what_it_would_measure_as_this_process(monkeypatch):

@@ -258,21 +258,17 @@ def test_instructions_wait_for_no_import_of_jax_or_pandas():
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("radv")
-def test_disassembly_and_plot_are_written(run, tmp_path):
-    out, plot = tmp_path / "listings", tmp_path / "plot.svg"
+def test_disassembly_is_written(run, tmp_path):
+    out = tmp_path / "listings"
     status, text, err = run(
         *("cost", "--isa", "--article", "--encoding", "xy,octahedral", "--storage", "rgba8"),
-        *("--family", "navi10,navi21", "--normals", "axes"),
-        *("--disassembly", str(out), "--plot", str(plot)),
+        *("--family", "navi10,navi21", "--disassembly", str(out)),
     )
     assert (status, err) == (0, "")
     listing = (out / "navi21" / "fragment-octahedral-encode.asm").read_text()
     assert listing.startswith("; octahedral encode, fragment, navi21\n") and "v_rcp_f32" in listing
     assert (out / "source" / "octahedral.glsl").read_text() == ENCODINGS["octahedral"].glsl.read_text()
     assert len(list(out.rglob("*.asm"))) == 2 * 2 * 2 * 4
-    drawn = plot.read_text()
-    for name in ("octahedral", "navi10, fragment, Mesa", "navi21, compute, Mesa", "PSNR, dB", "instructions"):
-        assert f"<!-- {name}" in drawn or f"{name}" in drawn, name
     assert "ps_3_0 slots / navi10 fragment instructions: xy 1/0" in text and "Radeon HD 2400" in text
 
 

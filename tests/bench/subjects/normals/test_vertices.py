@@ -135,7 +135,7 @@ def test_a_code_that_needs_a_view_ray_is_left_out_in_a_line(tmp_path, run):
     status, out, err = run(*words, "--encoding", "per_pixel_view")
     assert (status, out, err) == (2, "", f"normalbench: {said}\n")
     named = ("--encoding", "per_pixel_view")
-    for words in (("mix", *named), ("tune", "per_pixel_view"), ("pick", *named, "--storage", "rg8")):
+    for words in (("mix", *named), ("pick", *named, "--storage", "rg8")):
         status, out, err = run(*words, "--normals", f"{path}#vertices")
         assert status == 2 and len(err.splitlines()) == 1 and "needs the view ray" in err, err
 
