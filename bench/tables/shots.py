@@ -62,10 +62,8 @@ class Frame:
 
 
 class Measurable(Protocol):
-    """One row to measure: a value that can be hashed, with a name, and what it is measured against."""
+    """One row to measure: a value that can be hashed, and what it is measured against."""
 
-    @property
-    def name(self) -> str: ...
     @property
     def reference(self) -> Any: ...
 
@@ -87,7 +85,7 @@ class Bench(ABC, Generic[CaseT, FrameT]):
         self.device, self._repeats, self._with_flip = device, repeats, with_flip
         self._references: dict[CaseT, list[FrameT]] = {}
         # Cases of one scene follow each other, and a head takes longer to make than to render.
-        self._scene = lru_cache(maxsize=1)(_made_scene)
+        self.scene = lru_cache(maxsize=1)(_made_scene)
 
     @abstractmethod
     def about(self, case: CaseT) -> Row:
@@ -107,12 +105,15 @@ class Bench(ABC, Generic[CaseT, FrameT]):
 
     def reference(self, case: CaseT) -> list[FrameT]:
         """Return the frames of a case's reference."""
-        case = case.reference
-        return self._references[case] if case in self._references else self._kept(case, self.frames(case))
+        return self._kept(case.reference)
 
-    def _kept(self, case: CaseT, frames: list[FrameT]) -> list[FrameT]:
-        display = self.display(case, frames)
-        return self._references.setdefault(case, [replace(frame, display=display) for frame in frames])
+    def _kept(self, case: CaseT, frames: list[FrameT] | None = None) -> list[FrameT]:
+        """The frames of a case that is a reference, kept; `frames` are its own where they are rendered already."""
+        if case not in self._references:
+            frames = self.frames(case) if frames is None else frames
+            display = self.display(case, frames)
+            self._references[case] = [replace(frame, display=display) for frame in frames]
+        return self._references[case]
 
     def measure(self, case: CaseT) -> tuple[Row, FrameT | None]:
         """Return one row, and its first frame; one that the device cannot give has its reason in `skipped`, and none.
@@ -136,10 +137,6 @@ class Bench(ABC, Generic[CaseT, FrameT]):
             row["flip"] = float(np.mean([np.mean(pixels) for pixels in maps]))
             return row, replace(frames[0], flip=maps[0])
         return row, frames[0]
-
-    def scene(self, maker: SceneMaker, setting: Setting) -> Scene:
-        """Make a scene, or take that of the last call where it is the same."""
-        return self._scene(maker, setting)
 
 
 def _made_scene(maker: SceneMaker, setting: Setting) -> Scene:

@@ -16,7 +16,7 @@ from ...ground.options.gpu_families import RADV, TITLES
 
 # What would have a driver compile in another way, or the loader load something else; the session's other variables
 # stay.
-UNWANTED = (*("RADV_", "ACO_", "AMD_", "ANV_", "INTEL_", "NIR_", "MESA_", "VK_", "NORMALBENCH_NULL_"),)
+UNWANTED = ("RADV_", "ACO_", "AMD_", "ANV_", "INTEL_", "NIR_", "MESA_", "VK_", "NORMALBENCH_NULL_")
 
 
 def no_driver(library: str) -> str:

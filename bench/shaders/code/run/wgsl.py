@@ -53,8 +53,8 @@ def device_name() -> str:
 @contextmanager
 def prepared(path: Path, interface: Interface) -> Iterator[Run]:
     """The file on the Vulkan device. Raises MissingError, ShaderError."""
-    text = judged_text(_text(path, interface), "wgsl")
     gpu = device()
+    text = judged_text(_text(path, interface), "wgsl")
     if not interface.is_ours:
         _try_apart(path, text)
     program = Program(gpu, str(path), text, interface.tables, 2)
