@@ -22,6 +22,7 @@ import jax
 import kept_rows
 import kept_runs
 import pytest
+import seconds
 
 from normalbench.bench.door.cli import app as cli
 from normalbench.bench.ground.compilers import tools as compilers
@@ -51,11 +52,14 @@ jax.config.update("jax_numpy_dtype_promotion", "strict")
 
 def pytest_addoption(parser):
     parser.addoption("--firefox", action="store_true", help="open pages in Firefox: pytest tests/reports --firefox")
+    parser.addoption("--seconds", type=Path, metavar="FILE", help="write the seconds of each test file into FILE")
 
 
 def pytest_configure(config):
     if os.environ.get("CI"):
         config.option.normalbench_require_gl = True
+    if path := config.option.seconds:
+        config.pluginmanager.register(seconds.Seconds(path.absolute()))
 
 
 # What takes seconds to begin with, and a test of it seldom fails where no other one does.

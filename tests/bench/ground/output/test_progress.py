@@ -61,7 +61,8 @@ def test_a_table_alone_has_a_bar_of_its_own(bars):
 def test_a_run_without_a_terminal_says_how_far_it_is(capsys, monkeypatch):
     monkeypatch.setattr(module, "EVERY", 0.05)
     monkeypatch.delenv(module.OFF)
-    with spoken(), progress_of_all(3, 1), progress(3, "quality") as tick:
+    # The bar first: it imports what draws it, which may take longer than a line is away.
+    with progress_of_all(3, 1), spoken(), progress(3, "quality") as tick:
         tick("octahedral/rg8")
         time.sleep(0.5)
     time.sleep(0.1)

@@ -1,0 +1,84 @@
+"""Seconds of each test file, as `pytest --seconds FILE` adds them up and writes them.
+
+A file's seconds are those between the end of the test before its own and the end of each of its own, in the process
+that ran it: of processor, with all processes that it started, and by the clock. Four processes on two cores wait for
+one another, so only the seconds of processor add up to a machine's.
+"""
+
+import json
+import os
+import platform
+import time
+from collections import defaultdict
+from pathlib import Path
+
+import psutil
+import pytest
+
+from normalbench.bench.keep.machine import processor
+
+ROOT = Path(__file__).parents[2]
+COLLECTING = "collecting"
+
+
+def processor_seconds() -> float:
+    """Seconds of processor that this process has taken, with all that it started, whether they have ended or not."""
+    return sum(os.times()[:4]) + sum(map(_seconds, psutil.Process().children(recursive=True)))
+
+
+def _seconds(process: psutil.Process) -> float:
+    try:
+        return sum(process.cpu_times()[:4])
+    except psutil.Error:
+        return 0.0
+
+
+class Seconds:
+    """Adds up seconds in the process that runs tests; where several do, the one that started them writes the sum."""
+
+    def __init__(self, path: Path):
+        self._path = path
+        self._processor, self._clock = defaultdict[str, float](float), defaultdict[str, float](float)
+        self._before = 0.0, time.perf_counter()
+
+    def _add(self, name: str) -> None:
+        now = processor_seconds(), time.perf_counter()
+        # A process that ends while it is looked for is counted by its parent a moment later.
+        self._processor[name] += max(now[0] - self._before[0], 0.0)
+        self._clock[name] += now[1] - self._before[1]
+        self._before = now
+
+    def pytest_collection_finish(self):
+        """All that a process did before its first test."""
+        self._add(COLLECTING)
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_protocol(self, item):
+        done = yield
+        self._add(str(item.path.relative_to(ROOT)))
+        return done
+
+    @pytest.hookimpl(trylast=True)
+    def pytest_sessionfinish(self, session):
+        if hasattr(session.config, "workeroutput"):
+            session.config.workeroutput["seconds"] = [dict(self._processor), dict(self._clock)]
+        else:
+            self._write()
+
+    @pytest.hookimpl(optionalhook=True)
+    def pytest_testnodedown(self, node):
+        for total, added in zip((self._processor, self._clock), node.workeroutput["seconds"], strict=True):
+            for name, amount in added.items():
+                total[name] += amount
+
+    def _write(self) -> None:
+        files = {
+            name: [round(self._processor[name], 1), round(self._clock[name], 1)] for name in sorted(self._processor)
+        }
+        about = {
+            "processor": processor(),
+            "cores": os.cpu_count(),
+            "python": platform.python_version(),
+            "columns": ["seconds of processor", "seconds by the clock"],
+        }
+        self._path.write_text(json.dumps(about | {"files": files}, indent=1) + "\n")
