@@ -29,7 +29,7 @@ from ..shaders.languages.source_options import in_names
 from ..subjects.codecs.kinds.codecs import NAMED, codecs_of_kind, kinds_named
 from ..subjects.codecs.names import codecs_named, fitting
 from .code_figures import figures, head, rounding_of
-from .code_rows import DIFFERS, NOT_RUN, WITNESSES, Row, check_codes, check_place, compared, save
+from .code_rows import DIFFERS, NOT_RUN, WITNESSES, Row, check_codes, check_place, compared, save, witness
 from .gbuffer_command import LAYOUT, check_no_layout, gbuffer_command, is_of_layouts
 
 SHIPPED = "rgba8,rg8,rgb10a2,rgb8_12_12,rg16,rg16f"
@@ -149,8 +149,6 @@ def _write_codec(codec: Any, languages: Sequence[str], prefix: str, output: Path
             continue
         if one.row["verdict"] == NOT_RUN:
             tell(f"{codec.name} in {language}: {one.row['says']}")
-        if one.code.interface.tables and output is None:
-            raise UsageError(f"{codec.encoding.name} comes with look-up tables: name a folder with -o")
         save(one.code, one.head(), output)
     return status
 
@@ -198,17 +196,11 @@ def _why_not(code: Code, row: Row, made: Sequence[tuple[Code, Row]]) -> str:
     """
     if row["verdict"] == DIFFERS:
         return row["says"]
-    others = [(one.language, said) for one, said in made if one is not code]
+    others = [pair for pair in made if pair[0] is not code]
     if row["verdict"] == NOT_RUN:
-        others = others or [_witness(code)]
-    wrong = [language for language, said in others if said["verdict"] == DIFFERS]
+        others = others or witness((code_of(code.codec, name, code.prefix) for name in WITNESSES), verified)
+    wrong = [other.language for other, said in others if said["verdict"] == DIFFERS]
     return f"its translation is seen to be wrong in {wrong[0]}" if wrong else ""
-
-
-def _witness(code: Code) -> tuple[str, Row]:
-    """Another language of the same tree that is run here, if there is one."""
-    rows = ((name, verified(code_of(code.codec, name, code.prefix))) for name in WITNESSES if name != code.language)
-    return next(((name, row) for name, row in rows if row["verdict"] != NOT_RUN), ("", {"verdict": NOT_RUN}))
 
 
 def _all_made(codecs: Sequence[Any], languages: Sequence[str], prefix: str) -> list[Code]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from itertools import islice
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -18,8 +19,8 @@ from ..shaders.code.files import Code
 from ..shaders.code.run import runner
 from ..shaders.code.whole import verify as layout_verify
 from ..shaders.code.whole.emit import GBufferCode
+from ..tables.table import Row
 
-Row = dict[str, Any]
 # What is said of a file that was run, or could not be.
 VERIFIED, DIFFERS, NOT_RUN = "verified", "differs", "not run"
 # What is run in place of a language that is not, the first that can be.
@@ -49,6 +50,12 @@ def compared(
     return row | {"run_by": how, "says": f"{agrees.says}; run by {how}"}
 
 
+def witness(codes: Iterable[CodeT], verified: Callable[[CodeT], Row]) -> list[tuple[CodeT, Row]]:
+    """Return the first of some codes that can be run here, with its row; nothing where none can."""
+    rows = ((code, verified(code)) for code in codes)
+    return list(islice((pair for pair in rows if pair[1]["verdict"] != NOT_RUN), 1))
+
+
 def check_place(output: Path | None, count: int) -> None:
     """Raise UsageError where so many files cannot be written into a folder, or to standard output without one."""
     check_is_folder(output, "code writes into")
@@ -58,12 +65,16 @@ def check_place(output: Path | None, count: int) -> None:
         raise UsageError("several files are written into a folder: name one with -o")
 
 
-def save(code: Code | GBufferCode, head: Iterable[str], output: Path | None) -> None:
-    """Write a code's files into a folder and name them, or its text to standard output."""
+def save(code: Code | GBufferCode, head: Sequence[str], output: Path | None) -> None:
+    """Write a code's files into a folder and name them, or its text to standard output. Raises UsageError where it is
+    several files and there is no folder."""
+    files = code.files(head)
+    if output is None and len(files) > 1:
+        raise UsageError(f"{code.name} comes with look-up tables: name a folder with -o")
     if output is None:
         say(code.text(head))
         return
-    for name, data in code.files(head).items():
+    for name, data in files.items():
         with whole_file(output / name) as partial:
             partial.write_bytes(data)
         tell(f"{output / name}")

@@ -19,7 +19,7 @@ from ..shaders.code.whole.run import NOT_RUN as NEVER_RUN
 from ..shaders.code.whole.verify import agreement
 from ..shaders.translator.writer import identifier
 from ..subjects.codecs.layout_names import layouts_named
-from .code_rows import DIFFERS, NOT_RUN, VERIFIED, WITNESSES, Row, check_codes, check_place, compared, save
+from .code_rows import DIFFERS, NOT_RUN, VERIFIED, WITNESSES, Row, check_codes, check_place, compared, save, witness
 
 LAYOUT, ENDING = "layout", ".toml"
 
@@ -63,22 +63,14 @@ def _write_layout(layout: Layout, made: Sequence[GBufferCode], options: CodeOpti
     """The files of a layout; 1 where one differs, and then none is written: all are made from one tree."""
     rows = [(code, verified(code)) for code in made if code.layout is layout]
     if not any(row["verdict"] == VERIFIED for _, row in rows):
-        rows += _witnesses(layout, options.prefix)
+        rows += witness((gbuffer_code(layout, name, options.prefix) for name in WITNESSES), verified)
     wrong = [row for _, row in rows if row["verdict"] == DIFFERS]
     for row in wrong:
         tell(f"{layout.name} in {row['language']}: {row['says']}; {layout.name} is not written")
     for code, row in rows if not wrong else ():
         if code.language in {one.language for one in made}:
-            if code.tables and output is None:
-                raise UsageError(f"{layout.name} comes with look-up tables: name a folder with -o")
             save(code, head(code, _command(code, options), row["says"]), output)
     return int(bool(wrong))
-
-
-def _witnesses(layout: Layout, prefix: str) -> list[tuple[GBufferCode, Row]]:
-    """A language of the same tree that can be run here, where none of those asked for can; none where none can."""
-    rows = ((code, verified(code)) for code in (gbuffer_code(layout, name, prefix) for name in WITNESSES))
-    return [pair for pair in rows if pair[1]["verdict"] != NOT_RUN][:1]
 
 
 def _command(code: GBufferCode, options: CodeOptions) -> str:

@@ -71,7 +71,12 @@ def history_command(folders: Sequence[Path], wanted: Wanted, by: str, format: st
         write((_across if is_for_people else _long)(runs, figures), format, output, total=_left_out(figures))
     elif is_for_people:
         write(
-            _lines(runs, groups), format, output, SPARED, lead=_lead(runs, groups), total=_total(runs, series, groups)
+            _lines(runs, groups),
+            format,
+            output,
+            SPARED,
+            lead=_lead(runs, series, groups),
+            total=_total(runs, series, groups),
         )
     else:
         write([_line(runs, change) for group in groups for change in group.changes], format, output)
@@ -150,10 +155,12 @@ def _tell_what_else(runs: Sequence[Past], groups: Sequence[Group]) -> None:
             tell(f"at {runs[at].name} something else changed too: {apart[at]}")
 
 
-def _lead(runs: Sequence[Past], groups: Sequence[Group]) -> str:
-    """The runs, and a sentence for each commit that made something worse."""
+def _lead(runs: Sequence[Past], series: Sequence[Series], groups: Sequence[Group]) -> str:
+    """The runs, what is not compared, and a sentence for each commit that made something worse."""
     first, last = runs[0], runs[-1]
     said = [f"{len(runs)} run{'s' * (len(runs) > 1)}, from {_called(first)} to {_called(last)}"]
+    others = len(series) - len({(each.table.name, each.called) for each in series})
+    said += [f"rows of other counts of normals are not compared: {others} rows"] if others else []
     worse = [group for group in groups if group.kind != BETTER]
     said += [_sentence(runs, group) for group in worse[:SENTENCES]]
     more = len(worse) - SENTENCES

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..charts.looks import colour_map
 from .codec_key import CodecKey
-from .embedded import small_uri
+from .embedded import Record, small_uri
 
 FOLDER = Path(__file__).parent / "web" / "live"
 # In the order in which the page runs them, as one script.
@@ -39,7 +39,6 @@ NAMES = "codec"
 
 # What the pictures of scenes may take, in bytes of text.
 SCENES = 200_000
-Record = dict[str, Any]
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-Row = dict[str, Any]
+from ..sheets import Row
 
 MADE_FOR = {"hemisphere": "normals with z >= 0", "view": "normals that face the viewer"}
 LEADING = "psnr_db"

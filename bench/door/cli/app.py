@@ -413,7 +413,7 @@ def _hint(said: str) -> str:
     """What would be right, after what the parser says."""
     commands = ", ".join(c.name or c.callback.__name__ for c in app.registered_commands if c.callback)
     if "extra argument" in said:
-        return "; separate names by commas"
+        return "; give one, or names separated by commas"
     return f" Commands: {commands}." if "command" in said else ""
 
 

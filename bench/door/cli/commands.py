@@ -36,7 +36,7 @@ def add_tables(app: typer.Typer, tables: Iterable[Table]) -> None:
     """A command for each table."""
     for table in tables:
         more = {"epilog": f"Example: {table.example}", "rich_help_panel": table.group}
-        app.command(table.name, help=table.help, **more)(command_of(table))
+        app.command(table.name, help=table.help.replace("[", r"\["), **more)(command_of(table))
 
 
 def command_of(table: Table) -> Callable[..., int]:

@@ -21,6 +21,7 @@ from ....gbuffer.environment.catalogue import ENVIRONMENTS
 from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.pipelines import PIPELINES
 from ....gbuffer.scenes.catalogue import SCENES
+from ....reports.sheets import Row
 from ..choose import choose
 
 # Said here and not asked of normal_sets.py, which imports JAX; a test compares the two.
@@ -48,7 +49,6 @@ COLUMNS = (
     *("kind", "name", "engine", "year", "title", "components", "domain", "bytes_per_pixel", "bytes_with_light"),
     *("reflects_by", "decals", "holds", "from"),
 )
-Row = dict[str, object]
 
 
 def _row(kind: str, name: str, title: str, **more: object) -> Row:

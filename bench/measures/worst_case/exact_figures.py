@@ -5,10 +5,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from ....encodings.codecs.codec import Codec
 from ....encodings.codecs.encoding import Encoding
+from ....reports.sheets import Row
 from ...ground.output.errors import UsageError
 from ...shaders.code.twin import has_twin
 from ..metrics.code_limits import AREAS, broken, code_limit, is_measurable
@@ -17,7 +18,6 @@ from .odd_codes import odd_codes
 from .search import worst_case
 
 T = TypeVar("T")
-Row = dict[str, Any]
 
 
 def supremum(codec: Codec, domain: str | None, area: float, s: Statistics) -> Row:

@@ -14,7 +14,7 @@ from ...ground.output.errors import UsageError
 from ..piped import Piped, Send
 from .carrier import LOOK_S, Answer, Task
 
-# Workers that end by themselves, one for each that there should be, this often: none will stay.
+# Workers that end before they are ready, one for each that there should be, this often: none will stay.
 MOST_FAILURES = 3
 # A step with which more workers than this were lost is lost itself, and of several steps nobody knows which one it was.
 MOST_LOST = 3
@@ -27,7 +27,8 @@ class LocalWorkers:
         self._address = f"local:{count}"
         self._names = (f"local {number}" for number in itertools.count(1))
         self._workers: dict[str, Piped] = {}
-        # What each was sent last and has not answered, and how many workers were lost with a task.
+        # Those that have begun; what each was sent last and has not answered; how many workers were lost with a task.
+        self._ready = set[str]()
         self._under_way: dict[str, Task] = {}
         self._lost = Counter[Task]()
         self._arrived = SimpleQueue[tuple[str, Answer | Exception]]()
@@ -43,23 +44,28 @@ class LocalWorkers:
         return len(self._workers)
 
     def room(self, needs: frozenset[str]) -> int:  # noqa: ARG002
-        return len(self._workers) - len(self._under_way)
+        return len(self._ready) - len(self._under_way)
 
     def send(self, task: Task) -> None:
-        name = next(name for name in self._workers if name not in self._under_way)
+        name = next(name for name in self._ready if name not in self._under_way)
         self._under_way[name] = task
         self._workers[name].call(_measure, *task.arguments())
 
     def arrivals(self) -> list[tuple[Task, Answer | None]]:
         ended = [name for name, worker in self._workers.items() if worker.status is not None]
         for name in ended:
-            self._start_again(self._workers.pop(name))
+            self._start_again(self._workers.pop(name), name in self._ready)
+        self._ready -= set(ended)
         answers = [(task, self._without(task)) for name in ended if (task := self._under_way.pop(name, None))]
         with suppress(Empty):
             name, answer = self._arrived.get(timeout=LOOK_S)
             if isinstance(answer, Exception):
                 raise answer
-            answers += [(self._under_way.pop(name), answer)] if name in self._under_way else []
+            if name in self._under_way:
+                answers.append((self._under_way.pop(name), answer))
+            elif name in self._workers:
+                self._ready.add(name)
+                self._failures = 0
         return answers
 
     def _without(self, task: Task) -> Answer | None:
@@ -72,9 +78,9 @@ class LocalWorkers:
         name = next(self._names)
         self._workers[name] = Piped(_begin, partial(self._take, name))
 
-    def _start_again(self, ended: Piped) -> None:
+    def _start_again(self, ended: Piped, was_ready: bool) -> None:
         lines = ended.wait()
-        self._failures += (ended.status or 0) > 0
+        self._failures += not was_ready
         if self._failures >= MOST_FAILURES * (len(self._workers) + 1):
             last = lines[-1].strip() if lines else f"exit status {ended.status}"
             raise UsageError(f"--on {self._address}: the workers do not stay: {last}")
@@ -90,12 +96,13 @@ class LocalWorkers:
             worker.wait()
 
 
-def _begin(send: Send) -> None:  # noqa: ARG001 # as of all that a process calls
-    """Do what takes seconds before anybody waits for it."""
+def _begin(send: Send) -> None:
+    """Do what takes seconds before anybody waits for it, and say that it is done."""
     from .about import marks
 
     keep_what_is_freed()
     marks()
+    send(Answer())
 
 
 def _measure(send: Send, *arguments: Any) -> None:

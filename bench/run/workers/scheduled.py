@@ -20,9 +20,6 @@ from .worker import MISCONFIGURED, quiet, why
 
 # Seconds for a scheduler to answer at first, and to hand over what a task brings; and between two looks who is there.
 CONNECT_S, ANSWER_S, AGAIN_S = 5.0, 120.0, 2.0
-# Tasks for each worker that can measure them, so that none waits for the next one. No more: dask counts a lost worker
-# against all that it had.
-AHEAD = 2
 
 
 class Scheduled:
@@ -47,7 +44,8 @@ class Scheduled:
         return sum(count for has, count in self._workers.items() if needs <= has)
 
     def room(self, needs: frozenset[str]) -> int:
-        return AHEAD * self.count(needs) - sum(task.needs == needs for task in self._under_way.values())
+        # One a worker: dask counts a lost worker against all that it had.
+        return self.count(needs) - sum(task.needs == needs for task in self._under_way.values())
 
     def send(self, task: Task) -> None:
         future = self._client.submit(measure, *task.arguments(), resources=dict.fromkeys(task.needs, 1), pure=False)

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, suppress
 from dataclasses import replace
 from functools import partial
 from itertools import combinations
-from typing import Any
 
 from ....encodings.codecs.depth_codec import DepthEncoding
 from ....gbuffer.gl.device import Device, FormatError
@@ -20,6 +19,7 @@ from ....gbuffer.pipelines import PIPELINES
 from ....gbuffer.render import check
 from ...ground.output.errors import UsageError
 from ...measures.metrics.totals import psnr_db
+from ..table import Row, Tick
 from . import changes
 from .attributes import COMPONENTS, Attribute, usual
 from .bins import webgpu_cost
@@ -45,8 +45,6 @@ UNMEASURABLE = (ShaderError, FormatError, LayoutError)
 LACKS = {"motion": "motion.x", "id": "kind", "specular": "reflectance", "occlusion": "occlusion"}
 # Pixels of the two pictures that traffic is said for.
 HD, UHD = 1920 * 1080, 3840 * 2160
-Row = dict[str, Any]
-Tick = Callable[[str], None]
 
 
 def measure(device: Device, question: Question, tick: Tick) -> list[Row]:

@@ -21,11 +21,10 @@ from ...shaders.isa.isa import Compiled, Failure, Job, Kernel, Outcome
 from ...shaders.isa.nvidia import sass
 from ...shaders.isa.nvidia.source import cuda_of
 from ...subjects.codecs.half.kernels import half_operation
+from ..table import Row
 from . import executed
 from .recorded import recorded
 from .table import TABLE
-
-Row = dict[str, Any]
 
 # The drivers' statistics by their own names: RADV's, then Intel's; NVIDIA's by those of isa/nvidia/child.py. Later
 # Mesas may have more; one that is missing is left empty.

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any
 
 import jax
 import numpy as np
@@ -16,6 +15,7 @@ from ....encodings.storages.dither import Dither
 from ....encodings.storages.rounding import from_srgb, to_srgb
 from ....gbuffer.codecs.curve.curve_passes import CurvePasses
 from ....gbuffer.gl.device import device
+from ..table import Row
 from ..unmeasurable import UNMEASURABLE
 from .table import TABLE
 
@@ -25,7 +25,6 @@ FROM, STEPS = 0.01, 255.0
 # Quantities that are just told from 0 are looked for from this share of the range on.
 LEAST = 1e-9
 
-Row = dict[str, Any]
 # float32 quantities of shape (count,), and what is added to their numbers, to what they come back as.
 Trip = Callable[[np.ndarray, np.ndarray], np.ndarray]
 How = dict[str, str]

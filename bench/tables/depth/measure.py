@@ -20,6 +20,7 @@ from ....gbuffer.codecs.depth.depth_passes import DepthPasses, Rebuilt
 from ....gbuffer.gl.device import device
 from ...shaders.code.twin import NoTwinError
 from ...subjects.depths.depth_images import DepthImage
+from ..table import Row
 from ..unmeasurable import UNMEASURABLE
 from .frames import seen
 from .points import Points
@@ -29,8 +30,6 @@ from .table import TABLE
 BAND = 1 / 16
 ASPECT = 16 / 9
 BLOCK = 2**14
-
-Row = dict[str, Any]
 
 
 def points(camera: Camera, distance: float | None, count: int, seed: int) -> Points:

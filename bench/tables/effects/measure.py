@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -23,9 +22,8 @@ from ...ground.output.errors import MissingError, tell
 from ...measures.metrics.occlusion_error import method_error
 from ...measures.metrics.totals import psnr_db
 from ..shots import Bench, Frame, image_figures, time_columns
+from ..table import Row
 from .table import TABLE
-
-Row = dict[str, Any]
 
 
 @dataclass(frozen=True)

@@ -16,12 +16,12 @@ from ....gbuffer.gl.device import Device, FormatError
 from ....gbuffer.gl.shader import ShaderError
 from ...ground.output.errors import MissingError, UsageError
 from ...shaders.code.twin import NoTwinError
+from ..table import Row
 from .sums import Adder, banding, chromaticity, equal_lights, gradient, has_light_twin, random_lights
 from .table import TABLE
 
 # Why the GL device may not be able to give a row.
 UNMEASURABLE = (ShaderError, FormatError)
-Row = dict[str, Any]
 
 
 @dataclass(frozen=True)

@@ -21,8 +21,8 @@ from ....gbuffer.codecs.light.light_passes import LightPasses, Sum
 from ....gbuffer.display import displayed
 from ....gbuffer.gl.device import Device
 from ...shaders.code.twin import NoTwinError
+from ..table import Row
 
-Row = dict[str, Any]
 CHANNELS = "rgba"
 # How devices have been found to add light up, the plainest first.
 ROUNDINGS = {

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
+from ..table import Row
 from .means import AVERAGES, BY_NORMALS, MEANS, right_of
 from .patches import Mixes
 from .reference import angles_between, toksvig_power
 from .table import GARBAGE_DEG, MOST_ALONE_DEG
-
-Row = dict[str, Any]
 
 
 class Figures:

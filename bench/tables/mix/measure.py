@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
-from typing import Any
 
 import jax
 import numpy as np
@@ -15,6 +14,7 @@ from ....gbuffer.codecs.codec_passes import Decoded
 from ....gbuffer.codecs.mixing.passes import BY_DEVICE, SIDE, MixPasses
 from ....gbuffer.gl.device import Device, device
 from ...shaders.code.twin import has_twin
+from ..table import Row
 from ..unmeasurable import UNMEASURABLE
 from .figures import Figures, outside, percent
 from .means import BY_NORMALS, STORED_AGAIN
@@ -25,7 +25,6 @@ from .reference import angles_between
 from .table import AGREE_DEG, OF_INTEGER, TABLE
 from .worst import climbed
 
-Row = dict[str, Any]
 # JAX compiles for one number of normals.
 BLOCK = 2**14
 # The share of results, in percent, that a way to mix must explain.

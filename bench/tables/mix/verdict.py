@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from ..table import Row
 from .figures import excused
 from .table import ACROSS, MOST_ADDED, MOST_JUDGED_DEG, OF_INTEGER, OPERATIONS, USES, VERDICTS
 
-Row = dict[str, Any]
 # What is done to codes, as a reason says it.
 DONE: Mapping[str, str] = {
     "filter": "filtered",

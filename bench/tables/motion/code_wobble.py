@@ -11,14 +11,12 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import reduce
-from typing import Any
 
 import numpy as np
 
+from ..table import Row
 from . import turning
 from .trips import Trip
-
-Row = dict[str, Any]
 
 
 @dataclass(frozen=True)

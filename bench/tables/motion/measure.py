@@ -7,7 +7,6 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -25,6 +24,7 @@ from ....gbuffer.scenes.scene import Scene, View
 from ....gbuffer.scenes.setting import Setting
 from ...measures.metrics.totals import psnr_db
 from ..quality.measure import UNMEASURABLE
+from ..table import Row
 from . import highlights, panel, turning
 from .code_wobble import Motion, code_wobble
 from .highlights import Spots
@@ -34,8 +34,6 @@ from .trips import Trip, backend_of, trip_of
 # Rendered turns go as far to either side of the scene's own camera, in degrees, so that it stays in the picture.
 PICTURE_SWING_DEG = 8.0
 SCENE, PIPELINE = "gloss", "deferred"
-
-Row = dict[str, Any]
 
 
 @dataclass(frozen=True)

@@ -9,12 +9,10 @@ import math
 import re
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
-from typing import Any
 
 from ....reports.page.verdict import MADE_FOR
+from ..table import Row
 from .table import HOLE
-
-Row = dict[str, Any]
 
 IMAGE = "image_db_"
 BEST, MORE_EXACT, MOST_EXACT, CHEAPER, FEWER_BITS = "best", "more exact", "most exact", "cheaper", "fewer bits"

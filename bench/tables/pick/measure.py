@@ -38,11 +38,11 @@ from ..mix.patches import in_domain
 from ..mix.table import USES
 from ..mix.verdict import DONE
 from ..quality import measure as quality
+from ..table import Row
 from .answer import AFFORDABLE, IMAGE, answered, floor, image_name, price, why_left_out, why_unfit
 from .prices import Costs
 from .table import TABLE
 
-Row = dict[str, Any]
 # Half a decibel from what 640 x 480 and three moments say, in a sixth of the time.
 SIZE = (320, 240)
 SUPREMUM, AXES = "angle_sup_deg", "angle_axes_deg"

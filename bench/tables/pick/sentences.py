@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 from ....encodings.catalogue import ENCODINGS
 from ....encodings.codecs.codec import fewer_bits
 from ....reports.page.verdict import MADE_FOR
 from ...ground.machine.systems.people import command_line
+from ..table import Row
 from .answer import (
     ACROSS,
     BEST,
@@ -39,8 +39,6 @@ from .answer import (
     why_unfit,
 )
 from .table import TEXEL_DEG
-
-Row = dict[str, Any]
 
 AIM_TITLES = {"angle": "mean error", "worst": "largest error", "image": "worst image", "cost": "mean error"}
 # Percent of the visible normals of a scene, from which on the first line says that they are not held.

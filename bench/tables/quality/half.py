@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from ....encodings.codecs.variants import HALF_NAME
+from ..table import Row
 
-Row = dict[str, Any]
 # A code survives half arithmetic where its RMS angle grows by no more than this, in percent.
 SURVIVES = 10.0
 

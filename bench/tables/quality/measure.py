@@ -37,6 +37,7 @@ from ...shaders.code.twin import has_twin
 from ...subjects.codecs.half import compute as half_compute
 from ...subjects.codecs.half.round_trip import HalfPasses
 from ...subjects.normals.normal_sets import CHUNK, CHUNK_WIDTH, Chunk, NormalSet, from_arrays
+from ..table import Row
 from ..unmeasurable import UNMEASURABLE as BY_BACKEND
 from .table import TABLE
 
@@ -51,7 +52,6 @@ TOTAL = "total"
 # What an unused channel is drawn as: -1 is black.
 UNUSED = -1.0
 
-Row = dict[str, Any]
 Tick = Callable[[], None]
 
 

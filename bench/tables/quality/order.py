@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from itertools import groupby
-from typing import Any
 
 from ...measures.metrics.code_limits import HEMISPHERE, SPHERE, code_limit
+from ..table import Row
 
-Row = dict[str, Any]
 # What a limit row has in common with every row above it, if these have it in common.
 SHARED = ("storage", "rounding", "normals", "backend", "count", "device", "rounded_by", "seed", "domain")
 # What the limit row says once for all rows.

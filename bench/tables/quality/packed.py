@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import Any
 
 from ....encodings.catalogue import ENCODINGS
 from ....encodings.codecs.codec import Codec
 from ....encodings.storages.storage import STORAGES
 from ...subjects.normals.normal_sets import NORMAL_SETS
 from ..pick import measure as pick
+from ..table import Row
 
-Row = dict[str, Any]
 # Normals that a best code is found on.
 COUNT = 2**14
 

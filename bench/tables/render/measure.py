@@ -22,6 +22,7 @@ from ...ground.angles import angles_deg
 from ...measures.metrics.images import squared_error
 from ...measures.metrics.totals import Worst, psnr_db
 from ..shots import STAGES, UNMEASURABLE, Bench, Frame, described, image_figures, require_surface, time_columns
+from ..table import Row
 from .table import TABLE
 
 # What 8 bits show as 0.
@@ -31,7 +32,6 @@ SAME = (
     *("scene", "power", "effects", "environment", "specular_antialiasing", "least_roughness", "pipeline"),
     *("light_buffer", "light_targets", "shadow"),
 )
-Row = dict[str, Any]
 
 
 @dataclass(frozen=True)

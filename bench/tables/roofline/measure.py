@@ -16,10 +16,10 @@ from ....gbuffer.defines.packings import SIGN, packing_of
 from ...ground.options.gpu_families import usual_stage
 from ..cost import measure as cost
 from ..cost.codec_costs import Costs, LeftOutError, Where
+from ..table import Row
 from .rates import Rates
 from .table import TABLE
 
-Row = dict[str, Any]
 # Full-rate instructions where a family's rates are known, and instructions as they are elsewhere.
 COLUMNS = ("issue_slots", "instructions")
 # Two times that differ by less are one: counts are whole numbers.

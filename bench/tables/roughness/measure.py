@@ -18,6 +18,7 @@ from ....gbuffer.gl.shader import ShaderError
 from ....gbuffer.layouts.words import LayoutError
 from ...measures.metrics.images import flip
 from ...measures.metrics.totals import psnr_db
+from ..table import Row
 from .frames import DITHERS, NONE, Frames, Seen
 from .objects import shown
 from .table import TABLE
@@ -33,7 +34,6 @@ TONE_MAPPING, PERCENTILE = "aces", 99.0
 # The roughness at which an object's exposure is measured.
 EXPOSED_AT = 0.3
 UNMEASURABLE = (ShaderError, FormatError, LayoutError)
-Row = dict[str, Any]
 
 
 @dataclass(frozen=True)

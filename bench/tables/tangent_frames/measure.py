@@ -23,6 +23,7 @@ from ....gbuffer.gl.device import device
 from ...measures.metrics.code_limits import is_measurable
 from ...measures.worst_case.frame_search import worst_frame
 from ...shaders.code.twin import NoTwinError
+from ..table import Row
 from ..unmeasurable import UNMEASURABLE
 from .limits import HANDS, frame_effective_bits, frame_limit, frames_broken
 from .sets import CHUNK, Frames, FrameSet
@@ -31,7 +32,6 @@ from .table import TABLE
 WHAT = ("normal", "tangent", "rotation")
 WIDTH = 256
 
-Row = dict[str, Any]
 Trip = Callable[[Frames], Frames]
 
 

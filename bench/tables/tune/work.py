@@ -27,7 +27,7 @@ from ...subjects.codecs.user_encodings import encodings_named
 from ...subjects.normals.normal_names import check_rays, normal_sets_named
 from ...subjects.normals.normal_sets import NormalSet
 from ..quality import measure as quality
-from ..table import Measured, Sheet, Step, Tick, Work, each
+from ..table import Measured, Row, Sheet, Step, Tick, Work, each
 from .halves import Halves, halves_of
 from .table import TABLE, TuneOptions, TuneOutputs
 from .tuning import Values, fitted, fitted_table
@@ -36,7 +36,6 @@ from .tuning import Values, fitted, fitted_table
 FIGURES = {"psnr": "psnr_db", "mean": "angle_mean_deg", "rms": "angle_rms_deg", "max": "angle_max_deg"}
 # Of that a gain is less than what another half would say.
 NOTHING_DB = 0.005
-Row = dict[str, Any]
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,7 @@ from ....encodings.storages.storage import Storage
 from ....encodings.vec import Vec2
 from ....gbuffer.codecs.motion.motion_passes import MotionPasses
 from ....gbuffer.gl.device import device
+from ..table import Row
 from ..unmeasurable import UNMEASURABLE
 from .paths import FRAMES, POINTS, Paths
 from .table import TABLE
@@ -30,7 +31,6 @@ CHUNK, WIDTH = FRAMES * POINTS, 256
 DIRECTIONS = np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
 LEAST = 2.0**-60
 
-Row = dict[str, Any]
 # float32 motions of shape (count, 2), in screens, to what they come back as.
 Trip = Callable[[np.ndarray], np.ndarray]
 How = dict[str, str]

@@ -75,6 +75,19 @@ def test_figures_by_commit_are_a_line_where_one_changes(run, thirty):
     assert [row["value"] for row in rows] == [48.25] * FOLD + [45.125] * (30 - FOLD)
 
 
+def test_rows_of_other_counts_are_not_compared_and_a_line_says_so(run, tmp_path):
+    """A hundred times fewer normals find a smaller largest error, which is no change of the code."""
+    for at, count in enumerate((2**20, 2**14)):
+        steps = histories.steps(0, np.random.default_rng(1))
+        for row in (row for step in steps for row in step["rows"] if "count" in row):
+            row["count"] = count
+        histories.write_run(tmp_path / str(at), at, steps, request={"count": count})
+    _, out, _ = run("history", str(tmp_path))
+    counted = sum("count" in row for step in steps for row in step["rows"])
+    said = [f"rows of other counts of normals are not compared: {counted} rows", "no figure got worse"]
+    assert counted and out.splitlines()[1:] == said
+
+
 def test_a_name_that_no_row_has_is_answered_with_those_there_are(run, thirty, tmp_path):
     status, _, err = run("history", str(thirty), "--encoding", "octahedrul")
     assert status == 2 and "did you mean octahedral?" in err and "all, mine, octahedral" in err

@@ -100,8 +100,8 @@ def test_no_mean_error_wants_a_scale_beyond_that_of_theory():
 
 @pytest.mark.slow
 def test_the_scale_of_2010_was_found_well():
-    """On the scene it was found on, with arms of ours, 1.7777 is within 5 % of the best for PSNR, and what is found is
-    no worse there."""
+    """On the scene it was found on, with arms of ours, what is found is no worse than 1.7777, and better by less than a
+    decibel."""
     chosen = halves_of(playground(), 0, by_tiles=False)
     codec = codec_of("stereographic", "rg8")
     found = tuned(codec, chosen.fitting, "psnr")
@@ -109,8 +109,7 @@ def test_the_scale_of_2010_was_found_well():
         quality.measure(quality.Case(replace(codec, encoding=e), chosen.held_out, "jax"))["psnr_db"]
         for e in (codec.encoding, codec.encoding.with_parameters(found))
     )
-    assert found["scale"] == pytest.approx(1.7777, rel=0.05)
-    assert after >= before, found
+    assert before <= after < before + 1.0, found
 
 
 def test_halves_are_the_set_and_share_nothing():

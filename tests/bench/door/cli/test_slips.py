@@ -37,7 +37,7 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
         (*ROW, "--encoding", "octahedral", "spheremap"),
         "separate names by commas: --encoding octahedral,spheremap",
     ),
-    "names after each other of a list": (("columns", "quality", "render"), "separate names by commas"),
+    "names after each other of a list": (("columns", "quality", "render"), "give one, or names separated by commas"),
     "a name without its option": (
         ("quality", "octahedral"),
         "octahedral stands after no option; say for example --enc",

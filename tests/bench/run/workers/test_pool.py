@@ -38,12 +38,18 @@ def measures(order, needs, names) -> Answer:  # noqa: ARG001
 
 
 class Process:
-    """Stands for a process: `says` makes an answer of the arguments of a call, or ends it."""
+    """Stands for a process: `says` makes an answer of the arguments of a call, or ends it. The first `ending` of them
+    end before they are ready."""
 
-    says = staticmethod(measures)
+    says, ending = staticmethod(measures), 0
 
     def __init__(self, first, take):  # noqa: ARG002
         self.ended, self.status, self._take = Event(), None, take
+        if type(self).ending:
+            type(self).ending -= 1
+            self.status = -9
+        else:
+            take(Answer())
 
     def call(self, _, *arguments):
         answer = type(self).says(*arguments)
@@ -97,6 +103,19 @@ def test_workers_that_are_lost_at_random_lose_nothing(seed, workers, monkeypatch
     _, found = measured(workers(says), asked("quality", JAX))
     assert Counter(step.name for step, _ in found) == Counter(str(key) for key in JAX)
     assert all("of" in row for _, rows in found for row in rows)
+
+
+@pytest.mark.parametrize("ending", [11, 12])
+def test_workers_that_end_before_they_are_ready_cost_no_step(ending, workers, monkeypatch):
+    """But where three for each that there should be do so one after the other, the command ends."""
+    monkeypatch.setattr(Process, "ending", ending)
+    carrier = workers(measures)
+    if ending == 12:
+        with pytest.raises(UsageError, match="--on local:4: the workers do not stay: broken"):
+            measured(carrier, asked("quality", JAX))
+        return
+    _, found = measured(carrier, asked("quality", JAX))
+    assert len(found) == len(JAX) and all("of" in row for _, rows in found for row in rows)
 
 
 def test_the_order_travels_where_it_is_not_known(workers):
