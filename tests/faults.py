@@ -1,6 +1,6 @@
 """Puts each fault of fault_list.py into a tree, runs the tests that should notice it, and counts.
 
-    python tests/faults.py [--tree DIR] [--python PY] [--only NAME,...] [--results FILE] [--skip] [--check]
+    python tests/faults.py [--tree DIR] [--python PY] [--blind] [--only NAME,...] [--results FILE] [--skip] [--check]
 
 No part of the tests: a run takes half an hour, and changes files of the tree while it lasts. Whatever ends it, the file
 is put back as it was. With --results a run that was ended goes on. In the end the tests that noticed are run without
@@ -26,6 +26,7 @@ from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
 
 from fault_list import FAULTS, Fault
+from fault_list_blind import FAULTS_B
 
 ROOMS = ("encodings", "gbuffer", "bench", "reports")
 # No selection of tests takes so long: what does hangs, and is noticed by that.
@@ -55,7 +56,10 @@ class Tree:
         return {path: path.read_text(encoding="utf-8") for path in files if "__pycache__" not in path.parts}
 
     def tests(self, names: str) -> list[str]:
-        """The paths of test files by their names; a version that lacks one has its tests elsewhere."""
+        """The paths of test files by their names, all of them for none; a version that lacks one has its tests
+        elsewhere."""
+        if not names:
+            return ["tests"]
         found = [path for name in names.split() for path in (self.root / "tests").rglob(name)]
         return [str(path.relative_to(self.root)) for path in found]
 
@@ -196,13 +200,13 @@ def line_of(result: Result) -> str:
     return f"{result.fault:<32} {result.room:<10} {result.kind:<24} {result.seconds:>6.1f} s  {by}"
 
 
-def chosen_faults(only: str) -> list[Fault]:
-    """The faults that are asked for. Raises SystemExit for a name that there is not."""
+def chosen_faults(faults: Sequence[Fault], only: str) -> list[Fault]:
+    """The faults of a list that are asked for. Raises SystemExit for a name that there is not."""
     names = [name for name in only.split(",") if name]
-    unknown = set(names) - {fault.name for fault in FAULTS}
+    unknown = set(names) - {fault.name for fault in faults}
     if unknown:
         raise SystemExit(f"no fault {', '.join(sorted(unknown))}")
-    return [fault for fault in FAULTS if not names or fault.name in names]
+    return [fault for fault in faults if not names or fault.name in names]
 
 
 def arguments() -> argparse.Namespace:
@@ -211,6 +215,7 @@ def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description="Count the injected faults that the tests notice.")
     parser.add_argument("--tree", type=Path, default=here, help="The checkout. Default: this one.")
     parser.add_argument("--python", type=Path, help="Its Python. Default: the one of its .venv.")
+    parser.add_argument("--blind", action="store_true", help="Those of fault_list_blind.py, with all tests.")
     parser.add_argument("--only", default="", help="Names of faults, comma-separated.")
     parser.add_argument("--results", type=Path, help="JSON lines to go on from, and to write.")
     parser.add_argument("--skip", action="store_true", help="Leave out what has no place: another version may lack it.")
@@ -228,7 +233,9 @@ def main() -> int:
     root = asked.tree.resolve()
     tree = Tree(root, asked.python or root / ".venv" / "bin" / "python")
     product = tree.product()
-    found = [(fault, place_of(fault, product)) for fault in chosen_faults(asked.only)]
+    found = [
+        (fault, place_of(fault, product)) for fault in chosen_faults(FAULTS_B if asked.blind else FAULTS, asked.only)
+    ]
     misplaced = [place for _, place in found if isinstance(place, str)]
     print("\n".join([*misplaced, f"{len(found) - len(misplaced)} of {len(found)} faults have their place."]))
     if asked.check or (misplaced and not asked.skip):
