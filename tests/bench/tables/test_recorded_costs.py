@@ -24,6 +24,15 @@ def test_every_operation_of_the_catalogue_is_recorded_as_it_is_now():
         assert {case.name for case in chosen} == found, STALE
 
 
+def test_what_is_not_what_was_counted_has_no_recorded_count(monkeypatch):
+    """One whose GLSL has changed since; the others keep theirs."""
+    chosen = cases()[:3]
+    kept = recorded._kept()
+    other = kept | {"sources": kept["sources"] | {chosen[1].name: "0" * 16}}
+    monkeypatch.setattr(recorded, "_kept", lambda: other)
+    assert [case for case, _ in recorded.recorded(chosen, "navi21", "fragment")] == [chosen[0], chosen[2]]
+
+
 @pytest.mark.parametrize("family", ["navi21", "tgl"])
 def test_twenty_of_them_are_what_compilers_make_of_them_here(family):
     if spirv.version(spirv.COMPILER) is None or isa.missing():

@@ -26,6 +26,12 @@ def folder(own_cache, monkeypatch):
     return own_cache / "normalbench"
 
 
+def test_a_key_differs_wherever_one_of_its_parts_does():
+    """Also where the parts put together are the same text."""
+    parts = [("ab", "c"), ("a", "bc"), ("abc",), ("abc", ""), ("", "abc"), ("1:a", "b"), ("1", ":ab")]
+    assert len({cache.key_of(*several) for several in parts}) == len(parts)
+
+
 def is_open_to_others(path):
     path.chmod(path.stat().st_mode | 0o022)
 

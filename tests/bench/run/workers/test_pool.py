@@ -149,6 +149,16 @@ def test_an_answer_that_is_wrong_ends_the_command(wrong, workers):
         measured(workers(lambda order, needs, names: wrong), asked("quality", JAX))  # noqa: ARG005
 
 
+def test_an_order_is_another_one_where_a_users_file_is(monkeypatch, tmp_path):
+    """A worker that has the first would measure it again for the second, of the same name."""
+    monkeypatch.chdir(tmp_path)
+    table, ids = TABLES["quality"], []
+    for text in ("// first", "// second", "// first"):
+        (tmp_path / "mine.glsl").write_text(text)
+        ids.append(order_of(Asked(table, table.options(encoding="mine.glsl"), table.outputs(), [])).id)
+    assert ids[0] == ids[2] != ids[1]
+
+
 def test_steps_before_one_that_raises_are_kept(workers, monkeypatch, tmp_path):
     """By the worker's process, and by this one."""
     ask = asked("quality", JAX[:2])
