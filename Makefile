@@ -1,10 +1,9 @@
 # make bench   set up what is missing, then measure the default suite
 # make test    set up what is missing, then run the tests that take little time; with ALL=1 the slow ones too,
 #              with ALL=nightly every one
-# make slow    the other tests: whole runs and what seldom breaks; .ci/nightly has those that take longest
 # make site    make a website in site of the newest run; of another with RUN=FOLDER
 # make setup   virtual environment in .venv, packages, GL driver, shader compilers
-# make lint    ruff and the type checker, which checks for Linux, Windows and macOS
+# make lint    ruff and the type checker; with ALL=nightly it checks for Windows and macOS too
 
 PYTHON ?= python3
 BIN = .venv/bin
@@ -13,17 +12,14 @@ export PYTHONDONTWRITEBYTECODE =
 
 RUN ?= $(lastword $(sort $(wildcard results/*/run.json)))
 
-.PHONY: bench test slow site setup lint say-bench say-test
+.PHONY: bench test site setup lint say-bench say-test
 
 bench: say-bench .venv/ready
 	$(BIN)/normalbench run
 
 # Twice as many as two cores: a test that waits for a command, a file or a browser leaves its core to another.
 test: say-test .venv/tests
-	$(BIN)/python -m pytest -n 4 $(if $(ALL),-m "$(if $(filter nightly,$(ALL)),nightly or not nightly,not nightly)")
-
-slow: .venv/tests
-	$(BIN)/python -m pytest -n 4 -m "slow and not nightly"
+	$(BIN)/python -m pytest -n 4 $(if $(ALL),--tier $(if $(filter nightly,$(ALL)),nightly,slow))
 
 site: .venv/ready
 	@test -n "$(RUN)" || { echo "there is no run in results; make bench measures one" >&2; exit 1; }
@@ -34,7 +30,7 @@ setup: .venv/tests
 lint: .venv/tests
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	for system in Linux Windows Darwin; do $(BIN)/basedpyright --pythonplatform $$system || exit 1; done
+	for system in Linux $(if $(filter nightly,$(ALL)),Windows Darwin); do $(BIN)/basedpyright --pythonplatform $$system || exit 1; done
 
 # A stamp is younger than what it was made from, so that a second call installs nothing.
 .venv/ready: pyproject.toml .ci/constraints.txt

@@ -9,8 +9,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+from compiled import COMPILED
+
 # XLA compiles each program once for all tests, their processes and the next run.
-os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(Path(__file__).parents[1] / ".pytest_cache" / "jax"))
+os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(COMPILED / "jax"))
 os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "0")
 os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES", "-1")
 # As the program does; without it OpenBLAS waits for work in a loop that takes a whole core.
@@ -19,10 +21,10 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("NORMALBENCH_NO_PROGRESS", "1")
 
 import jax
-import kept_rows
 import kept_runs
 import pytest
 import seconds
+import shared_rows
 
 from normalbench.bench.door.cli import app as cli
 from normalbench.bench.ground.compilers import tools as compilers
@@ -40,7 +42,6 @@ from normalbench.bench.shaders.isa import driver_files, isa, null_device, spirv
 from normalbench.bench.shaders.isa.nvidia import tools
 from normalbench.gbuffer.gl.device import NoDeviceError, device
 
-CACHE = Path(__file__).parents[1] / ".pytest_cache"
 # What a process of the tests may hold on to between two tests, in bytes.
 LARGE = 1_400_000_000
 # By how much more than that, or than what was left the last time, before memory is given back again: it takes seconds.
@@ -50,7 +51,17 @@ jax.config.update("jax_numpy_rank_promotion", "raise")
 jax.config.update("jax_numpy_dtype_promotion", "strict")
 
 
+# A file's name ends in its tier; one whose name does not is quick. Each is run with those before it.
+TIERS = ("quick", "slow", "nightly")
+
+
+def tier_of(path: Path) -> str:
+    """The tier of a test file."""
+    return next((tier for tier in TIERS if path.stem.endswith(f"_{tier}")), TIERS[0])
+
+
 def pytest_addoption(parser):
+    parser.addoption("--tier", choices=TIERS, default=TIERS[0], help="which tests: quick ones, slow ones too, or all")
     parser.addoption("--firefox", action="store_true", help="open pages in Firefox: pytest tests/reports --firefox")
     parser.addoption("--seconds", type=Path, metavar="FILE", help="write the seconds of each test file into FILE")
 
@@ -62,20 +73,28 @@ def pytest_configure(config):
         config.pluginmanager.register(seconds.Seconds(path.absolute()))
 
 
-# What takes seconds to begin with, and a test of it seldom fails where no other one does.
-SLOW_FIXTURES = frozenset(
+def pytest_ignore_collect(collection_path, config):
+    """What is not asked for is not imported; a file is asked for by its name, too."""
+    is_later = TIERS.index(tier_of(collection_path)) > TIERS.index(config.option.tier)
+    named = {Path(word.partition("::")[0]).absolute() for word in config.args}
+    return True if is_later and collection_path not in named else None
+
+
+# What takes seconds to begin with.
+LONG_FIXTURES = frozenset(
     {"browser", "gl_browser", "browser_path", "results", "scheduler", "radv", "intel", "nvidia", "vendor_rows"}
 )
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items, config):
-    """A test that opens a browser, starts workers or asks for a vendor's compilers is slow without saying so."""
+    """Skip what Firefox cannot be asked. Raises UsageError for a quick file that opens a browser, starts workers or
+    asks for a vendor's compilers."""
     for item in items:
         if config.option.firefox and (mark := item.get_closest_marker("chromium")):
             item.add_marker(pytest.mark.skip(reason=mark.args[0]))
-        if SLOW_FIXTURES & set(item.fixturenames) and not item.get_closest_marker("nightly"):
-            item.add_marker(pytest.mark.slow)
+        if tier_of(item.path) == TIERS[0] and (asked := LONG_FIXTURES.intersection(item.fixturenames)):
+            raise pytest.UsageError(f"{item.nodeid} asks for {', '.join(asked)}: move it to a file test_..._slow.py")
 
 
 def pytest_collection_finish():
@@ -113,7 +132,7 @@ def _resident_bytes() -> int:
 def spirv_is_kept():
     """SPIR-V is compiled once, as XLA's programs are: an empty cache of the program's own needs it again and again."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(compilers, "_piped", kept_runs.kept(compilers._piped, CACHE / "spirv"))
+        patch.setattr(compilers, "_piped", kept_runs.kept(compilers._piped, COMPILED / "spirv"))
         yield
 
 
@@ -128,9 +147,9 @@ def gl():
 
 
 @pytest.fixture
-def rows_are_kept(monkeypatch):
+def rows_are_shared(monkeypatch, shared_folder):
     """Rows are measured once for all tests that ask for this; not for those that change how something is measured."""
-    monkeypatch.setattr(measuring.Here, "measure", kept_rows.kept(measuring.Here.measure, CACHE / "rows"))
+    monkeypatch.setattr(measuring.Here, "measure", shared_rows.shared(measuring.Here.measure, shared_folder / "rows"))
 
 
 @pytest.fixture
@@ -178,15 +197,20 @@ SMALL_RUN = ("run", "--tables", "quality", "--encoding", PICTURED, "--storage", 
 
 
 @pytest.fixture(scope="session")
-def once(tmp_path_factory):
-    """Does what all workers need once: `once(name, do)`; where it fails the next one tries."""
+def shared_folder(tmp_path_factory):
+    """A folder that all processes of this run of pytest have."""
     base = tmp_path_factory.getbasetemp()
-    shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+    return base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+
+
+@pytest.fixture(scope="session")
+def once(shared_folder):
+    """Does what all workers need once: `once(name, do)`; where it fails the next one tries."""
 
     def done_once(name, do):
-        with (shared / f"{name}.lock").open("w") as lock:
+        with (shared_folder / f"{name}.lock").open("w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
-            if not (said := shared / f"{name}.json").exists():
+            if not (said := shared_folder / f"{name}.json").exists():
                 said.write_text(json.dumps(do()))
         return json.loads(said.read_text())
 

@@ -1,6 +1,6 @@
 """Puts each fault of fault_list.py into a tree, runs the tests that should notice it, and counts.
 
-    python tests/faults.py [--tree DIR] [--python PY] [--blind] [--only NAME,...] [--results FILE] [--skip] [--check]
+    python tests/faults.py [--tree DIR] [--blind] [--tier TIER] [--only NAME,...] [--results FILE] [--skip] [--check]
 
 No part of the tests: a run takes half an hour, and changes files of the tree while it lasts. Whatever ends it, the file
 is put back as it was. With --results a run that was ended goes on. In the end the tests that noticed are run without
@@ -28,6 +28,7 @@ from typing import Any, NamedTuple, NoReturn
 from fault_list import FAULTS, Fault
 from fault_list_blind import FAULTS_B
 
+TIERS = ("quick", "slow", "nightly")
 ROOMS = ("encodings", "gbuffer", "bench", "reports")
 # No selection of tests takes so long: what does hangs, and is noticed by that.
 LIMIT_S = 900
@@ -49,6 +50,7 @@ class Tree:
 
     root: Path
     python: Path
+    tier: str = TIERS[-1]
 
     def product(self) -> dict[Path, str]:
         """The text of every file of the product."""
@@ -60,8 +62,9 @@ class Tree:
         elsewhere."""
         if not names:
             return ["tests"]
-        found = [path for name in names.split() for path in (self.root / "tests").rglob(name)]
-        return [str(path.relative_to(self.root)) for path in found]
+        ends = ["", *(f"_{tier}" for tier in TIERS[1 : TIERS.index(self.tier) + 1])]
+        files = [f"{Path(name).stem}{end}.py" for name in names.split() for end in ends]
+        return [str(path.relative_to(self.root)) for name in files for path in (self.root / "tests").rglob(name)]
 
 
 @dataclass(frozen=True)
@@ -111,7 +114,7 @@ def environment() -> Iterator[dict[str, str]]:
 
 def ran(tree: Tree, arguments: Sequence[str], limit: float | None) -> tuple[int, str] | None:
     """Status and output of pytest; None where it took longer than the limit."""
-    command = [str(tree.python), "-m", "pytest", "-q", "-m", "", "--tb=no", "-rfE", *arguments]
+    command = [str(tree.python), "-m", "pytest", "-q", "--tier", tree.tier, "--tb=no", "-rfE", *arguments]
     with environment() as given:
         process = subprocess.Popen(
             command,
@@ -216,6 +219,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--tree", type=Path, default=here, help="The checkout. Default: this one.")
     parser.add_argument("--python", type=Path, help="Its Python. Default: the one of its .venv.")
     parser.add_argument("--blind", action="store_true", help="Those of fault_list_blind.py, with all tests.")
+    parser.add_argument("--tier", choices=TIERS, default=TIERS[-1], help="The last tier of tests that are run.")
     parser.add_argument("--only", default="", help="Names of faults, comma-separated.")
     parser.add_argument("--results", type=Path, help="JSON lines to go on from, and to write.")
     parser.add_argument("--skip", action="store_true", help="Leave out what has no place: another version may lack it.")
@@ -231,7 +235,7 @@ def main() -> int:
     """Check that every fault has its place, then try each."""
     asked = arguments()
     root = asked.tree.resolve()
-    tree = Tree(root, asked.python or root / ".venv" / "bin" / "python")
+    tree = Tree(root, asked.python or root / ".venv" / "bin" / "python", asked.tier)
     product = tree.product()
     found = [
         (fault, place_of(fault, product)) for fault in chosen_faults(FAULTS_B if asked.blind else FAULTS, asked.only)

@@ -1,65 +1,14 @@
 """A short form of `python -m tests.attack`: every kind that takes no process of its own, from the first seeds."""
 
-import sys
-import time
-from collections import Counter
-from pathlib import Path
-
 import pytest
 from attack import translations
 from attack.kind import MEASURED, REFUSED
-from attack.trying import KINDS, ODD, one
-from languages import RUN, require_runner
+from attack.trying import one
+from languages import RUN
 
 from normalbench.bench.ground.compilers import tools
 from normalbench.bench.ground.output.errors import MissingError
 from normalbench.bench.shaders.languages import translated
-
-FEW = [kind for kind in KINDS if kind.few]
-
-
-# Each of these is a command, and takes half a second.
-COSTLY = ("run: read", "words")
-HERE = "test_attack.py::test_what_is_damaged_is_measured_or_refused_in_a_line"
-PARTS = [pytest.param(kind, kind.few, id=kind.name, marks=pytest.mark.slow) for kind in FEW if kind.name not in COSTLY]
-SLOW = [
-    pytest.param(kind, count, id=f"{count} of {kind.name}", marks=mark)
-    for kind in FEW
-    if kind.name in COSTLY
-    for count, mark in ((kind.few // 6, pytest.mark.slow), (kind.few, pytest.mark.nightly(HERE)))
-]
-
-
-@pytest.mark.usefixtures("gl")
-@pytest.mark.parametrize("kind, count", [*PARTS, *SLOW])
-def test_what_is_damaged_is_measured_or_refused_in_a_line(kind, count, tmp_path, monkeypatch, opened):
-    """Soon, and no file is opened that lies elsewhere."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    attack, counts = kind.prepare(tmp_path), Counter()
-    began = time.process_time()
-    for seed in range(count):
-        opened.clear()
-        ended, why = one(attack, kind, seed)
-        counts[ended] += 1
-        assert ended != ODD, f"seed {seed}: {why}"
-        if kind.reads_here_only:
-            outside = [name for name in opened if not _is_known(tmp_path / name, tmp_path)]
-            assert not outside, (seed, outside)
-    assert time.process_time() - began < count * kind.seconds
-    assert len(counts) == 2, f"changes must be both harmless and harmful: {counts}"
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("gl")
-@pytest.mark.parametrize("seed", range(12))
-def test_programs_mean_the_same_in_every_language(seed, tmp_path, monkeypatch):
-    """Of each language that is read three, each written in another one."""
-    for language in ("hlsl", "slang", "wgsl", "c"):
-        require_runner(language)
-    monkeypatch.setattr(translated, "_by_child", translated._by_child)
-    ended, why = one(translations.translations(tmp_path), translations.KINDS[0], seed)
-    assert ended == MEASURED, why
 
 
 @pytest.mark.usefixtures("gl")
@@ -79,11 +28,3 @@ def test_what_a_machine_lacks_is_left_out_of_the_attack_and_said(monkeypatch, tm
 
 def raised(why):
     raise MissingError(why)
-
-
-def _is_known(path: Path, folder: Path) -> bool:
-    """Of the test's folder, or what Python and its packages read at first: JAX looks for TPUs in /sys."""
-    ours = any(path.is_relative_to(root) for root in (folder, sys.prefix, sys.base_prefix))
-    return (
-        ours or path.suffix in (".py", ".pyc", ".so") or path.name == "entry_points.txt" or path.is_relative_to("/sys")
-    )

@@ -1,12 +1,8 @@
 """What CONTRIBUTING.md says is added as it says, in a copy of the code; and its commands are there."""
 
-import csv
-import io
-import json
 import re
 
-import pytest
-from contributing import EXAMPLES, PAGE, a_copy_of_the_rooms, normalbench_in
+from contributing import EXAMPLES, PAGE
 from manual import ROOT
 
 
@@ -24,65 +20,3 @@ def test_its_commands_are_those_of_the_makefile_and_of_the_tests():
     for path in re.findall(r"(?:tests|docs|bench)/[\w/-]+(?:\.py|\.md)?", PAGE):
         is_example = any(path in name for one in EXAMPLES.values() for name in one.files)
         assert is_example or (ROOT / path).exists(), path
-
-
-@pytest.fixture(scope="module")
-def copy(tmp_path_factory):
-    """The code with every example, but for the table and its chart, which test_new_table.py uses."""
-    folder = tmp_path_factory.mktemp("copy")
-    package = a_copy_of_the_rooms(folder)
-    for name, example in EXAMPLES.items():
-        if name not in ("a table", "a chart"):
-            example.add_to(package)
-    return folder
-
-
-def rows_of(folder, *arguments):
-    done = normalbench_in(folder, *arguments, "--format", "csv")
-    assert done.returncode == 0, done.stderr
-    return list(csv.DictReader(io.StringIO(done.stdout)))
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("gl")
-def test_an_encoding_is_a_pair_and_a_line(copy):
-    """It has a row in both languages: stereographic projection of half the sphere without the borders of its square."""
-    rows = rows_of(copy, "quality", "--encoding", "paraboloid", "--storage", "rg16", "--normals", "hemisphere")
-    figures = {row["backend"]: float(row["psnr_db"]) for row in rows}
-    assert figures == {"jax": pytest.approx(99.18, abs=0.01), "glsl": pytest.approx(99.18, abs=0.01)}
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("gl")
-def test_a_storage_is_a_line_and_a_column_two(copy):
-    """Both languages store codes of 5:6 bits as integers of so many bits in two bytes do."""
-    rows = rows_of(copy, "quality", "--encoding", "octahedral", "--storage", "rgb565,rg8_5_6_5", "--normals", "sphere")
-    figures = {(row["storage"], row["backend"]): float(row["psnr_db"]) for row in rows}
-    assert len(figures) == 4 and max(figures.values()) - min(figures.values()) < 1e-4, figures
-    for row in rows:
-        assert float(row["angle_rms_minutes"]) == pytest.approx(60 * float(row["angle_rms_deg"]), rel=1e-5)
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("gl")
-def test_an_effect_is_a_pair_and_a_line(copy):
-    """It is listed with its setting, and measured."""
-    assert "dimmed" in normalbench_in(copy, "list", "effects").stdout
-    arguments = ("--encoding", "octahedral", "--storage", "rg8", "--scene", "playground", "--size", "64x48")
-    rows = rows_of(copy, "effects", "--effect", "dimmed:strength=0.25", *arguments)
-    assert rows and all(row["effect"] == "dimmed:strength=0.25" and float(row["psnr_db"]) > 20 for row in rows), rows
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("gl")
-def test_a_language_is_a_writer_a_module_and_two_lines(copy):
-    """Its file is run before it is written."""
-    done = normalbench_in(copy, "code", "octahedral", "--storage", "rg8", "--to", "signed", "-o", "made")
-    assert done.returncode == 0, done.stderr
-    (path,) = (copy / "made").iterdir()
-    text = path.read_text()
-    assert path.name == "octahedral_rg8.signed.glsl" and "// Written by an example." in text
-    assert "texels of 65536 normals" in " ".join(text.replace("//", "").split())
-    arguments = ("--check", "octahedral", "--storage", "rg8", "--to", "signed", "--format", "json")
-    done = normalbench_in(copy, "code", *arguments)
-    assert "signed" in done.stdout and json.loads(done.stdout), done.stderr

@@ -1,132 +1,15 @@
 """`pip install .`, archives and the set-up: all files are there, the sizes are those said, and nothing is silent."""
 
-import json
 import os
 import re
 import shutil
 import subprocess
-import sys
 from importlib.metadata import distributions
-from pathlib import Path
 
 import install_page
 import pytest
-from manual import NAMED, PAGES, README, ROOT
+from manual import ROOT
 from packaging.utils import canonicalize_name
-
-from normalbench.bench.door.python import stub
-
-ROOMS = ("bench", "encodings", "gbuffer", "reports")
-BESIDE = ("pyproject.toml", "setup.py", "README.md", "LICENSE")
-# What `import normalbench` gives lies elsewhere in a checkout.
-API = "bench/door/api/"
-# What type checkers and editors are told, which is made when the package is built.
-STUB = "__init__.pyi"
-
-
-@pytest.mark.slow
-def test_an_install_is_whole_and_leaves_nothing_in_the_checkout(tmp_path):
-    pytest.importorskip("setuptools", minversion="77", reason="pyproject.toml asks for it")
-    checkout, site = copied(tmp_path / "checkout"), tmp_path / "site"
-    before = files_in(checkout)
-    words = ("install", "--quiet", "--no-deps", "--no-build-isolation", "--no-compile", "--target", str(site))
-    done = subprocess.run([sys.executable, "-m", "pip", *words, str(checkout)], capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    assert files_in(checkout) == before and {path.name for path in checkout.iterdir()} == {*ROOMS, *BESIDE}
-    packaged = {name.removeprefix(API) for name in before if name not in BESIDE}
-    assert files_in(site / "normalbench") == packaged | {STUB}
-    assert (site / "normalbench" / STUB).read_text() == stub.stub()
-
-
-def copied(checkout, *more):
-    """The rooms of the package in a folder, and what pip reads; more files and folders of the checkout, where asked."""
-    checkout.mkdir()
-    for path in [ROOT / name for name in (*ROOMS, *BESIDE, *more)]:
-        if path.is_dir():
-            made = shutil.ignore_patterns("__pycache__", ".pytest_cache", STUB)
-            shutil.copytree(path, checkout / path.name, ignore=made)
-        else:
-            shutil.copy(path, checkout)
-    return checkout
-
-
-def files_in(folder):
-    """The files below a folder, by their paths."""
-    return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
-
-
-# What a source archive has beside the package.
-FOR_TESTS = ("tests", "docs", ".ci", "Makefile", "Dockerfile", "MANIFEST.in", "CHANGELOG.md", "CITATION.cff")
-OTHERS = ("CONTRIBUTING.md", ".dockerignore", ".gitignore", ".pre-commit-hooks.yaml")
-
-
-@pytest.mark.slow
-def test_a_source_archive_has_all_that_the_tests_need(tmp_path):
-    """Every file; tests that read the manual, the scripts and other tests pass in it."""
-    pytest.importorskip("setuptools", minversion="77", reason="pyproject.toml asks for it")
-    checkout = copied(tmp_path / "checkout", *FOR_TESTS, *OTHERS)
-    before = files_in(checkout)
-    subprocess.run([sys.executable, "setup.py", "-q", "sdist", "-d", str(tmp_path)], cwd=checkout, check=True)
-    shutil.unpack_archive(next(tmp_path.glob("*.tar.gz")), tmp_path / "unpacked")
-    (unpacked,) = (tmp_path / "unpacked").iterdir()
-    assert before <= files_in(unpacked), sorted(before - files_in(unpacked))
-    words = ("-q", "-p", "no:cacheprovider", "tests/test_nightly.py", "tests/test_container.py")
-    done = subprocess.run([sys.executable, "-m", "pytest", *words], cwd=unpacked, capture_output=True, text=True)
-    assert done.returncode == 0, done.stdout
-
-
-PYTHONS = ("3.11", "3.12", "3.13", "3.14")
-ROW = ("quality", "--encoding", "octahedral", "--storage", "rg8", "--normals", "axes", "--backend", "jax")
-
-
-def interpreter(version: str) -> str:
-    """A Python of that version: on the path, or one of pyenv's. Skips the test where there is none."""
-    kept = sorted(Path("~/.pyenv/versions").expanduser().glob(f"{version}.*/bin/python{version}"))
-    for path in (shutil.which(f"python{version}"), *map(str, kept)):
-        if path and subprocess.run([path, "-c", "import venv"], capture_output=True).returncode == 0:
-            return path
-    pytest.skip(f"no Python {version}")
-
-
-@pytest.mark.nightly("test_install.py::test_an_install_is_whole_and_leaves_nothing_in_the_checkout")
-@pytest.mark.parametrize("version", PYTHONS)
-def test_the_wheel_works_in_an_empty_environment(version, tmp_path):
-    """By its dependencies alone, in each Python that is there: the row of this one, and within 900 MB."""
-    made = interpreter(version)
-    built = [sys.executable, "-m", "pip", "wheel", "-q", "--no-deps", "--no-build-isolation", "-w", str(tmp_path)]
-    subprocess.run([*built, str(copied(tmp_path / "checkout"))], check=True)
-    subprocess.run([made, "-m", "venv", str(tmp_path / "empty")], check=True)
-    own = tmp_path / "empty/bin/python"
-    words = ("-m", "pip", "install", "-q", "--no-compile", "--constraint", str(ROOT / ".ci/constraints.txt"))
-    done = subprocess.run([own, *words, *map(str, tmp_path.glob("*.whl"))], capture_output=True, text=True)
-    if "Failed to establish a new connection" in done.stderr:
-        pytest.skip("no package registry is reached")
-    assert done.returncode == 0, done.stderr
-    size = int(subprocess.run(["du", "-s", "-B1", own.parents[1]], capture_output=True, text=True).stdout.split()[0])
-    here, there = (row_by([str(program), "-m", "normalbench"]) for program in (sys.executable, own))
-    gate = gate_by(own, tmp_path / "project")
-    shutil.rmtree(own.parents[1])
-    assert there == here and size < 900e6
-    assert gate.returncode == 0 and "1 passed" in gate.stdout, gate.stdout + gate.stderr
-
-
-def gate_by(python: Path, folder: Path) -> subprocess.CompletedProcess[str]:
-    """README's gate in an environment that has what README installs for it."""
-    folder.mkdir()
-    for name, text in NAMED.findall(PAGES[README]):
-        (folder / name).write_text(text)
-    (packages,) = re.findall(r"`pip install (.+?)`", PAGES[README])
-    subprocess.run([python, "-m", "pip", "install", "-q", *packages.split()], check=True)
-    clean = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-    command = [python, "-m", "pytest", "-p", "no:cacheprovider", "test_mine.py"]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, env=clean)
-
-
-def row_by(program):
-    clean = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-    done = subprocess.run([*program, *ROW, "--format", "json"], capture_output=True, text=True, env=clean)
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
 
 
 def test_the_page_has_the_sizes_of_what_is_installed():

@@ -5,7 +5,6 @@ import re
 
 import pytest
 from manual import PAGES, README, ROOT
-from manual_tables.measuring import measure
 from manual_tables.table import KEPT, page_with
 from manual_tables.tables import TABLES
 
@@ -13,6 +12,8 @@ from normalbench.bench.measures.metrics import published
 from normalbench.bench.measures.metrics.code_limits import HEMISPHERE, SPHERE, code_limit
 
 VENDORS = PAGES[ROOT / "docs" / "vendors.md"]
+
+
 MARKER = re.compile(
     r"^<!-- (headline|answer: [\w ]+|workers simulated|published figures|normalbench [\w ]+) -->$", re.M
 )
@@ -38,20 +39,6 @@ def test_a_page_has_the_table_that_was_kept(marker):
     _, text, _ = table.parts(page_with(marker)[1])
     assert text == table.text(table, kept)
     table.holds(kept.lines)
-
-
-@pytest.mark.nightly("test_manual_tables.py::test_a_page_has_the_table_that_was_kept")
-@pytest.mark.parametrize("marker", TABLES)
-def test_a_table_is_measured_anew(marker, request):
-    """What a compiler counts is compared where its version is the same."""
-    table = TABLES[marker]
-    for fixture in table.needs:
-        request.getfixturevalue(fixture)
-    kept, measured = table.read(), measure(table, is_again=True)
-    assert not table.differences(kept, measured)
-    if measured.drivers != kept.drivers:
-        pytest.skip(f"counts are by {' and '.join(kept.drivers)}, and here by {' and '.join(measured.drivers)}")
-    table.holds(measured.lines)
 
 
 def test_the_bounds_are_those_that_are_computed():

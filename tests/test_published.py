@@ -78,22 +78,7 @@ def test_a_wrong_constant_is_found_and_its_figure_named(monkeypatch):
     assert "Z. Cigolle: a slip: 0.34046 degrees is published and 0.33689 measured" in line
 
 
-@pytest.mark.usefixtures("rows_are_kept")
+@pytest.mark.usefixtures("rows_are_shared")
 def test_sources_are_chosen_by_words():
     assert [source.name[:6] for source in rows.chosen("XEOKIT, smith")] == ["J. Smi", "xeokit"]
     assert rows.chosen("all") == list(SOURCES) and rows.chosen("knuth") == []
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("rows_are_kept")
-def test_what_is_counted_is_what_is_printed():
-    """Of the sources that take no samples: layouts, light, depth, points on rings."""
-    words = "smith,drobot,jo kyeong,ols,shared_exponent,kemen,golubev,normal_pack"
-    verdicts = {row["figure"]: row["verdict"] for row in rows.rows(words)}
-    assert len(verdicts) == 36
-    others = [figure for figure, verdict in verdicts.items() if verdict not in ("reproduced", "holds")]
-    # Of Kemen's sixteen steps those where his code is another one than ours.
-    kemen = [f"step at {km:g} km, C = 1" for km in (0.001, 0.01, 0.1)]
-    kemen += [f"step at {km:g} km, C = 0.001" for km in (0.001, 0.01, 0.1, 10)]
-    assert others == [*kemen, "distance where a step exceeds 1 m"]
-    assert sum("km, C =" in figure for figure in verdicts) == 16

@@ -4,11 +4,9 @@ import re
 import runpy
 import shlex
 import shutil
-import subprocess
 import sys
 import tomllib
 from contextlib import nullcontext, suppress
-from dataclasses import fields
 from functools import cache
 from pathlib import Path
 from typing import NoReturn
@@ -19,7 +17,6 @@ import gpu_page
 import numpy as np
 import pytest
 import typer
-from contributing import a_copy_of_the_rooms, normalbench_in
 from manual import NAMED, PAGES, README, ROOT
 from written import as_document, packed, planes_of, png_bytes, some_normals, write_exr
 
@@ -28,19 +25,36 @@ from normalbench.bench.door.cli import app as cli
 from normalbench.bench.keep import history_command, machine
 from normalbench.bench.run import measuring
 from normalbench.bench.show import report, site_command
-from normalbench.bench.tables.registry import TABLES
 from normalbench.gbuffer.scenes.mesh import sphere
 
 MOST_LINES = 150
+
+
 FENCE = re.compile(r"^```.*?^```$", re.S | re.M)
+
+
 EXAMPLES = [(path, *found) for path, text in PAGES.items() for found in NAMED.findall(text)]
+
+
 FILES = {name: text for _, name, text in EXAMPLES}
+
+
 # An indented line is a command, up to its comment.
 INDENTED = re.compile(r"^    (\S[^#\n]*?) *(?:#.*)?$", re.M)
+
+
 LINES = list(dict.fromkeys(line for text in PAGES.values() for line in INDENTED.findall(FENCE.sub("", text))))
+
+
 COMMANDS = [line for line in LINES if line.startswith(("normalbench ", "python "))]
+
+
 PYTEST = [line for line in LINES if line.startswith("pytest ")]
+
+
 MAKE = [line for line in LINES if line.startswith("make ")]
+
+
 # These install something or change the shell.
 NOT_RUN = [line for line in LINES if line.startswith(("pip install ", "uv tool ", "pipx ", "docker "))]
 
@@ -103,8 +117,9 @@ LONG = re.compile(
     r"|site before)\b(?! --help)|python|normalbench (doctor|vectors)$"
     r"|.*(--on |--plot|--report|--worst-case|--encoding all|--arithmetic float|--far|--normals (scene|frame))"
 )
+
+
 LONG_COMMANDS = [command for command in COMMANDS if LONG.match(command)]
-BRIEF_COMMANDS = [command for command in COMMANDS if not LONG.match(command)]
 
 
 class BegunError(Exception):
@@ -115,8 +130,6 @@ def begin(*_: object) -> NoReturn:
     raise BegunError
 
 
-TAKEN = "test_readme.py::test_every_long_command_is_taken_as_written"
-# What commands do once they have checked what was typed: they measure, run code, and read runs, encoders and machines.
 BEGINNINGS = (
     (measuring.Here, "measure"),
     (code_command, "agreement"),
@@ -128,18 +141,9 @@ BEGINNINGS = (
     (machine, "examine"),
 )
 
+
 # Made once for all commands.
 parser_of = cache(typer.main.get_command)
-
-# What is measured of less than the command says: how it is written is tried here, its figures are by others.
-SMALL = {"count": "4096", "size": "160x90", "counts": "4", "repeats": "3"}
-
-
-def in_small(words: list[str]) -> list[str]:
-    """Options that a command does not say itself, for as little as it can measure."""
-    table = TABLES.get(words[1])
-    known = {field.name for field in fields(table.options)} if table else set()
-    return [word for name in SMALL if name in known and f"--{name}" not in words for word in (f"--{name}", SMALL[name])]
 
 
 @pytest.fixture
@@ -176,30 +180,6 @@ def test_every_long_command_is_taken_as_written(command, monkeypatch):
         cli.main()
 
 
-@pytest.mark.parametrize(
-    "command",
-    [
-        *(pytest.param(command, marks=pytest.mark.slow) for command in BRIEF_COMMANDS),
-        *(pytest.param(command, marks=pytest.mark.nightly(TAKEN)) for command in LONG_COMMANDS),
-    ],
-)
-def test_every_command_runs_as_written(command, readers_folder, monkeypatch, capsys, request):
-    words = shlex.split(command)
-    if "nvidia" in words:
-        request.getfixturevalue("nvidia")
-    for name in {"before", "after"} & set(words) if words[1] != "run" else ():
-        shutil.copytree(request.getfixturevalue("results")[0], readers_folder / name)
-    if words[0] == "python":
-        done = subprocess.run([sys.executable, *words[1:]], capture_output=True, text=True)
-        assert done.returncode == 0, done.stderr
-        return
-    monkeypatch.setattr(sys, "argv", [*words, *in_small(words)])
-    assert cli.main() == 0, capsys.readouterr().err
-    for option in ("-o", "--images", "--plot"):
-        if option in words:
-            assert (readers_folder / words[words.index(option) + 1]).exists()
-
-
 def test_the_make_targets_exist():
     makefile = (ROOT / "Makefile").read_text()
     assert {"make bench", "make test"} <= set(MAKE)
@@ -222,6 +202,8 @@ def test_the_columns_it_explains_are_those_of_the_tables():
 
 
 IMPORT = re.compile(r"^(?:import|from) (\w+)", re.M)
+
+
 INSTALL = re.compile(r"`?pip install ([^`\n]+)")
 
 
@@ -246,20 +228,6 @@ def check_installed(page, name, text):
     imported = {*IMPORT.findall(text), *(["pytest"] if name.startswith("test_") else [])}
     missing = imported - {*sys.stdlib_module_names, "normalbench", *installed_by(PAGES[page])}
     assert not missing, f"{page}: {name} needs {', '.join(sorted(missing))}; say how it is installed"
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("gl")
-def test_the_tests_it_shows_pass(pytester):
-    """With the encoding it shows, by its commands: the one that writes the baseline first."""
-    for name, text in FILES.items():
-        pytester.path.joinpath(name).write_text(text)
-    tests = sum(text.count("def test_") for name, text in FILES.items() if name.startswith("test_"))
-    assert len(PYTEST) == 2
-    for command in sorted(PYTEST, key=len, reverse=True):
-        words = ["." if word == "tests" else word for word in shlex.split(command)[1:]]
-        result = pytester.runpytest_subprocess(*words, "-p", "no:cacheprovider", "-p", "no:hypothesispytest")
-        result.assert_outcomes(passed=tests)
 
 
 def anchors(text: str) -> set[str]:
@@ -287,22 +255,3 @@ def test_a_seed_is_a_random_seed():
     """Articles are named by author, title and year."""
     for path, text in PAGES.items():
         assert not re.search(r"\bseed \d", text), path.name
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "file, old, new, said",
-    [
-        ("normals/xy.py", "def encode(", "def encode((", ["xy.py", "SyntaxError"]),
-        ("normals/xy.py", 'name="xy"', 'name="yx"', ["xy.py", "'yx'"]),
-        ("catalogue.py", '    "xy",\n', '    "xy",\n    "missing",\n', ["missing.py", "No module named"]),
-    ],
-)
-def test_an_encoding_that_cannot_be_imported_is_one_line_and_help_still_helps(tmp_path, file, old, new, said):
-    path = a_copy_of_the_rooms(tmp_path) / "encodings" / file
-    path.write_text(path.read_text().replace(old, new))
-    for arguments in (["list"], ["quality", "--encoding", "octahedral"]):
-        done = normalbench_in(tmp_path, *arguments)
-        assert done.returncode == 2 and done.stderr.count("\n") == 1, done.stderr
-        assert all(part in done.stderr for part in said), done.stderr
-    assert normalbench_in(tmp_path, "--help").returncode == 0

@@ -12,9 +12,10 @@ from speed.throughput import WHOLE
 
 from normalbench.bench.ground.output.errors import MissingError
 from normalbench.bench.tables.registry import TABLES
-from normalbench.encodings.catalogue import ENCODINGS
 
 needs_c = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+
+
 FREE = Costs(start=0, task=0, row=0, byte=0)
 
 
@@ -28,20 +29,6 @@ def printed(capsys, *words):
     """The rows that a program prints."""
     program.main([*words])
     return json.loads(capsys.readouterr().out)
-
-
-@needs_c
-@pytest.mark.slow
-@pytest.mark.parametrize("name", sorted(c_baseline.ENCODINGS))
-def test_the_c_program_measures_what_the_table_measures(name):
-    """Mean, RMS and largest angle agree with the quality table's. With -ffast-math it rounds a few normals to another
-    code."""
-    data = throughput.normals(WHOLE)
-    ours = throughput.by_jax(ENCODINGS[name], data)()
-    total, squares, largest = c_baseline.work(name, "row", data.n, data.view)()
-    assert total / WHOLE == pytest.approx(ours["angle_mean_deg"], rel=1e-4)
-    assert np.sqrt(squares / WHOLE) == pytest.approx(ours["angle_rms_deg"], rel=1e-4)
-    assert largest == pytest.approx(ours["angle_max_deg"], rel=2e-2)
 
 
 @needs_c
@@ -161,12 +148,3 @@ def test_a_record_keeps_what_else_it_holds(tmp_path, monkeypatch):
     assert times and all(time >= 0 for time in times) and made["bytes"].pop("vectors") == 0
     assert made == {"scenes": 1, "seconds": {"render": [5]}, "bytes": {"render": 7}, "costs": vars(FREE)}
     assert len(times) == len(TABLES["vectors"].work.steps(TABLES["vectors"].options(), TABLES["vectors"].outputs()))
-
-
-@pytest.mark.slow
-def test_the_record_that_is_kept_makes_a_table(capsys):
-    """What a task costs is measured anew by two worker processes."""
-    rows = printed(capsys, "simulate")
-    assert {row["workers"] for row in rows} == set(simulate.WORKERS)
-    costs = simulate.measured_costs()
-    assert 0 < costs.task < 1 and 0 < costs.byte < 1e-5 and 0 < costs.row < 1

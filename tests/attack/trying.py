@@ -19,7 +19,9 @@ from typing import NoReturn
 HERE = Path(__file__).parent
 if __name__ == "__main__":
     sys.path[:1] = [str(HERE.parent), str(HERE.parent / "inputs")]
-    os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(HERE.parents[1] / ".pytest_cache" / "jax"))
+    from compiled import COMPILED
+
+    os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(COMPILED / "jax"))
 
 from attack import code, files, forms, interruptions, judge, texts, translations, words  # noqa: E402 # the folders above hold it
 from attack.kind import Attack, Kind  # noqa: E402

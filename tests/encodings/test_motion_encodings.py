@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from parity.comparison import ULP, planes, rows
 from parity.motion import BEYOND, CODECS, MOVING, RANGE, STILL, motions, through_gl, through_jax
-from slowly import all_but
 
 from normalbench.encodings.catalogue import MOTION_ENCODINGS
 from normalbench.encodings.codecs.motion_codec import MotionCodec
@@ -53,7 +52,7 @@ def test_the_constant_of_the_logarithm_is_a_pixel_of_2047():
     assert K == 2047 and 2**OCTAVES == K + 1
 
 
-@pytest.mark.parametrize("codec", all_but(17, CODECS), ids=lambda c: c.name)
+@pytest.mark.parametrize("codec", CODECS[:17], ids=lambda c: c.name)
 def test_no_motion_is_exact_but_in_unorm_that_is_not_centred(gl, codec):
     """UNORM has no code for 0: its two middle codes are half a step from it."""
     for found in (through_jax(codec)[STILL], through_gl(gl, codec)[STILL]):

@@ -6,11 +6,8 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from exact_codes import storage as made
 from scipy.spatial import cKDTree
-from slowly import all_but
 
-from normalbench.bench.measures.worst_case.search import worst_case
 from normalbench.bench.subjects.normals.normal_sets import from_arrays, sphere
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.encodings.catalogue import ENCODINGS
@@ -20,8 +17,11 @@ from normalbench.encodings.storages.rules import by_rule
 from normalbench.encodings.storages.storage import STORAGES
 from normalbench.encodings.vec import Vec2, Vec3, to_array
 
-pytestmark = pytest.mark.usefixtures("rows_are_kept")
+pytestmark = pytest.mark.usefixtures("rows_are_shared")
+
+
 COUNT = 1_000_000
+
 
 # Mean, RMS and supremum of the angle in degrees, uniform directions, computed in float64 with a search for the worst
 # case. Octahedral 8:8 and xyz SNORM8 also stand in Cigolle et al., JCGT 3(2), 2014 (0.33709 and 0.17015).
@@ -44,7 +44,7 @@ FIGURES = [
 ]
 
 
-@pytest.mark.parametrize("encoding, storage, rounding, normals, mean, rms, sup", all_but(4, FIGURES))
+@pytest.mark.parametrize("encoding, storage, rounding, normals, mean, rms, sup", FIGURES[:4])
 def test_the_reference_figures_are_reproduced(normalbench, encoding, storage, rounding, normals, mean, rms, sup):
     """Means within 0.2 %, RMS within 0.5 %, suprema within 0.1 %; the largest of a million samples is below the
     supremum, and not far."""
@@ -58,25 +58,6 @@ def test_the_reference_figures_are_reproduced(normalbench, encoding, storage, ro
     at_most["angle_max_deg"] = row["angle_sup_deg"] * 1.0001 + 1e-5
     row.assert_that(**{column: f"at least {least}" for column, least in at_least.items()})
     row.assert_that(**{column: f"at most {most}" for column, most in at_most.items()})
-
-
-# Cigolle et al. 2014, table 2: mean and the largest of their samples. SNORM10 is not a format of a render target.
-PUBLISHED = [
-    (Codec(ENCODINGS["octahedral"], STORAGES["rg8_snorm"]), 0.33709, 0.94424),
-    (Codec(ENCODINGS["xyz_renormalised"], STORAGES["rgba8_snorm"]), 0.17015, 0.38588),
-    (Codec(ENCODINGS["octahedral"], made("snorm", 10, 10)), 0.08380, 0.23467),
-    (Codec(ENCODINGS["octahedral"], STORAGES["rgb8_12_12_snorm"]), 0.02091, 0.05874),
-]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("codec, mean, largest", PUBLISHED, ids=lambda value: getattr(value, "name", ""))
-def test_published_maxima_are_those_of_samples(codec, mean, largest):
-    """Some hundred thousand samples have the published maximum, give or take; the supremum is 1.0 to 1.4 % above it."""
-    few, many = (quality.measure(quality.Case(codec, sphere(2**bits), "jax")) for bits in (14, 22))
-    assert many["angle_mean_deg"] == pytest.approx(mean, rel=0.002)
-    assert few["angle_max_deg"] < largest < many["angle_max_deg"]
-    assert 0.010 < 1 - largest / worst_case(codec).angle_deg < 0.014
 
 
 def test_the_lambert_spheremap_loses_the_far_pole_in_float32(normalbench):
@@ -96,17 +77,6 @@ def test_the_lambert_spheremap_loses_the_far_pole_in_float32(normalbench):
     assert 10 < largest["spheremap"] < 100 and max(largest["spheremap_classic"], largest["cryengine3"]) < 0.2, largest
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", sorted(ENCODINGS))
-def test_no_row_is_better_than_its_codes_allow(normalbench, name):
-    """The RMS of N codes cannot beat the hexagonal quantiser's: effective bits never exceed the bits stored."""
-    for storage in ("rgba8", "rgb10a2", "rgba8_snorm"):
-        if not Codec(ENCODINGS[name], STORAGES[storage]).fits:
-            continue
-        row = normalbench.quality(encoding=name, storage=storage, normals="sphere", count=2**20)
-        row.assert_that(effective_bits=f"at most {row['bits'] + 1e-3}")
-
-
 def test_effective_bits_of_the_limit_itself():
     """65536 codes at the hexagonal bound, RMS 0.31773 degrees, are worth 16 bits."""
     from normalbench.bench.measures.metrics.code_limits import effective_bits
@@ -120,13 +90,6 @@ def test_unorm8_cannot_hold_an_axis_and_snorm8_can(normalbench):
     # The nearest code to the centre is (1/255, 1/255), which is the direction (1, 1, 253) / 255.
     assert largest["rg8"]["angle_max_deg"] == pytest.approx(math.degrees(math.atan(math.sqrt(2) / 253)), abs=1e-4)
     largest["rg8_snorm"].assert_that(angle_max_deg="at most 1e-4")
-
-
-@pytest.mark.slow
-def test_an_axis_is_never_opposite_in_a_code_for_the_whole_sphere(normalbench):
-    """Poles and rims included, none of the six axes comes back as another direction."""
-    whole = ",".join(name for name, encoding in ENCODINGS.items() if encoding.domain == "sphere")
-    normalbench.quality(encoding=whole, normals="axes").assert_that(angle_max_deg="at most 12")
 
 
 def test_lattices_are_as_good_as_published(normalbench):

@@ -7,17 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import relighting
-from drawing import FP32, SIZE, apart, covered_by_glass, draw, lamps, scene_of, towards
+from drawing import FP32, SIZE, apart, covered_by_glass, draw, lamps, scene_of
 from relighting import surfaces
 
 from normalbench.encodings.catalogue import LIGHT_BUFFERS
 from normalbench.gbuffer.frame.plan import Plan
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
-from normalbench.gbuffer.scenes.catalogue import SCENES
 from normalbench.gbuffer.scenes.mesh import plane
 from normalbench.gbuffer.scenes.scene import Light, Material, Part, Scene, View
-from normalbench.gbuffer.scenes.setting import Setting
 
 
 def shaded(gl, scene: Scene, size) -> tuple[np.ndarray, relighting.Surfaces]:
@@ -29,24 +27,6 @@ def shaded(gl, scene: Scene, size) -> tuple[np.ndarray, relighting.Surfaces]:
         lights.run.queries = []
         lights()
         return np.array([query.samples for query in lights.run.queries]), surfaces(scene, r.gbuffer())
-
-
-@pytest.mark.slow
-def test_bounds_shade_little_more_than_lights_reach(gl):
-    """64 point lights over the objects at 640 x 480: never fewer pixels than lie within each radius, and together at
-    most half as many again."""
-    scene = SCENES["objects"].make(Setting(lights=64))
-    counted, seen = shaded(gl, scene, (640, 480))
-    reached = np.array(
-        [
-            np.sum(np.linalg.norm(seen.position - np.array(light.position), axis=1) < light.radius * (1 - 1e-6))
-            for light in lamps(scene)
-        ]
-    )
-    assert len(counted) == 64 and np.all(counted >= reached), f"light {np.argmin(counted - reached)} misses pixels"
-    assert reached.sum() > 50_000
-    ratio = counted.sum() / reached.sum()
-    assert ratio <= 1.5, f"{ratio:.3f} times"
 
 
 def test_bounds_of_spots_hold_their_cones(gl):
@@ -67,44 +47,10 @@ def test_bounds_of_spots_hold_their_cones(gl):
     assert counted[spots].sum() <= 1.5 * sum(reached), f"{counted[spots]} shaded, {reached} in reach"
 
 
-# View space, y up, looking down -z; near 0.5.
-IN_VIEW = {
-    "eye in the middle": Light("point", (30.0,) * 3, (0.0, 0.0, 0.0), 14.0),
-    "across the near plane": Light("point", (12.0,) * 3, (0.3, -0.2, -0.6), 10.0),
-    "small, across the near plane": Light("point", (3.0,) * 3, (1.5, -2.4, -3.0), 4.2),
-    "behind the eye": Light("point", (20.0,) * 3, (0.5, 0.3, 2.5), 12.0),
-    "eye on the rim": Light("point", (10.0,) * 3, (-3.0, -1.0, -6.0), float(np.sqrt(46.0))),
-    "all of it": Light("point", (4.0,) * 3, (0.0, 0.0, -5.0), 100.0),
-    "spot from behind the eye": Light("spot", (40.0,) * 3, (0.2, 0.1, 1.5), 16.0, towards(0.0, -0.1, -1.0), 15.0, 30.0),
-    "spot from the eye": Light("spot", (40.0,) * 3, (0.0, 0.0, 0.0), 16.0, towards(0.2, -0.2, -1.0), 10.0, 25.0),
-    "spot to the eye": Light("spot", (8.0,) * 3, (0.0, 1.0, -12.0), 14.0, towards(0.0, -0.08, 1.0), 25.0, 40.0),
-    "wide spot": Light("spot", (10.0,) * 3, (1.0, 2.5, -6.0), 9.0, towards(0.1, -1.0, 0.2), 50.0, 80.0),
-    "spot wider than any cone": Light("spot", (10.0,) * 3, (0.0, 1.5, -6.0), 9.0, towards(0.1, -1.0, 0.2), 50.0, 120.0),
-    "spot at the widest cone": Light("spot", (10.0,) * 3, (0.0, 1.5, -6.0), 9.0, towards(0.1, -1.0, 0.2), 50.0, 80.3),
-    "spot past the eye": Light("spot", (10.0,) * 3, (-4.0, 0.0, -8.0), 12.0, towards(0.5, -0.1, 1.0), 20.0, 35.0),
-}
-
-
 def in_world(light: Light, view: View) -> Light:
     to_world = np.linalg.inv(view.matrix())
     position = to_world[:3, :3] @ np.array(light.position) + to_world[:3, 3]
     return replace(light, position=tuple(position), direction=tuple(to_world[:3, :3] @ np.array(light.direction)))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("far", [40.0, 11.0])
-@pytest.mark.parametrize("placed_at", IN_VIEW)
-def test_bounds_around_the_eye_and_across_the_planes_miss_nothing(gl, placed_at, far):
-    """Deferred against forward shading in the room, one light alone, the far plane behind the room or in it: 70 dB."""
-    scene = scene_of("room")
-    view = replace(scene.view, far=far)
-    scene = replace(scene, view=view, lights=(in_world(IN_VIEW[placed_at], view),))
-    forward = draw(gl, "forward", scene).image
-    unlit = draw(gl, "forward", replace(scene, lights=())).image
-    reached = np.mean(abs(forward - unlit).max(axis=2) > 0.002)
-    assert reached > 0.02, f"the light reaches {reached:.1%} of the image"
-    found = apart(draw(gl, "deferred", scene).image, forward)
-    assert found >= 70, f"{found:.1f} dB"
 
 
 @pytest.mark.parametrize("index", [0, 5, 11])
@@ -116,9 +62,6 @@ def test_the_eye_may_stand_in_a_light(gl, index):
     moved = replace(scene, view=view)
     found = apart(draw(gl, "deferred", moved).image, draw(gl, "forward", moved).image)
     assert found >= 70, f"{found:.1f} dB"
-
-
-# One light
 
 
 @pytest.mark.parametrize("kind", ["point", "spot"])
@@ -149,6 +92,8 @@ def test_no_light_past_the_radius_or_beside_the_cone(gl, kind):
 
 # A wall six before the eye, or a floor two below it; lamps one from it, and the foot of each, view space.
 WALL, FLOOR = "wall", "floor"
+
+
 LAMPS = {
     "left": (WALL, (-1.5, 0.3, -5.0), (-1.5, 0.3, -6.0)),
     "right": (WALL, (1.5, 0.3, -5.0), (1.5, 0.3, -6.0)),

@@ -12,7 +12,7 @@ from normalbench.gbuffer.scenes.built_in.playground import playground as rendere
 from normalbench.gbuffer.scenes.mesh import Mesh, facing, joined
 from normalbench.gbuffer.scenes.rasterise import Rendered, rasterise
 
-pytestmark = pytest.mark.usefixtures("rows_are_kept")
+pytestmark = pytest.mark.usefixtures("rows_are_shared")
 
 
 # How far from the article's figures the rows may be, in dB. The original scene, measured with its own arms, is up to

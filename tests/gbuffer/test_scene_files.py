@@ -11,19 +11,10 @@ from drawing import FP32, apart, draw, scene_of
 from PIL import Image
 from written import NORMALS, OBJ, POSITIONS, TRIANGLE, Document, as_document, chained, ply
 
-from normalbench.bench.subjects.normals.normal_names import mesh_set
-from normalbench.bench.subjects.normals.normal_sets import playground
-from normalbench.bench.tables.quality.measure import Case, measure
-from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.codecs.codec import Codec
-from normalbench.encodings.storages.storage import STORAGES
-from normalbench.gbuffer.scenes.built_in.playground import CAMERA, in_view_space
 from normalbench.gbuffer.scenes.files.read import file_scene, file_view, read_mesh_file, seen
 from normalbench.gbuffer.scenes.mesh import box, joined, sphere, tangents, wound
 from normalbench.gbuffer.scenes.scene import Material
 from normalbench.gbuffer.scenes.setting import Setting
-
-# glTF
 
 
 @pytest.mark.parametrize("how", ["glb", "beside", "data"])
@@ -147,9 +138,6 @@ def test_a_material_without_pictures_is_its_numbers(tmp_path):
     assert scene.is_metal_rough
 
 
-# OBJ and PLY
-
-
 def test_obj_quads_negative_indices_and_materials(tmp_path):
     (tmp_path / "a.obj").write_text(OBJ)
     (tmp_path / "colours.mtl").write_text("newmtl red\nKd 1 0 0\nKs 0.5\nNs 4000\nnewmtl blue\nKd 0 0 1\nd 0.5\n")
@@ -242,9 +230,6 @@ def test_files_of_another_program_are_read_as_it_reads_them(tmp_path, ending):
     assert np.allclose(file.baked.normals[own], normals[order], atol=1e-6)
 
 
-# Cameras and pictures
-
-
 @pytest.mark.parametrize("size", [(80, 60), (60, 60)])
 def test_a_scene_without_a_camera_is_framed(tmp_path, size):
     """Everything is in the picture, nothing is cut by a plane, and it fills a good part of it."""
@@ -277,21 +262,6 @@ def test_the_files_own_camera_is_used_with_its_roll(tmp_path):
     rims = made.normals[[rows.min() + 1, rows.max() - 1], 40, 1]
     assert rims[0] > 0.3 and rims[1] < -0.3, f"the upper rim faces up in the picture, the lower one down: {rims}"
     assert made.normals[int(rows.mean()), 40, 2] > 0.8
-
-
-@pytest.mark.slow
-def test_the_playground_as_a_file_is_measured_as_the_playground(tmp_path):
-    """By its own camera. Vertices are rounded to float32, which moves edges by a few pixels and figures by 0.01 dB."""
-    document = as_document(in_view_space())
-    lens = {"yfov": np.radians(CAMERA.fov), "znear": CAMERA.near, "zfar": CAMERA.far}
-    document.json["cameras"] = [{"type": "perspective", "perspective": lens}]
-    document.node(camera=0)
-    made, _ = mesh_set(document.write(tmp_path / "playground.glb"), "640x480")
-    assert made.background == pytest.approx(playground().background, abs=20)
-    for name in ("xy", "octahedral"):
-        case = Case(Codec(ENCODINGS[name], STORAGES["rgba8"]), made, "jax")
-        figures = [measure(replace(case, normal_set=s))["psnr_db"] for s in (made, playground())]
-        assert figures[0] == pytest.approx(figures[1], abs=0.01), name
 
 
 def test_a_procedural_scene_as_a_file_renders_like_it(tmp_path, gl):

@@ -108,10 +108,3 @@ NVIDIA = Vendor(
     changes=_another_build,
 )
 VENDORS = (INTEL, NVIDIA)
-
-
-# Some rows, compiled in the quick tests, or all of them.
-def every_or_some(test: str) -> pytest.MarkDecorator:
-    """A mark for a test of this name: in every run it has some rows, and in the nightly all of them."""
-    every = pytest.param(True, marks=pytest.mark.nightly(test))
-    return pytest.mark.parametrize("is_every", [False, every], ids=["some", "every"])

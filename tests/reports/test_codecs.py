@@ -3,7 +3,6 @@
 import json
 
 import pytest
-from browsing import Opened, no_fingers, no_paper
 from test_pictures import pick_row
 from test_report import a_run, quality_row
 
@@ -11,10 +10,8 @@ from normalbench.bench.door import run_code
 from normalbench.bench.keep.runs import read_run
 from normalbench.bench.shaders.code.emit import LANGUAGES
 from normalbench.bench.show.kept_code import FILE, read_code
-from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.storages.rules import rule_of_first
 from normalbench.encodings.storages.storage import STORAGES
-from normalbench.reports.tables import text_of
 
 QUALITY = [
     quality_row("octahedral", psnr_db=49.85, angle_mean_deg=0.29, angle_max_deg=0.92),
@@ -25,8 +22,14 @@ QUALITY = [
     quality_row("octahedral", storage="rgb10a2", bits=20, psnr_db=61.57, angle_mean_deg=0.0756, angle_max_deg=0.237),
     quality_row("spheremap", storage="rgb10a2", bits=20, psnr_db=60.64, angle_mean_deg=0.0862, angle_max_deg=0.348),
 ]
+
+
 CODES = (("octahedral", 0.3355, 30), ("spheremap", 0.4918, 17), ("xy", 0.9, 9))
+
+
 ANSWER = [pick_row(*code) | {"rounding": "nearest"} for code in CODES]
+
+
 # Other languages are written in the same way; each takes seconds to be run.
 SHORT = {name: LANGUAGES[name] for name in ("c", "glsl")}
 
@@ -40,73 +43,6 @@ def codecs_page(tmp_path_factory):
         patch.setattr(run_code, "LANGUAGES", SHORT)
         run_code.keep_code(folder, read_run(folder))
     return write_report(folder, read_run(folder), folder / "report.html")
-
-
-@pytest.fixture(scope="module")
-def shown(browser, codecs_page):
-    page = Opened(browser, codecs_page, fragment="#v1/codecs")
-    yield page
-    assert page.said == [] and page.asked == [codecs_page.as_uri()]
-    page.context.close()
-
-
-def card_of(shown: Opened, a: str, b: str = ""):
-    """The card, when it is A's and B's."""
-    shown.page.evaluate("sides => change({ view: 'codecs', at: '', ...sides })", {"a": a, "b": b})
-    card = shown.page.locator("[data-card]")
-    shown.page.wait_for_selector(f'[data-card][data-ready="{a}"]')
-    return card
-
-
-def domain_of(encoding: str) -> str:
-    return ENCODINGS[encoding].domain if encoding in ENCODINGS else "sphere"
-
-
-def ordinal(rank: int) -> str:
-    return {1: "1st", 2: "2nd", 3: "3rd"}.get(rank, f"{rank}th")
-
-
-CARDS = [("octahedral rgba8", 0), ("stereographic rgba8", 3), ("spheremap rgb10a2", 6)]
-
-
-@pytest.mark.parametrize(("name", "at"), CARDS)
-def test_a_card_has_the_figures_of_the_runs_rows_and_their_places(shown, name, at):
-    """Of the first back end, among codecs of as many bits, the user's own among them."""
-    card, row = card_of(shown, name), QUALITY[at]
-    alike = [one for one in QUALITY if one["bits"] == row["bits"] and one["backend"] == "jax"]
-    alike = [one for one in alike if domain_of(one["encoding"]) == domain_of(name.split()[0])]
-    for figure, sign in (("psnr_db", -1), ("angle_mean_deg", 1), ("angle_max_deg", 1)):
-        rank = 1 + sum(sign * one[figure] < sign * row[figure] for one in alike)
-        cell = card.locator(f'[data-table=quality] [data-figure="{figure}"]')
-        place = f"\n{ordinal(rank)} of {len(alike)}" if len(alike) > 1 else ""
-        assert cell.text_content() == f"{text_of(row[figure])}{place}", figure
-        said = f"{ordinal(rank)} of {len(alike)} at {row['bits']} bits" if len(alike) > 1 else "no other to compare"
-        assert cell.get_attribute("title") == said
-        best = (min if sign > 0 else max)(one[figure] for one in alike)
-        share = float(cell.evaluate("cell => cell.style.getPropertyValue('--share')"))
-        assert share == pytest.approx(best / row[figure] if sign > 0 else row[figure] / best), figure
-
-
-def test_b_stands_in_the_same_table(shown):
-    card = card_of(shown, "octahedral rgba8", "spheremap rgba8")
-    rows = card.locator("[data-table=quality] tbody tr")
-    assert rows.locator("th").all_text_contents() == ["A", "B"]
-    cells = rows.locator("[data-figure=psnr_db]").all_text_contents()
-    assert [float(text.split("\n")[0]) for text in cells] == [49.85, 48.73]
-
-
-def test_the_answers_card_shows_what_holds_of_the_same_numbers_and_says_so(shown):
-    """RG8 has the first two channels of RGBA8. RGB10 A2 has others, and rows of its own."""
-    card = card_of(shown, "octahedral rg8")
-    text = card.inner_text()
-    assert "octahedral rg8 has no figures here. Those of octahedral rgba8 hold: it stores the same numbers" in text
-    psnr = card.locator("[data-table=quality] [data-figure=psnr_db]")
-    assert psnr.text_content().split("\n")[0] == "49.85"
-    slots = card.locator("[data-table=pick] [data-figure=slots]")
-    assert slots.text_content() == "30\n2nd of 2", "not among codes of half of the sphere"
-    assert "normalbench run --tables quality --encoding octahedral --storage rgba8" in text
-    assert "Q. Meyer et al." in text and "p = n.xy / (|n.x| + |n.y| + |n.z|)" in text and "In rg8: volo" in text
-    assert "has no figures here" not in card_of(shown, "octahedral rgb10a2").inner_text()
 
 
 @pytest.mark.parametrize(
@@ -123,123 +59,6 @@ def test_the_answers_card_shows_what_holds_of_the_same_numbers_and_says_so(shown
 def test_storages_of_the_same_first_numbers(one, other, count, same):
     """Numbers that lie across channels are not filtered as others are."""
     assert (rule_of_first(STORAGES[one], count) == rule_of_first(STORAGES[other], count)) is same
-
-
-def test_the_code_that_is_copied_is_what_code_writes(shown, run):
-    """The answer's was run; of others the head says that it was not, and the functions are the same."""
-    shown.context.grant_permissions(["clipboard-read", "clipboard-write"])
-    card = card_of(shown, "octahedral rg8")
-    assert card.locator("[data-language] option").all_text_contents() == [one.title for one in SHORT.values()]
-    card.locator("[data-language]").select_option("c")
-    card.locator("[data-copy=code]").click()
-    card.locator("[role=status]:text-is('Copied')").wait_for()
-    status, written, _ = run("code", "octahedral", "--storage", "rg8", "--to", "c")
-    assert status == 0 and "Verified: " in written
-    assert shown.page.evaluate("navigator.clipboard.readText()") == written
-    card = card_of(shown, "spheremap rgb10a2")
-    card.locator("[data-language]").select_option("c")
-    found = card.locator("[data-code]").text_content()
-    assert "Verified: not in this run" in found and "It was not run in this run" in card.inner_text()
-    _, written, _ = run("code", "spheremap", "--storage", "rgb10a2", "--to", "c")
-    assert found.partition("#ifndef")[2] == written.partition("#ifndef")[2]
-
-
-def test_the_code_of_a_lies_below_the_answer_too(browser, codecs_page):
-    page = Opened(browser, codecs_page, fragment="#v1/choose?a=octahedral%20rg8")
-    below = page.page.locator("[data-of-cards=code]")
-    assert below.locator("[data-code]").count() == 0, "nothing is built before it is opened"
-    below.locator("summary").click()
-    kept = read_code(codecs_page.parent)
-    first, *_ = kept["codecs"]["octahedral rg8"]["texts"].values()
-    page.says("[data-of-cards=code] h3", "octahedral rg8")
-    assert below.locator("[data-code]").text_content() == "".join(kept["pieces"][at] for at in first)
-    page.page.evaluate("change({ a: 'spheremap rgb10a2' })")
-    page.says("[data-of-cards=code] h3", "spheremap rgb10a2")
-    assert page.said == []
-    page.context.close()
-
-
-def test_an_encoding_of_the_users_own_and_no_codec_at_all(shown):
-    assert "An encoding of your own, mine" in card_of(shown, "mine rgba8").inner_text()
-    shown.page.evaluate("change({ a: '', b: '' })")
-    shown.says("[data-card]", "Choose a codec in the list")
-
-
-def test_an_unknown_codec_is_said_and_the_card_of_ones_own_is_shown(browser, codecs_page):
-    page = Opened(browser, codecs_page, fragment="#v1/codecs?a=nothing%20rg8")
-    page.says("#unknown", "The address names the codec nothing rg8, which this page does not have.")
-    page.page.wait_for_selector('[data-card][data-ready="mine rgba8"]')
-    # A user's own encoding stands against the answer.
-    assert page.page.evaluate("[known.a, known.b]") == ["mine rgba8", "octahedral rg8"]
-    page.context.close()
-
-
-def test_the_list_is_filtered_and_sorted(shown):
-    card_of(shown, "octahedral rg8")
-    rows = shown.page.locator("[data-card-list] tbody tr")
-    names = shown.page.evaluate("known.codecs")
-    assert rows.count() == len(names) == 9
-    shown.page.get_by_label("Filter").first.fill("spheremap")
-    assert rows.locator("visible=true").locator("th").all_text_contents() == [n for n in names if "spheremap" in n]
-    shown.page.get_by_label("Filter").first.fill("")
-    shown.page.locator("[data-card-list] thead button", has_text="mean").click()
-    means = rows.locator("td:nth-child(4)").all_text_contents()
-    found = [float(text.split("°")[0]) for text in means]
-    assert found == sorted(found) and found[0] == 0.0756, found
-
-
-@no_fingers
-def test_a_finger_chooses_a_and_b(browser, codecs_page):
-    context = browser.new_context(viewport={"width": 390, "height": 844}, has_touch=True, offline=True)
-    page = context.new_page()
-    page.goto(f"{codecs_page.as_uri()}#v1/codecs")
-    page.locator('[data-take=b][value="stereographic rgba8"]').first.tap()
-    page.locator('[data-take=a][value="spheremap rgba8"]').first.tap()
-    assert page.evaluate("[state.a, state.b]") == ["spheremap rgba8", "stereographic rgba8"]
-    page.wait_for_selector('[data-card][data-ready="spheremap rgba8"]')
-    pressed = page.locator("[data-card-list] [data-take][aria-pressed=true]")
-    assert sorted(one.get_attribute("value") for one in pressed.all()) == ["spheremap rgba8", "stereographic rgba8"]
-    assert page.evaluate("document.documentElement.scrollWidth") == 390
-    context.close()
-
-
-@no_paper
-def test_one_action_leads_from_the_answer_to_the_card(browser, codecs_page):
-    page = Opened(browser, codecs_page)
-    button = page.page.get_by_role("button", name="Everything about A, mine rgba8")
-    assert button.bounding_box()["y"] < 900, "on the first screen"
-    button.click()
-    page.page.wait_for_selector('[data-card][data-ready="mine rgba8"]')
-    assert page.page.locator("#card-h").is_visible() and page.page.evaluate("state.at") == "cards"
-    page.page.locator("nav [data-to=choose]").click()
-    page.page.wait_for_selector("[data-card]:empty", state="attached")
-    page.page.emulate_media(media="print")
-    assert not page.page.locator("#cards").is_visible(), "paper has no empty card"
-    page.context.close()
-
-
-@no_paper
-def test_a_folded_section_is_opened_and_landed_on(browser, codecs_page):
-    """Before the card is there and after it."""
-    context = browser.new_context(viewport={"width": 1280, "height": 900}, offline=True, reduced_motion="reduce")
-    page = context.new_page()
-    place = "id => document.getElementById(id).getBoundingClientRect().top - navigation.getBoundingClientRect().bottom"
-    for fragment in ("#v1/codecs?at=angles", "#angles"):
-        page.goto("about:blank")
-        page.goto(f"{codecs_page.as_uri()}{fragment}")
-        page.wait_for_selector("[data-card][data-ready]", state="attached")
-        page.wait_for_timeout(200)
-        assert page.locator("#angles details.subject").get_attribute("open") == "", fragment
-        assert page.locator("#quality details.subject").get_attribute("open") is None, "the others stay closed"
-        left = page.evaluate("document.documentElement.scrollHeight - innerHeight - scrollY")
-        assert abs(page.evaluate(place, "angles") - 12) < 10 or left <= 1, fragment
-    page.locator("#angles .plot svg").first.wait_for()
-    plot = page.locator("#angles .plot").first
-    drawn = plot.locator("svg").get_attribute("viewBox").split()[2]
-    assert float(drawn) == pytest.approx(plot.bounding_box()["width"], abs=1.5), "drawn at the size that it is seen in"
-    page.emulate_media(media="print")
-    assert not page.locator("#quality").is_visible(), "what is folded takes no paper"
-    context.close()
 
 
 @pytest.mark.parametrize("damage", ["{", '{"languages": {}, "pieces": [], "codecs": 1}', "one place too far"])

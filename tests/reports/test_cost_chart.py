@@ -2,13 +2,12 @@
 points."""
 
 import math
-from itertools import combinations, pairwise
+from itertools import pairwise
 
 import pytest
-from browsing import DESKTOP, PHONE, Opened
 from hypothesis import given
 from hypothesis import strategies as st
-from test_report import a_run, quality_row, reported
+from test_report import a_run, quality_row
 
 from normalbench.bench.keep.runs import read_run
 from normalbench.bench.show.report import gathered
@@ -26,6 +25,8 @@ CODECS = {
     "octahedral": ((15, 17), (11, 11), 49.95),
     "octahedral_precise": ((120, 17), (128, 11), 50.52),
 }
+
+
 FAMILIES = ("navi31", "dg2")
 
 
@@ -67,16 +68,6 @@ def test_one_chart_has_a_switch_between_gpus_and_one_alone_has_none():
     assert not alone["switch"] and alone["panels"][0]["name"] == "encode"
 
 
-def test_a_file_and_the_page_show_the_same_of_the_usual_gpu(agree):
-    panels = [
-        Panel(kind, points(at, side), name, is_usual=name == "dg2")
-        for at, name in enumerate(FAMILIES)
-        for side, kind in enumerate(("encode", "decode"))
-    ]
-    shown = agree(front_chart("cost-0", "PSNR", panels))
-    assert [panel.marks["points"] for panel in shown] == [5, 5]
-
-
 def costs_of(codecs, family: str, at: int = 0) -> list[dict]:
     """Rows of cost of a GPU family, and of the storage of two numbers."""
     about = TABLES["cost"].empty() | {"measure": "isa", "stage": "fragment", "family": family, "driver": "Mesa"}
@@ -86,14 +77,6 @@ def costs_of(codecs, family: str, at: int = 0) -> list[dict]:
         made += [about | {"operation": operation, "encoding": n, "instructions": c} for n, c in counts.items()]
         made.append(about | {"operation": packed, "storage": "rgba8 8:8", "instructions": 2})
     return made
-
-
-@pytest.fixture(scope="module")
-def run_folder(tmp_path_factory):
-    """A run whose costs are of two vendors' GPUs."""
-    costs = [row for at, family in enumerate(FAMILIES) for row in costs_of(CODECS, family, at)]
-    quality = [quality_row(name, psnr_db=CODECS[name][2]) for name in CODECS]
-    return a_run(tmp_path_factory.mktemp("costs") / "run", {"quality": quality, "cost": costs})
 
 
 def without_figures(name: str, why: str) -> dict:
@@ -140,39 +123,3 @@ def test_the_page_says_why_a_codec_has_no_place_in_its_chart(tmp_path):
             "what rgba8 8:8:8 costs is not known: three rgba8",
         )
     ]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=str)
-def test_the_pages_switch_shows_another_gpu_and_no_names_overlap(run, run_folder, browser, size):
-    reported(run, run_folder)
-    page = Opened(browser, run_folder / "report.html", size)
-    try:
-        figure = page.page.locator("figure[data-chart=cost-0]")
-        page.come_to("figure[data-chart=cost-0]", "figure[data-chart=cost-0] .plot svg >> nth=1")
-        choice = figure.get_by_role("combobox", name="GPU")
-        choice.wait_for()
-        titles = figure.locator(".plot").all_text_contents()
-        assert [f"{o}, Navi 3x (navi31)" in t for o, t in zip(("encode", "decode"), titles, strict=True)] == [True] * 2
-        for name in ("Navi 3x (navi31)", "Arc A770 (dg2)"):
-            choice.select_option(name)
-            figure.get_by_text(f"encode, {name}").wait_for()
-            assert_no_names_overlap(figure)
-        assert page.said == []
-    finally:
-        page.context.close()
-
-
-def assert_no_names_overlap(figure) -> None:
-    for plot in figure.locator(".plot").all():
-        texts = plot.locator("svg text.labels:not(.unplaced)").all()
-        boxes = {(at, text.text_content()): text.bounding_box() for at, text in enumerate(texts)}
-        assert len(boxes) >= 3
-        for (a, one), (b, other) in combinations(boxes.items(), 2):
-            # Browsers do not agree on how high a line of 11 pixels is.
-            apart = abs(one["y"] + one["height"] / 2 - other["y"] - other["height"] / 2) >= 12
-            beside = one["x"] + one["width"] <= other["x"] or other["x"] + other["width"] <= one["x"]
-            assert apart or beside, (a, b)
-        frame = plot.bounding_box()
-        for name, box in boxes.items():
-            assert frame["x"] <= box["x"] and box["x"] + box["width"] <= frame["x"] + frame["width"], name

@@ -2,8 +2,6 @@
 
 import base64
 import io
-import json
-import shutil
 from pathlib import Path
 
 import numpy as np
@@ -35,23 +33,6 @@ def codes_of(record: dict) -> np.ndarray:
     return codes >> np.array([8 * size - bits for size, bits in zip(sizes, record["bits"], strict=True)])
 
 
-def test_pictures_in_the_page_are_those_of_the_run_pixel_by_pixel(results):
-    folder, *_ = results
-    (subject,) = report_command.gathered(folder, read_run(folder)).subjects
-    (inside,) = embedded.gallery([subject]).subjects
-    assert (inside["title"], inside["step"]) == ("the normals of playground", 2)
-    assert [one["label"] for one in inside["codecs"]][:2] == ["octahedral_precise rgba8", "octahedral rgba8"]
-    for record in inside["codecs"][:3]:
-        name = f"playground-{record['label'].replace(' ', '-')}"
-        with (
-            np.load(folder / "images" / f"{name}.npz") as kept,
-            Image.open(folder / f"images/{name}-decoded.png") as png,
-        ):
-            assert (pixels(record["angle"])[..., 0] == kept["angle"][::2, ::2]).all(), name
-            assert (codes_of(record) == kept["codes"][::2, ::2]).all(), name
-            assert (pixels(record["decoded"]) == np.asarray(png)[::2, ::2]).all(), name
-
-
 def test_codes_of_any_size_come_back_from_pictures():
     random = np.random.default_rng(0)
     for bits in ((8, 8), (10, 10), (11, 11, 10), (16, 16), (8, 8, 1), (32, 20, 3)):
@@ -66,33 +47,6 @@ def test_an_angle_as_a_byte_is_within_what_the_page_says():
     shown = 2.0 ** (LEAST_LOG2 + (kept - 1) / STEPS_PER_OCTAVE)
     assert kept[0] == 1 and (abs(shown[1:7] / degrees[1:7] - 1) < 0.045).all() and kept[7] == 255, "not a number"
     assert (angle_bytes(degrees, np.zeros(8, bool)) == 0).all(), "the background"
-
-
-def test_pictures_that_do_not_fit_are_named_and_the_best_come_first(results):
-    (subject,) = report_command.gathered(results[0], read_run(results[0])).subjects
-    made = embedded.gallery([subject], budget=300_000)
-    (shown,) = made.subjects
-    assert len(json.dumps(made.subjects)) <= 310_000
-    assert (
-        shown["codecs"][0]["label"] == "octahedral_precise rgba8"
-        and "xy rgba8, the normals of playground" in made.left_out
-    )
-    assert len(shown["codecs"]) + len(made.left_out) == len(subject.codecs)
-    ranked = [one.label for one in sorted(subject.codecs, key=lambda one: one.rank)]
-    assert {one["label"] for one in shown["codecs"]} == set(ranked[: len(shown["codecs"])]), "no worse one in its place"
-
-
-def test_damaged_pictures_are_named(results, tmp_path):
-    folder = tmp_path / "run"
-    shutil.copytree(results[0], folder)
-    (folder / "images/playground-octahedral-rgba8.npz").write_bytes(b"PK no")
-    (folder / "images/playground-xy-rgba8-decoded.png").write_bytes(b"\x89PNG\r\n\x1a\nno")
-    Image.new("RGB", (8, 8)).save(folder / "images/playground-xyz-rgba8-decoded.png")
-    made = embedded.gallery(report_command.gathered(folder, read_run(folder)).subjects)
-    assert sorted(name.split(",")[0] for name in made.damaged) == ["octahedral rgba8", "xy rgba8", "xyz rgba8"]
-    (folder / "images/playground-normals.png").write_bytes(b"no")
-    made = embedded.gallery(report_command.gathered(folder, read_run(folder)).subjects)
-    assert (made.damaged, made.subjects) == (["the normals of playground"], [])
 
 
 def rendered_run(folder: Path) -> Path:

@@ -4,7 +4,6 @@ import hashlib
 import json
 import math
 import re
-import time
 from dataclasses import replace
 from html.parser import HTMLParser
 from importlib import import_module
@@ -17,23 +16,19 @@ from packed import packed_text
 from PIL import Image
 
 from normalbench.bench.ground.output.sources import sources
-from normalbench.bench.subjects.normals.normal_sets import hemisphere
 from normalbench.bench.tables.charts import bins
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.bench.tables.cost.charts import front_chart
-from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.quality.charts import histogram_chart, steps
 from normalbench.bench.tables.quality.work import beside
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.render.charts import image_chart
-from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.codecs.codec import Codec
-from normalbench.encodings.storages.storage import STORAGES
 from normalbench.reports.charts import draw, pareto, plots, wire
 from normalbench.reports.page import page
-from normalbench.reports.page.markdown import LONGEST
 
 HOSTILE = "<script>alert(1)</script>\"'><img src=x onerror=alert(2)>$\\frac{`|\n@everyone [a](http://evil.example)\u202e\ud800\x1b[2J"
+
+
 FORBIDDEN = ("<script>alert", "<img src=x", "\u202e", "\x1b")
 
 
@@ -132,27 +127,6 @@ def test_a_name_leads_to_no_file_outside_the_run(run, tmp_path):
     (folder / "images" / "playground-secret-rgba8.npz").symlink_to(tmp_path / "a.npz")
     _, read = reported(run, folder)
     assert "secret" in read.text and not any(a.get("id") == "pictures" for a in read.all("section"))
-
-
-@pytest.mark.slow
-def test_markdown_calls_nobody_links_nowhere_and_fits_a_comment(run, tmp_path):
-    many = [quality_row(f"code_{n}", normals=f"set_{n % 40}") for n in range(4000)]
-    first = quality_row("@everyone", psnr_db=60.0)
-    folder = a_run(tmp_path / "run", {"quality": [first, quality_row(HOSTILE), *many]})
-    status, out, _ = run("report", str(folder), "--markdown")
-    assert status == 0 and len(out) <= LONGEST and "`@everyone" in out and out.rstrip().endswith("draws them all.")
-    outside = re.sub(r"`[^`\n]*`", "", out)
-    assert not re.search(r"http|@|\]\(|<(?!/?(details|summary)>)", outside), "what is odd is code"
-    assert out.startswith("## normalbench: run\n")
-
-
-def test_markdown_of_a_real_run(run, results, tmp_path):
-    folder, *_ = results
-    status, _, err = run("report", str(folder), "--markdown", "-o", str(tmp_path / "comment.md"))
-    text = (tmp_path / "comment.md").read_text()
-    assert (status, err) == (0, "") and len(text) < 65536
-    assert "JAX and GLSL agree within 0.0" in text
-    assert "| octahedral " in text and "http" not in text and "](" not in text
 
 
 def test_a_run_of_one_table_says_what_is_not_there(run, tmp_path):
@@ -301,36 +275,6 @@ def test_bad_input_is_one_line(run, tmp_path, arguments, said):
     assert {path.name for path in folder.iterdir()} == {"run.json", "rows.jsonl"}
 
 
-@pytest.mark.slow
-def test_reading_leaves_the_run_as_it_is_and_run_has_written_the_same_report(run, results, tmp_path):
-    folder, out, _ = results
-    before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
-    assert f"All of it on one page: {folder / 'report.html'}" in out
-    begin = time.process_time()
-    status, _, err = run("report", str(folder), "--charts", "-o", str(tmp_path / "page.html"))
-    assert status == 0, err
-    assert time.process_time() - begin < 60, "seconds of all cores"
-    assert {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()} == before
-    # Elsewhere the files of rows are not beside the page.
-    links = re.compile(rb'[:,] <a href="\w+\.(csv|json)">[^<]*</a>')
-    assert links.search(before[folder / "report.html"]) and not links.search((tmp_path / "page.html").read_bytes())
-    assert (tmp_path / "page.html").read_bytes() == links.sub(b"", before[folder / "report.html"])
-    names = {path.name for path in (tmp_path / "page-charts").iterdir()}
-    assert {"angles-0.png", "angles-0.svg", "sphere-16-bits.png", "sphere-16-bits.svg"} <= names
-
-
-def test_the_page_is_small_fetches_nothing_and_answers_first(results):
-    text = (results[0] / "report.html").read_text()
-    read = Read(text)
-    assert len(text) < 4e6
-    assert "default-src 'none'" in next(a["content"] for a in read.all("meta") if a.get("http-equiv"))
-    fetched = [a[n] for _, a in read.tags for n in ("src", "href", "xlink:href", "srcset", "action") if n in a]
-    beside = {path.name for path in results[0].iterdir()}
-    assert fetched and all(f.startswith(("data:", "#")) or f in beside for f in fetched)
-    assert not re.search(r"@import|url\((?!#)", text)
-    assert read.text.index("JAX and GLSL agree within 0.0") < read.text.index("How it was measured")
-
-
 def test_the_page_says_why_costs_are_in_another_order_than_the_articles(run, tmp_path):
     folder, rows = tmp_path / "run", []
     for name, count, guards in (("per_pixel_view", 30, 2), ("spherical", 24, 1)):
@@ -382,12 +326,6 @@ def test_every_column_is_defined():
     assert all(TABLES["quality"].column(column) for column in shown)
 
 
-def test_no_two_elements_share_an_id(results):
-    text = (results[0] / "report.html").read_text()
-    ids = [attributes["id"] for _, attributes in Read(text).tags if "id" in attributes]
-    assert len(ids) == len(set(ids)) > 30
-
-
 def test_a_histograms_outline_holds_its_counts():
     found = bins("0:5 0.00005:2 0.125:10 0.140625:20 0.25:4")
     assert found[2] == (0.125, 0.140625, 10) and found[4] == (0.25, 0.28125, 4)
@@ -407,14 +345,3 @@ def test_a_chart_is_drawn_once_for_each_file(tmp_path, monkeypatch):
     assert len(drawn) == 3 and drawn[1] == plots.DPI
     with Image.open(tmp_path / "chart.png") as image:
         assert image.size == tuple(np.rint(figure.get_size_inches() * plots.DPI).astype(int))
-
-
-def test_maps_are_in_the_page_with_means_by_area(results):
-    read = Read((results[0] / "report.html").read_text())
-    alts = [a["alt"] for a in read.all("img") if a.get("data-which") == "mean"]
-    assert len(alts) == len(list((results[0] / "sphere").iterdir()))
-    case = quality.Case(Codec(ENCODINGS["xy"], STORAGES["rgba8"]), hemisphere(2**18), "jax")
-    measured = quality.measure(case)["angle_mean_deg"]
-    (text,) = [alt for alt in alts if alt.startswith("xy rgba8,")]
-    (mean,) = re.findall(r"mean ([\d.]+) degrees towards the viewer", text)
-    assert float(mean) == pytest.approx(measured, rel=0.01) and "away" not in text, "it cannot hold what faces away"

@@ -7,19 +7,20 @@ from urllib.parse import unquote
 
 import devices as made
 import pytest
-from browsing import AXE, DESKTOP, PHONE, Opened
-from html_faults import faults
 from test_codecs import ANSWER, QUALITY, SHORT
 from test_report import Read, a_run
 
 from normalbench.bench.door import run_code
 from normalbench.bench.keep.runs import read_run
-from normalbench.bench.show.kept_code import read_code
 from normalbench.bench.show.site_command import site_command
 from normalbench.bench.tables.registry import TABLES
 
 ENCODINGS = {"mine", "octahedral", "spheremap", "stereographic", "xy"}
+
+
 LAID_OUT = {"pipeline": "hybrid", "layout": "fp32", "encoding": "octahedral", "storage": "rg8", "rounding": "nearest"}
+
+
 LAID_OUT |= {"scene": "studio", "size": "640x480", "psnr_db": 24.8, "normal_psnr_db": 50.0, "exact": False}
 
 
@@ -134,81 +135,9 @@ def test_elements_are_closed_and_their_ids_are_their_own(site, pages):
         assert len(set(ids)) == len(ids), f"{name}: {[one for one in ids if ids.count(one) > 1]}"
 
 
-FAULTS = {
-    "<p><div>a</div></p>": "unexpected-end-tag",
-    "<p id='a'><p id='a'>": "a: 2 elements have this id",
-    "<label for='b'>b</label>": "label: nothing has the id b",
-    "<p><style></style>": "style in the body",
-    "<table><tr><p>a</table>": "unexpected-start-tag-implies-table-voodoo",
-}
-
-
-@pytest.mark.nightly("reports/test_site.py::test_elements_are_closed_and_their_ids_are_their_own")
-def test_pages_keep_to_the_rules_of_html(site, pages, results):
-    for text, fault in FAULTS.items():
-        found = faults(f"<!doctype html><title>a</title>{text}")
-        assert any(fault in one for one in found), (text, found)
-    for path in (results[0] / "report.html", *(site / name for name in pages)):
-        assert faults(path.read_text(encoding="utf-8")) == [], path.name
-
-
 def test_the_large_page_is_there_once(site):
     sizes = {path.name: path.stat().st_size for path in site.rglob("*.html") if path.name != "index.html"}
     assert max(sizes.values()) < 2**19, sizes
-
-
-def test_an_encoding_is_read_without_scripts(browser, site, run_folder):
-    """Its formula, its source, its figures and its code, as the run keeps it."""
-    context = browser.new_context(java_script_enabled=False, offline=True)
-    page = context.new_page()
-    page.goto((site / "codecs/octahedral.html").as_uri())
-    text = page.locator("main").inner_text()
-    assert "p = n.xy / (|n.x| + |n.y| + |n.z|)" in text and "Meyer" in text and "Unreal Engine" in text
-    rows = page.locator("#figures tbody tr")
-    assert {row.split("\t")[0] for row in rows.all_inner_texts()} == {
-        "octahedral rgba8",
-        "octahedral rgb10a2",
-        "octahedral rg8",
-    }
-    assert "49.85" in page.locator("#quality").inner_text() and "61.57" in page.locator("#quality").inner_text()
-    kept = read_code(run_folder)
-    places = kept["codecs"]["octahedral rgba8"]["texts"]["c"]
-    shown = page.get_by_label("octahedral rgba8 in C", exact=True)
-    assert shown.text_content() == "".join(kept["pieces"][at] for at in places)
-    page.goto((site / "choose.html").as_uri())
-    assert "take octahedral" in page.locator("h1 + p").inner_text()
-    context.close()
-
-
-def test_the_first_page_begins_with_the_laboratory(gl_browser, results, tmp_path):
-    assert site_command([results[0]], tmp_path / "site") == 0
-    page = Opened(gl_browser, tmp_path / "site/index.html")
-    assert page.page.locator("#home").is_visible() and page.page.locator("#live").is_visible()
-    page.page.wait_for_function("document.querySelectorAll('[data-see=left] option').length > 3")
-    assert page.asked == [(tmp_path / "site/index.html").as_uri()]
-    device = Opened(gl_browser, tmp_path / "site/devices/index.html")
-    device.page.get_by_role("link", name="the laboratory").click()
-    device.page.wait_for_url("**/index.html#**")
-    device.page.locator("#live").wait_for(state="visible")
-    assert page.said == [] == device.said
-    for one in (page, device):
-        one.context.close()
-
-
-@pytest.mark.parametrize("size, theme", [(DESKTOP, "light"), (PHONE, "dark")])
-@pytest.mark.parametrize(
-    "name",
-    ["index.html", "choose.html", "layouts.html", "codecs/index.html", "codecs/octahedral.html", "devices/index.html"],
-)
-def test_no_page_keeps_anybody_out(browser, site, name, size, theme):
-    from axe_playwright_python.base import AXE_FILE_PATH
-
-    page = Opened(browser, site / name, size, theme)
-    page.page.evaluate(AXE_FILE_PATH.read_text() + "; 0")
-    assert page.page.evaluate(AXE) == [] == page.said
-    assert page.asked == [(site / name).as_uri()]
-    assert page.page.evaluate("document.documentElement.scrollWidth") == size[0]
-    page.context.close()
 
 
 def test_two_runs_are_one_line(run, run_folder, tmp_path):

@@ -55,31 +55,6 @@ def test_a_codec_of_the_readers_own_stays_a_row(run, tmp_path):
     assert (found["encoding"], found["storage"], found["same_percent"]) == ("my_own", "mine", 100)
 
 
-@pytest.mark.slow
-def test_a_file_adds_to_a_run_once_and_a_newer_one_replaces_it(run, tmp_path, folder):
-    """The run's own rows stay, the run stays finished, and the same file again changes no byte."""
-    sources = json.loads((folder / "run.json").read_text())["sources"]
-    first, command = made.write(tmp_path / "a.json", sources=sources), ("import", "-o", str(folder))
-    status, out, err = run(*command, str(first))
-    assert (status, err) == (0, "") and "SwiftShader, Chromium 156: added 35 codecs, 4 facts" in out
-    assert f"normalbench report {folder}" in out
-    done = read_run(folder)
-    assert done.finished and not done.damage and len(done.tables["devices"]) == 39 and len(done.tables["quality"]) == 1
-    assert len(json.loads((folder / "devices.json").read_text())) == 39
-    before = content_of(folder)
-    status, out, _ = run(*command, str(first))
-    assert status == 0 and "nothing added; the run has the file of 2026-11-23T15:00:00Z already\n" in out
-    assert content_of(folder) == before
-    newer = made.write(tmp_path / "b.json", made="2026-11-24T15:00:00Z", truncated=("RG8",))
-    assert "in place of those of 2026-11-23T15:00:00Z" in run(*command, str(newer))[1]
-    rows = read_run(folder).tables["devices"]
-    assert len(rows) == 39 and {row["made"] for row in rows} == {"2026-11-24T15:00:00Z"}
-    before = content_of(folder)
-    assert "the run has a newer file" in run(*command, str(first))[1] and content_of(folder) == before
-    changed = made.write(tmp_path / "c.json", made="2026-11-24T15:00:00Z", vendor="another")
-    assert "with other figures; the run's stay" in run(*command, str(changed))[1] and content_of(folder) == before
-
-
 def test_a_device_that_was_compared_with_another_runs_codes_is_named(run, tmp_path, folder):
     path = made.write(tmp_path / "a.json", sources="another")
     for said in ("SwiftShader, Chromium 156: measured on the page of a run of other sources", ""):
@@ -139,17 +114,6 @@ def test_a_full_disk_leaves_the_run_as_it_was(run, tmp_path, folder, monkeypatch
     assert not list(folder.glob(".*partial"))
 
 
-@pytest.mark.slow
-def test_a_run_goes_on_after_an_import(run, tmp_path, folder):
-    """With another set: the devices stay, and the page of the run has them."""
-    assert run("import", str(made.write(tmp_path / "a.json")), "-o", str(folder))[0] == 0
-    words = ("--encoding", "xy", "--storage", "rg8", "--normals", "hemisphere", "--backend", "jax", "--count", "1000")
-    assert run("run", "--tables", "quality", *words, "-o", str(folder))[0] == 0
-    done = read_run(folder)
-    assert done.finished and set(done.tables) == {"quality", "devices"}
-    assert '<section id="devices"' in (folder / "report.html").read_text()
-
-
 def test_a_named_device_makes_its_table_part_of_all(run, tmp_path):
     from normalbench.bench.door.run import chosen_tables
 
@@ -179,16 +143,6 @@ def test_gates_hold_facts(run, tmp_path):
         assert {row["row"].split(" 156 ")[1]: row["holds"] for row in rows}["highp mantissa bits"] == "pass", how
 
 
-@pytest.mark.slow
-def test_a_test_holds_devices(pytester):
-    """By the marker, with a file beside the test."""
-    made.write(pytester.path / "a.json")
-    limits = 'further="at most 0", same_percent="at least 99.9"'
-    marked = f'@pytest.mark.normalbench(table="devices", devices="a.json", {limits})\ndef test_it(): pass\n'
-    pytester.makepyfile(test_it=f"import pytest\n{marked}")
-    pytester.runpytest_subprocess("-p", "no:cacheprovider", "-p", "no:hypothesispytest").assert_outcomes(passed=1)
-
-
 def test_the_chart_has_a_dot_for_each_time_above_0_the_fastest_first():
     from normalbench.bench.tables.devices.charts import timed
 
@@ -199,18 +153,6 @@ def test_the_chart_has_a_dot_for_each_time_above_0_the_fastest_first():
     found = timed([*rows, rows[0] | {"encoding": "below", "encode_ms": -1.0, "decode_ms": 0.5}])
     assert len(found) == 70 and {row["device"] for row in found} == {"A, Chromium 156", "B, Chromium 156"}
     assert found[0]["codec"] == "xyz rgba8" and found[-1]["codec"] == "octahedral_precise rg16"
-
-
-@pytest.mark.slow
-def test_compare_names_what_a_device_does_otherwise(run, tmp_path):
-    for name, truncated in (("before", ()), ("after", ("RG16F",))):
-        path = made.write(tmp_path / f"{name}.json", truncated=truncated)
-        words = ("--tables", "devices", "--devices", str(path), "-o", str(tmp_path / name))
-        assert run("run", *words)[0] == 0
-    status, out, _ = run("compare", str(tmp_path / "before"), str(tmp_path / "after"), "--format", "json")
-    rows = json.loads(out)
-    assert status == 0 and {row["column"] for row in rows} >= {"same_percent", "further", "mean_deg"}
-    assert all("rg16f" in row["row"] for row in rows)
 
 
 def test_the_sentences_name_who_agrees_and_where_the_others_differ():

@@ -1,8 +1,6 @@
 """What the layouts of `budget` cost: bytes that passes fetch, and issue slots to pack and to unpack."""
 
 import itertools
-import json
-import re
 from dataclasses import replace
 
 import numpy as np
@@ -17,7 +15,6 @@ from normalbench.bench.tables.budget import cost
 from normalbench.bench.tables.budget.bins import BINS
 from normalbench.bench.tables.budget.contract import attributes_held
 from normalbench.bench.tables.budget.readers import read_readers
-from normalbench.bench.tables.budget.sentences import told
 from normalbench.bench.tables.budget.solve import Placed, Problem, Rules, solved
 from normalbench.bench.tables.budget.table import BudgetOptions
 from normalbench.gbuffer.layouts.presets import LAYOUTS
@@ -116,6 +113,8 @@ FEW = [
     replace(held.SEEN["roughness"], codes=held.SEEN["roughness"].codes[1:4]),
     replace(held.SEEN["metalness"], codes=held.SEEN["metalness"].codes[::2]),
 ]
+
+
 HOMES = [replace(BINS[name], copies=1) for name in ("rgb10a2", "rg8", "r32_uint_fields")]
 
 
@@ -186,35 +185,6 @@ def test_the_best_layout_within_a_limit_of_slots_is_that_of_exhaustive_search(mo
             assert min(fitting) * (1 - 1e-6) <= worst(one.placed) <= max(min(fitting) * 10**0.0202, 1e-6), most
     cheapest = cost.least(problem, told, solve)
     assert cheapest and told.of_whole(cheapest.placed) == min(prices)
-
-
-# Few scenes, targets and kernels.
-FEW_KINDS = ["budget", "--scene", "ramps", "--size", "64x48", "--bytes", "20", "--classes", "rough", "--format", "json"]
-FEW_KINDS += ["--no-fields", "--formats", "rgba8,srgb8_a8,rgb10a2,rg16f,rg8"]
-
-
-@pytest.mark.usefixtures("gl", "radv")
-def test_rows_have_the_slots_of_the_emitted_code_and_the_bytes_of_readers(run):
-    """The figures of unreal4 are counted by hand: see test_layout_cost."""
-    status, out, err = run(*FEW_KINDS, "--against", "unreal4", "--readers", "1,normal+roughness")
-    assert status == 0, err
-    rows = {row["kind"]: row for row in json.loads(out)}
-    proposal, mine = rows["proposal"], rows["mine"]
-    assert [mine[name] for name in ("pack_slots", "unpack_slots", "slots")] == [20, 29, 1.5 * 20 + 29]
-    assert mine["mb_1080p"] == pytest.approx(1920 * 1080 * (1.5 * 16 + 16 + 8) / 1e6)
-    assert proposal["dearest_family"] == "navi21" and proposal["slots"] > 0
-    said = next(sentence for sentence in told(proposal) if sentence.startswith("Packing takes"))
-    assert said.endswith(f"{proposal['slots']:g} a pixel that is written 1.5 times and read once in full.")
-
-
-@pytest.mark.usefixtures("gl", "radv")
-def test_a_limit_of_slots_is_kept_or_the_least_is_named_and_can_be(run):
-    status, _, err = run(*FEW_KINDS, "--most-instructions", "1")
-    (least,) = map(int, re.findall(r"1 issue slots are too few: the cheapest .* takes (\d+) to pack and unpack", err))
-    assert status != 0 and "Traceback" not in err, err
-    status, out, err = run(*FEW_KINDS, "--most-instructions", str(least))
-    (row,) = json.loads(out)
-    assert status == 0 and row["pack_slots"] + row["unpack_slots"] <= least, err
 
 
 def test_every_code_has_a_kernel_in_every_target_that_holds_it():

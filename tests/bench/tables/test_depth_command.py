@@ -18,7 +18,7 @@ from normalbench.gbuffer.gl.device import NoDeviceError
 QUICK = ["depth", "--depth", "linear,window", "--near", "1", "--far", "100", "--count", "500", "--backend", "jax"]
 
 
-@pytest.mark.usefixtures("rows_are_kept")
+@pytest.mark.usefixtures("rows_are_shared")
 def test_json_has_a_row_for_each_distance_and_the_whole_range(run):
     status, out, err = run(*QUICK, "--distance", "5,50", "--format", "json")
     rows = json.loads(out, parse_constant=lambda name: pytest.fail(f"{name} is not JSON"))
@@ -31,7 +31,7 @@ def test_json_has_a_row_for_each_distance_and_the_whole_range(run):
         assert row["ratio"] == 100 and row["count"] == 500 and row["skipped"] is None
 
 
-@pytest.mark.usefixtures("gl", "rows_are_kept")
+@pytest.mark.usefixtures("gl", "rows_are_shared")
 def test_the_table_has_a_line_for_each_code_and_its_distances_side_by_side(run):
     status, out, _ = run(*QUICK[:-2], "--distance", "5,50")
     rows = json.loads(run(*QUICK[:-2], "--distance", "5,50", "--format", "json")[1])
@@ -43,7 +43,7 @@ def test_the_table_has_a_line_for_each_code_and_its_distances_side_by_side(run):
         assert all(f"{row['error_max']:#.4g}" in line or f"{row['error_max']:.2e}" in line for row in wanted), line
 
 
-@pytest.mark.usefixtures("rows_are_kept")
+@pytest.mark.usefixtures("rows_are_shared")
 def test_what_overflows_is_infinite_and_null_in_json(run):
     """A half float ends at 65504: linear depth beyond is lost, and the bound says so."""
     arguments = ["--near", "1", "--far", "1e6", "--distance", "100,1e5", "--format", "json", "--backend", "jax"]
@@ -53,7 +53,7 @@ def test_what_overflows_is_infinite_and_null_in_json(run):
     assert [row["bound"] is None for row in rows] == [False, True, True]
 
 
-@pytest.mark.usefixtures("rows_are_kept")
+@pytest.mark.usefixtures("rows_are_shared")
 def test_every_way_is_measured_where_there_is_one(run):
     status, out, err = run(*QUICK, "--rebuild", "all", "--storage", "depth24", "--format", "json")
     assert status == 0 and err == ""
@@ -62,7 +62,7 @@ def test_every_way_is_measured_where_there_is_one(run):
     assert found == {("linear", "eye_ray")} | by_window
 
 
-@pytest.mark.usefixtures("rows_are_kept")
+@pytest.mark.usefixtures("rows_are_shared")
 def test_both_ways_that_engines_take_are_rows(run):
     """Of z/w in 24 bits at 100: by the matrix, by the two terms and by the decoder, which adds next to nothing, so that
     its error is that of the texel."""
@@ -154,23 +154,12 @@ def test_the_pictures_show_the_error_and_the_terraces(run, tmp_path):
     assert fine[1][wall].std() < 5 < 20 < coarse[1][wall].std(), "a wall is flat, unless its depth has steps"
 
 
-@pytest.mark.slow
-def test_the_plot_is_drawn(run, tmp_path):
-    for name, head in (("plot.png", b"\x89PNG"), ("plot.svg", b"<?xml")):
-        status, _, err = run(*QUICK, "--plot", str(tmp_path / name))
-        assert status == 0, err
-        assert (tmp_path / name).read_bytes().startswith(head)
-    svg = (tmp_path / "plot.svg").read_text()
-    labels = ("linear packed16 eye ray", "window depth32f projection terms", "near 1, far 100")
-    assert all(f">{label}</text>" in svg for label in labels), svg[:500]
-
-
 # The mean error of the depth over that of the nearest, a quarter of a step: half a step, or a third. A number f cut off
 # of f (scale + 1/2) is off by f/2 - t of a step for t from 0 to 1: (f^2 / 4 + (1 - f / 2)^2) / 2, a third on average.
 WAYS = {"truncate": 2.0, "truncate_half": 4 / 3, "dithered": 4 / 3}
 
 
-@pytest.mark.usefixtures("gl", "rows_are_kept")
+@pytest.mark.usefixtures("gl", "rows_are_shared")
 @pytest.mark.parametrize(
     "code", [("linear", "packed16"), ("linear_sign", "unorm:13"), ("logarithmic", "packed16"), ("linear", "r16f")]
 )

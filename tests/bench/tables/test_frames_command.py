@@ -7,12 +7,10 @@ from dataclasses import replace
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from written import as_document
 
 from normalbench.bench.ground.machine import devices
 from normalbench.bench.ground.options.storage_names import storages_named
 from normalbench.bench.measures.metrics.code_limits import SCATTER
-from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.tangent_frames import measure as frames
 from normalbench.bench.tables.tangent_frames.limits import ball_moment, frame_effective_bits, frame_limit, frames_broken
 from normalbench.bench.tables.tangent_frames.sets import CHUNK, Frames, frames_from, rotations
@@ -21,7 +19,6 @@ from normalbench.encodings.codecs.frame_codec import FrameCodec
 from normalbench.encodings.storages.storage import FRAME_STORAGES
 from normalbench.encodings.vec import Vec4
 from normalbench.gbuffer.gl.device import NoDeviceError
-from normalbench.gbuffer.scenes.mesh import sphere
 
 QUICK = ["frames", "--count", "4096", "--backend", "jax", "--encoding", "octahedral_angle,smallest_three"]
 
@@ -125,22 +122,6 @@ def test_codes_of_rotations_lose_what_was_measured_elsewhere(name, storage):
     assert row["rotation_max_deg"] == pytest.approx(largest, rel=0.05), row
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("backend", ["jax", "glsl"])
-def test_every_code_keeps_its_hand_and_its_limit(request, backend):
-    if backend == "glsl":
-        request.getfixturevalue("gl")
-    for encoding in FRAME_ENCODINGS.values():
-        for storage in encoding.storages:
-            codec = FrameCodec(encoding, FRAME_STORAGES[storage])
-            row = frames.measure(frames.Case(codec, rotations(2**14, 3), backend))
-            assert tuple(row) == tuple(TABLES["frames"].empty())
-            assert row["skipped"] is None and not row["hands_lost"] and row["invalid"] == 0, row
-            assert (row["hands_lost"] is None) == row["encoding"].startswith("rotation_")
-            assert not row["below_limit"] and row["reached_rms_percent"] < 90, row
-            assert row["effective_bits"] < row["bits"], row
-
-
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize(
     "name, storage",
@@ -210,37 +191,6 @@ def test_an_angle_about_the_true_normal_would_be_lost_at_the_seam():
         for encoding in (settled, replace(settled, settle=None))
     ]
     assert found[0]["rotation_max_deg"] < 0.3 and found[1]["rotation_max_deg"] > 90
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("rows_are_kept")
-def test_json_is_flat_rows_the_best_first(run):
-    status, out, err = run(*QUICK, "--storage", "rgba8,rgb10a2", "--format", "json")
-    rows = json.loads(out, parse_constant=lambda name: pytest.fail(f"{name} is not JSON"))
-    assert (status, err) == (0, "") and len(rows) == 4
-    assert [row["rotation_rms_deg"] for row in rows] == sorted(row["rotation_rms_deg"] for row in rows)
-    assert all(tuple(row) == tuple(TABLES["frames"].empty()) and row["count"] == 4096 for row in rows)
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("gl", "rows_are_kept")
-def test_the_table_has_both_back_ends_of_a_code_side_by_side(run):
-    status, out, _ = run("frames", "--count", "4096", "--encoding", "qtangent")
-    lines = [line.split() for line in out.splitlines() if line.startswith("rgba")]
-    assert status == 0 and len(lines) == 8
-    assert all(a[0] == b[0] and {a[1], b[1]} == {"jax", "glsl"} for a, b in zip(lines[::2], lines[1::2], strict=True))
-
-
-@pytest.mark.slow
-def test_the_frames_of_a_mesh_are_its_vertices(run, tmp_path):
-    """Authored tangents and their signs under a mirrored node; no limit, for they are not spread evenly."""
-    as_document([sphere(1.0, 16, 8)]).write(tmp_path / "scene.glb")
-    status, out, err = run(*QUICK, "--frames", str(tmp_path / "scene.glb"), "--format", "json")
-    rows = json.loads(out)
-    assert status == 0, err
-    assert {row["frame_set"] for row in rows} == {"scene.glb"} and {row["count"] for row in rows} == {17 * 9}
-    assert all(row["limit_rms_deg"] is None and row["effective_bits"] is None for row in rows)
-    assert all(row["rotation_max_deg"] < 1.3 and row["hands_lost"] == 0 for row in rows)
 
 
 def test_tangents_that_lean_or_vanish_make_frames_all_the_same():

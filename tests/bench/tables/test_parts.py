@@ -20,8 +20,12 @@ from normalbench.bench.tables.quality.table import QualityOptions
 from normalbench.bench.tables.registry import TABLES
 
 TABLE = TABLES["quality"]
+
+
 # Three parts, the last of which is short.
 COUNT = 5 * CHUNK + 17
+
+
 PARTS = ["1 of 3", "2 of 3", "3 of 3"]
 
 
@@ -169,14 +173,3 @@ def test_no_normal_of_2_to_the_40_comes_twice():
     some = sphere(2**40)
     first, later = (np.asarray(some.chunk(start).n.z) for start in (CHUNK, TURN + CHUNK))
     assert not np.array_equal(first, later) and np.array_equal(first, np.asarray(sphere(2**33).chunk(CHUNK).n.z))
-
-
-@pytest.mark.nightly("bench/tables/test_parts.py::test_a_worker_measures_parts_by_their_names")
-def test_workers_share_a_row(run):
-    """2^30 normals and some are two parts: two processes give the rows of one."""
-    arguments = ["quality", "--encoding", "xyz", "--storage", "rgba8", "--count", str(2**30 + 5 * CHUNK)]
-    arguments += ["--normals", "sphere", "--backend", "jax", "--format", "json"]
-    status, shared, _ = run(*arguments, "--on", "local:2")
-    assert status == 0
-    status, alone, _ = run(*arguments)
-    assert status == 0 and json.loads(shared) == json.loads(alone)

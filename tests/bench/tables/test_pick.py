@@ -1,16 +1,12 @@
 """`normalbench pick`: its answer follows from its rows, whatever is asked, and what it says is what the rows say."""
 
 import json
-import math
-import random
 import re
-from operator import le
 
 import pytest
 from manual import ROOT
 
 from normalbench.bench.door.run import options_of
-from normalbench.bench.ground.output import cache
 from normalbench.bench.measures.metrics.images import squared_error
 from normalbench.bench.measures.metrics.totals import psnr_db
 from normalbench.bench.subjects.codecs.names import codecs_named
@@ -27,12 +23,12 @@ from normalbench.gbuffer.scenes.catalogue import SCENES
 from normalbench.gbuffer.scenes.setting import Setting
 
 CODES = "xy,xy_sign,spherical,spheremap,octahedral,octahedral_precise,latitude_longitude,hemi_octahedral,per_pixel_view"
+
+
 CODES += ",xyz,xyz_renormalised,cube"
+
+
 SMALL = ("pick", "--encoding", CODES, "--count", "4096", "--aim", "image")
-ONE_WAY = """// components: 2
-vec2 flat_encode(vec3 n, vec3 view) { return n.xy; }
-vec3 flat_decode(vec2 e, vec3 view) { return vec3(e, sqrt(max(0.0, 1.0 - dot(e, e)))); }
-"""
 
 
 def test_a_run_asks_for_half_of_the_sphere_too_unless_normals_are_named():
@@ -85,216 +81,6 @@ def rows(gl, radv, tmp_path_factory):  # noqa: ARG001 # they skip where this mac
     return json.loads(output.read_text())
 
 
-SCENES_OF_IMAGES = ("studio", "room_47", "room_1024")
-
-
-def loss(row: dict, aim: str) -> float:
-    """Decibels of the mean angle, of the largest, or of the worst image, where less is better."""
-    if aim == "image":
-        images = [row[f"image_db_{name}"] for name in SCENES_OF_IMAGES]
-        return math.inf if None in images else -min(*images, 70.0)
-    angle = max(row["angle_max_deg"], row["angle_sup_deg"] or 0) if aim == "worst" else row["angle_mean_deg"]
-    return 20 * math.log10(angle)
-
-
-def paid(row: dict) -> float:
-    return max(row["encode_slots"], 16) + row["readers"] * max(row["decode_slots"], 16)
-
-
-def rank(row: dict) -> tuple:
-    """Codes that nobody sees an error of and that cost at most twice what hides, the cheapest first; then by decibels,
-    a doubling of the price for `worth` of them."""
-    price, largest = paid(row), max(row["angle_max_deg"], row["angle_sup_deg"] or 0)
-    hidden, lost, enough = 16 * (1 + row["readers"]), loss(row, row["aim"]), 2 * largest <= row["enough"]
-    if row["aim"] == "cost":
-        return (price, not enough, lost)
-    if enough and price <= 2 * hidden:
-        return (0, row["table"], row["bits"], round(math.log2(price / hidden)), round(lost, 1))
-    return (1, round(2 * (lost + row["worth"] * math.log2(price / hidden))), price, lost)
-
-
-def could_be_asked_for(row: dict, asked: dict) -> bool:
-    fits = {None: row["lost_percent"] == 0, "sphere": row["domain"] == "sphere"}
-    fits |= {"hemisphere": row["domain"] != "view", "view": row["domain"] != "hemisphere"}
-    return fits[asked["needs"]] and (asked["accept_lengths"] or row["length_share"] <= 0.1)
-
-
-def qualifies(row: dict, asked: dict) -> bool:
-    most = asked["most_instructions"]
-    return (most is None or row["slots_once"] <= most) and loss(row, asked["aim"]) < math.inf
-
-
-def without_holes(rows: list[dict], asked: dict) -> list[dict]:
-    """Against the least of all that could be asked for, whatever they cost."""
-    largest = {row["encoding"]: max(row["angle_max_deg"], row["angle_sup_deg"] or 0) for row in rows}
-    most = math.inf if asked["accept_holes"] else 4 * min(largest.values(), default=0)
-    return [row for row in rows if largest[row["encoding"]] <= most]
-
-
-def asked_at_random(chance: random.Random) -> dict:
-    return {
-        "aim": chance.choice(["angle", "worst", "image", "cost"]),
-        "needs": chance.choice([None, "sphere", "hemisphere", "view"]),
-        "most_instructions": chance.choice([None, None, 0, 20, 30, 40, 100, 200]),
-        "readers": chance.choice([0, 1, 4, 8]),
-        "worth": chance.choice([0.1, 3.0, 3.0, 12.0]),
-        "accept_holes": chance.random() < 0.3,
-        "accept_lengths": chance.random() < 0.3,
-    }
-
-
-def for_readers(row: dict, readers: int) -> dict:
-    return {"slots": row["encode_slots"] + readers * row["decode_slots"]}
-
-
-def test_the_answer_to_300_random_questions_is_that_of_brute_force(rows):
-    """The best of all is found by comparing all; the front by comparing all pairs."""
-    chance, seen = random.Random(0), set()
-    for _ in range(300):
-        asked = asked_at_random(chance)
-        given = [row | asked | for_readers(row, asked["readers"]) for row in rows if chance.random() < 0.8]
-        for group in groups(answered([row for row in given if not row["beside"]])).values():
-            check(group, asked)
-            seen |= {place for row in group for place in (row["place"] or "").split(", ")}
-    assert {"best", "more exact", "most exact", "cheaper", "fewer bits", ""} <= seen
-
-
-def check(group: list[dict], asked: dict) -> None:
-    fit = without_holes([row for row in group if could_be_asked_for(row, asked)], asked)
-    fit = [row for row in fit if qualifies(row, asked)]
-    assert {row["encoding"] for row in group if not row["left_out"]} == {row["encoding"] for row in fit}, asked
-    best = [row["encoding"] for row in group if "best" in (row["place"] or "").split(", ")]
-    least = min(map(rank, fit), default=None)
-    assert len(best) == bool(fit) and all(rank(row) == least for row in fit if row["encoding"] in best), (asked, best)
-    for row in fit:
-        figures = {one["encoding"]: (round(loss(one, asked["aim"]), 1), paid(one), one["bits"]) for one in fit}
-        own = figures[row["encoding"]]
-        beaten = [name for name, other in figures.items() if other != own and all(map(le, other, own))]
-        assert row["front"] == (not beaten), (asked, row["encoding"], beaten)
-
-
-def test_no_code_changes_the_order_of_two_others(rows):
-    """Whichever code of the catalogue is taken away: those that pass the veto stay in their order."""
-    chance = random.Random(1)
-    for _ in range(40):
-        asked = asked_at_random(chance)
-        given = [row | asked | for_readers(row, asked["readers"]) for row in rows if not row["beside"]]
-        for group in groups(answered(given)).values():
-            whole = [row["encoding"] for row in group if not row["left_out"]]
-            for gone in whole:
-                left = answered([row for row in group if row["encoding"] != gone])
-                there = [row["encoding"] for row in left if not row["left_out"] and row["encoding"] in whole]
-                assert there == [name for name in whole if name != gone], (asked, gone)
-
-
-def test_the_sentences_say_the_rows_figures(rows):
-    for group in groups(answered([row | {"aim": "angle"} for row in rows])).values():
-        answer, first, second, *rest = sentences(group)
-        best = next(row for row in group if "best" in (row["place"] or "").split(", "))
-        assert answer.startswith(f"{best['storage']}, on sphere: take {best['encoding']}."), answer
-        largest, mean = max(best["angle_max_deg"], best["angle_sup_deg"]), best["angle_mean_deg"]
-        assert f"mean error is {mean:.3g}°, its largest {largest:.3g}°" in first, first
-        assert f"{2 * mean * 1024 / 360:.2g} and {2 * largest * 1024 / 360:.2g} texels of a 1k" in first, first
-        assert f"Floors and walls come back up to {best['angle_axes_deg']:.3g}° off" in first, first
-        said = f"{best['encode_slots']:g} issue slots to encode and {best['decode_slots']:g} to decode on navi21"
-        assert said in second and f"{best['bits']} bits" in second, second
-        lost = "hemi_octahedral, xy (loss of normals that point away (z < 0): 50 % of these)"
-        assert any(lost in said for said in rest), rest
-
-
-def test_a_reflection_that_moves_far_is_no_distance(rows):
-    """A hole of 50 degrees moves it by 100: no tangent says where it goes."""
-    far = [row | {"aim": "angle", "angle_max_deg": 50.0, "angle_sup_deg": 50.0, "accept_holes": True} for row in rows]
-    group = next(iter(groups(answered(far)).values()))
-    assert "at most 100°: it shows something else." in sentences(group)[1], sentences(group)
-
-
-# What a senior graphics engineer takes, by the words of the question; and a rung or a hint that he expects.
-EXPECTED = {
-    "--storage rg8": ("octahedral", "More exact: octahedral_precise"),
-    "--storage rg8 --aim worst": ("octahedral", "More exact: octahedral_precise"),
-    "--storage rg8 --readers 1": ("octahedral", ""),
-    "--storage rgb10a2": ("xyz_largest", "Fewer bits: octahedral,"),
-    "--storage rg16": ("octahedral", ""),
-    "--storage rg16 --aim worst": ("octahedral", ""),
-    "--storage rg16 --aim cost": ("octahedral", ""),
-    "--storage rg16_snorm": ("octahedral", ""),
-    "--storage rg16_snorm --aim image": ("octahedral", ""),
-    "--storage rg16f": ("octahedral", "In rg16, of the same 4 bytes, octahedral is 21 dB better"),
-    "--storage rgba8": ("octahedral in rgb8_12_12", "In plain channels: best_fit, "),
-    "--storage rg8 --domain hemisphere": ("hemi_octahedral", ""),
-    "--storage rgba8 --needs filter": ("xyz_largest", "Survives an edge, too: xyz_renormalised,"),
-    "--storage rg8 --needs filter --domain hemisphere": ("hemi_octahedral", ""),
-    "--storage rg8 --needs resolve --domain view": ("spheremap", "on playground, resolved"),
-    "--bytes 4 --domain view": ("octahedral in rgb8_12_12", "In rg16, of the same 4 bytes, octahedral is"),
-    "--storage rgb10a2 --enough 10": ("octahedral", "In rgb8_12_12, of the same 4 bytes, octahedral is 12 dB"),
-    "--bytes 2": ("octahedral in rg8", ""),
-    "--bytes 4": ("octahedral in rgb8_12_12", "More exact: octahedral in rg16, 24.1 dB better"),
-    "--storage rg8 --most-instructions 10": (
-        "",
-        "no code qualifies (at most 10 issue slots). - Of codes without a hole the nearest is octahedral,",
-    ),
-}
-
-
-FIRST, *OTHERS = EXPECTED
-# Of the others these are in every run.
-SLOW = ("--storage rgb10a2", "--storage rg8 --domain hemisphere")
-HERE = "bench/tables/test_pick.py::test_the_answer_is_what_an_expert_expects"
-ASKED = [
-    FIRST,
-    *(pytest.param(words, marks=pytest.mark.slow) for words in SLOW),
-    *(pytest.param(words, marks=pytest.mark.nightly(HERE)) for words in OTHERS if words not in SLOW),
-]
-
-
-@pytest.mark.usefixtures("gl", "radv")
-@pytest.mark.parametrize("words", ASKED)
-def test_the_answer_is_what_an_expert_expects(run, words):
-    code, more = EXPECTED[words]
-    status, out, err = run("pick", *words.split(), "--format", "markdown")
-    text = " ".join(out.split())
-    first = text.partition(". ")[0]
-    assert status == (not code) and (f": take {code}" in first) == bool(code) and more in text, err + text
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("gl", "radv")
-def test_an_encoder_in_glsl_alone_is_compared_and_said_to_lose_half(run, tmp_path):
-    path = tmp_path / "flat.glsl"
-    path.write_text(ONE_WAY)
-    words = ("pick", "--encoding", "octahedral", "--storage", "rg8", "--count", "4096", "--against", str(path))
-    status, out, _ = run(*words)
-    assert status == 0 and "flat does not qualify: loss of normals that point away (z < 0): 50 % of these" in out, out
-    words = (*words, "--domain", "hemisphere")
-    status, out, _ = run(*words)
-    assert status == 0 and "flat does not qualify: a hole" in out and "--accept-holes" in out, out
-    status, out, _ = run(*words, "--accept-holes")
-    assert status == 0 and "on hemisphere: take octahedral" in out and "flat: flat, 2.7 dB worse" in out, out
-
-
-@pytest.mark.usefixtures("gl", "radv", "rows_are_kept")
-def test_each_way_to_round_is_a_question(run, tmp_path):
-    """Cut off, errors are twice as large; a code that is rounded precisely is not cut off."""
-    words = ["--encoding", "octahedral,octahedral_precise", "--storage", "rg8", "--count", "4096", "--scene", "room"]
-    words += ["--power", "47", "--rounding", "nearest,truncate", "--aim", "worst", "--images", str(tmp_path)]
-    status, out, err = run("pick", *words, "--format", "json")
-    asked = [row for row in json.loads(out) if not row["beside"]]
-    found = {(row["encoding"], row["rounding"]): row for row in asked}
-    assert status == 0 and err.count("\n") == 1 and "octahedral_precise: it is rounded precisely, not otherwise" in err
-    assert len(asked) == len(found) == 3 and ("octahedral_precise", "truncate") not in found
-    nearest, cut = (found["octahedral", rounding] for rounding in ("nearest", "truncate"))
-    for figure in ("angle_mean_deg", "angle_sup_deg"):
-        assert cut[figure] / nearest[figure] == pytest.approx(2, rel=0.03), figure
-    assert nearest["image_db_room_47"] - cut["image_db_room_47"] == pytest.approx(6, abs=1)
-    groups_of = [group for group in groups(asked).values() if group[0]["rounding"] == "truncate"]
-    (said,) = (" ".join(sentences(group)) for group in groups_of)
-    assert said.startswith("rg8 rounded by truncate, on sphere: take octahedral.")
-    assert "roughness --encoding octahedral --storage rg8 --rounding truncate" in said
-    names = {path.name for path in tmp_path.iterdir()}
-    assert {f"pick-room-power47-octahedral-rg8{way}-final.png" for way in ("", "-truncate")} < names
-
-
 def test_where_nothing_qualifies_it_is_said_with_status_1(run):
     status, out, err = run("pick", "--encoding", "octahedral", "--storage", "rg8", "--most-instructions", "1")
     assert status == 1 and "no answer for rg8 on sphere" in err and "no code qualifies" not in err
@@ -325,29 +111,6 @@ def test_where_nothing_qualifies_it_is_said_with_status_1(run):
 def test_what_cannot_be_asked_is_one_line(run, words, said):
     status, out, err = run("pick", *words)
     assert (status, out) == (2, "") and said in err and err.count("\n") == 1, err
-
-
-@pytest.mark.slow
-def test_what_was_measured_is_kept_and_only_for_the_same_codes(run, monkeypatch, tmp_path):
-    """A second answer measures nothing; other normals are measured."""
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    measured = []
-    whole = measure.quality.rows
-    monkeypatch.setattr(measure.quality, "rows", lambda cases, tick: whole(noted(cases), tick))
-
-    def noted(cases):
-        measured.extend(case.codec.name for case in cases)
-        return cases
-
-    words = ("pick", "--encoding", "octahedral,xy_sign", "--storage", "rg8", "--count", "4096")
-    first = run(*words)[1]
-    once = len(measured)
-    assert measured[:4] == [
-        f"{name}/{storage}" for storage in ("rg8", "rg8_snorm") for name in ("octahedral", "xy_sign")
-    ]
-    assert run(*words)[1] == first and len(measured) == once
-    run(*words[:-1], "8192")
-    assert len(measured) == once + 4 and cache.folder().is_relative_to(tmp_path)
 
 
 @pytest.mark.parametrize(
@@ -387,19 +150,6 @@ def test_a_run_measures_the_codes_that_the_default_answer_names():
     for name in ("quality", "render", "cost", "mix", "effects"):
         usual = ",".join(usual["encoding"] for usual in TABLES[name].usual).split(",")
         assert taken <= set(usual), name
-
-
-@pytest.mark.usefixtures("gl", "radv", "nvidia")
-def test_the_dearest_of_several_families_is_the_price(run):
-    """An NVIDIA GPU is counted in a compute shader; a family may be named as people name it."""
-    words = ("pick", "--encoding", "octahedral", "--storage", "rg8", "--count", "4096", "--format", "json")
-    rows = {}
-    for families in ("navi21", "turing", "navi21,turing"):
-        status, out, err = run(*words, "--family", families)
-        assert status == 0, err
-        (rows[families],) = [row for row in json.loads(out) if row["storage"] == "rg8"]
-    assert rows["turing"]["dearest_family"] == rows["navi21,turing"]["dearest_family"] == "sm_75"
-    assert rows["navi21,turing"]["slots"] == rows["turing"]["slots"] > rows["navi21"]["slots"]
 
 
 def test_an_answer_of_few_random_normals_is_warned_of(run):

@@ -95,7 +95,7 @@ def test_what_noise_has_no_part_in_is_refused_in_a_line(run, asked, said):
     assert (status, out) == (2, "") and err.count("\n") == 1 and said in err, err
 
 
-@pytest.mark.usefixtures("rows_are_kept")
+@pytest.mark.usefixtures("rows_are_shared")
 def test_files_of_a_dithered_code_have_its_name(run, tmp_path):
     """A page cannot run it, and its file there says so."""
     folders = {name: tmp_path / name for name in ("images", "maps", "live")}
@@ -112,7 +112,7 @@ def test_files_of_a_dithered_code_have_its_name(run, tmp_path):
     assert "noise" in said["left_out"] and "checks" in json.loads((folders["live"] / "octahedral-rg8.json").read_text())
 
 
-@pytest.mark.usefixtures("rows_are_kept")
+@pytest.mark.usefixtures("rows_are_shared")
 def test_of_all_ways_to_round_the_one_with_noise_is_left_out_of_an_exact_search(run):
     more = ["--backend", "jax", "--normals", "sphere", "--count", "4096", "--format", "json", "--codes"]
     status, out, err = run("quality", "--encoding", "octahedral", "--storage", "unorm:4:4", "--rounding", "all", *more)

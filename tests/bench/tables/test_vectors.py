@@ -260,7 +260,7 @@ def test_a_real_target_gives_the_same_figures(codec):
         assert by_gl["rounded_by"] in ("device", "shader") and by_jax["rounded_by"] == "emulation"
 
 
-@pytest.mark.usefixtures("rows_are_kept")
+@pytest.mark.usefixtures("rows_are_shared")
 def test_json_is_flat_rows_by_code_and_speed(run):
     names = ["--encoding", "linear,sqrt", "--storage", "rg16f,rg8", "--speed", "1,4", "--range", "1,0.5"]
     status, out, err = run(*QUICK, *names)
@@ -277,7 +277,7 @@ def test_json_is_flat_rows_by_code_and_speed(run):
     assert len(rows) == 2 * len(found) and [r["bits"] for r in rows] == sorted(r["bits"] for r in rows)
 
 
-@pytest.mark.usefixtures("rows_are_kept")
+@pytest.mark.usefixtures("rows_are_shared")
 def test_the_sheets_have_a_line_for_each_code_and_speeds_side_by_side(run):
     status, out, _ = run(*QUICK[:-2], "--encoding", "linear,log", "--storage", "rg8,rg8_snorm", "--speed", "0.05,16")
     lines = [line.split()[:2] for line in out.splitlines()]

@@ -19,10 +19,20 @@ SHADER = """
 vec2 mine_encode(vec3 n, vec3 view) { return n.xy; }
 vec3 mine_decode(vec2 e, vec3 view) { return vec3(e, sqrt(max(1.0 - dot(e, e), 0.0))); }
 """
+
+
 GATE = '[[gate]]\nencoding = "octahedral"\nnormals = "axes"\nbackend = "jax"\npsnr_db = "at least 1"\n'
+
+
 JAX = ("quality", "--storage", "rg8", "--backend", "jax")
+
+
 GLSL = ("quality", "--storage", "rg8", "--backend", "glsl", "--normals", "axes")
+
+
 QUICK = (*JAX, "--encoding", "octahedral")
+
+
 PIPED = {
     "gates.toml": ("check", "gates.toml"),
     "layout.toml": ("render", "--layout", "layout.toml"),
@@ -53,20 +63,6 @@ def test_a_byte_order_mark_is_no_part_of_a_text(run, tmp_path, monkeypatch):
     assert status == 0 and json.loads(out)[0]["psnr_db"] > 1, err
 
 
-@pytest.mark.slow
-def test_a_name_that_is_no_utf_8_is_measured_and_written(run, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    name = os.fsdecode(b"n\xff.npy")
-    with Path(name).open("wb") as file:
-        np.save(file, some_normals())
-    for ending in ("table", "json", "csv", "markdown"):
-        status, _, err = run(*QUICK, "--normals", name, "--format", ending, "-o", f"rows.{ending}")
-        assert (status, err) == (0, "") and Path(f"rows.{ending}").read_text(encoding="utf-8"), ending
-    assert json.loads(Path("rows.json").read_text())[0]["normals"] == "n\\udcff.npy"
-    status, _, err = run("run", "--tables", "quality", *QUICK[1:], "--normals", name, "-o", "results")
-    assert status == 0 and Path("results", "report.html").exists(), err
-
-
 @pytest.mark.usefixtures("gl")
 def test_a_comma_in_a_files_name_is_a_part_of_it(run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -85,21 +81,6 @@ def test_far_too_many_channels_are_refused_at_once(run, tmp_path, monkeypatch):
     status, _, err = run(*QUICK, "--normals", "row.npy")
     assert status == 2 and "33554432 channels; at most 1024 are read" in err
     assert time.process_time() - began < 5
-
-
-@pytest.mark.slow
-def test_without_standard_output_a_file_will_do(tmp_path):
-    script = (
-        "import os, sys; os.close(1); sys.stdout = None; "
-        "from normalbench.bench.door.cli.app import main; sys.exit(main())"
-    )
-    said = {}
-    for words in (["-o", "rows.csv"], []):
-        command = [sys.executable, "-c", script, *QUICK, "--normals", "axes", "--format", "csv", *words]
-        done = subprocess.run(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
-        said[bool(words)] = done.returncode, done.stderr
-    assert said[True] == (0, "") and (tmp_path / "rows.csv").read_text().count("\n") == 2
-    assert said[False] == (2, "normalbench: standard output is closed; name a file with -o\n")
 
 
 @pytest.mark.parametrize("name, option", [("page.html", "--report"), ("chart.PNG", "--plot")])

@@ -1,8 +1,6 @@
 """What people's hands do: each slip is one line that says what would be right, exit status 2, or is understood."""
 
 import json
-import os
-import subprocess
 import sys
 from dataclasses import fields
 from importlib.metadata import version
@@ -19,7 +17,10 @@ from normalbench.bench.keep import capabilities
 from normalbench.bench.tables.registry import TABLES
 
 ROW = ("quality", "--storage", "rg8", "--normals", "sphere", "--backend", "jax", "--count", "1000")
+
+
 ONE = (*ROW, "--encoding", "octahedral")
+
 
 # The words, and what the line must say.
 SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
@@ -173,6 +174,8 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
 
 
 HLSL = "float2 mine_encode(float3 n, float3 v);"
+
+
 FILES = {
     **dict.fromkeys(("mine.metal", "mine.wgsl"), HLSL),
     **dict.fromkeys(("bytes.glsl", "bytes.toml", "bytes.txt"), b"\xff\xfe\x00abc"),
@@ -352,16 +355,6 @@ def test_the_example_of_a_command_is_one_that_it_takes(name):
     asked = {field.name: made.params[field.name] for field in fields(table.options) if field.name in made.params}
     if not {"frame.png", "phone.json"} & set(words):
         assert table.work.steps(table.options(**asked), table.outputs())
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("typed, expected", [("xyz,oct", "xyz,octahedral"), ("optim", "optimised_rings")])
-def test_a_shell_completes_names(typed, expected):
-    words = f"normalbench quality --encoding {typed}"
-    environment = os.environ | {"_NORMALBENCH_COMPLETE": "complete_bash", "COMP_WORDS": words, "COMP_CWORD": "3"}
-    program = Path(sys.executable).with_name("normalbench")
-    done = subprocess.run([program], env=environment, capture_output=True, text=True)
-    assert expected in done.stdout.split(), done
 
 
 @pytest.mark.parametrize("what", ["all", "storages", "layouts"])

@@ -78,36 +78,6 @@ def test_a_figure_that_a_run_did_not_measure_is_named_with_its_option(run, tmp_p
     assert (status, out) == (2, "") and f"{folder} has no angle_sup_deg; measure the run with --worst-case" in err
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "encoding, said",
-    [("xyz,octahedral", "xyz/rg8: 3 components, but RG8 has 2 channels"), ("{}/broken.glsl,octahedral", "broken.glsl")],
-)
-def test_a_gate_does_not_pass_without_a_row_that_it_names(run, tmp_path, encoding, said):
-    """One that does not fit or compile next to one that does: the others would pass for it."""
-    (tmp_path / "broken.glsl").write_text("vec2 broken_encode(vec3 n, vec3 view) { return n.xyz; }")
-    path = tmp_path / "gates.toml"
-    words = f'encoding = "{encoding.format(tmp_path)}"\nstorage = "rg8"\nnormals = "sphere"\ncount = 1000\n'
-    path.write_text(f'[[gate]]\n{words}psnr_db = "at least 1"\n')
-    status, out, err = run("check", str(path))
-    assert (status, out) == (2, "") and "a row that is asked for cannot be measured" in err and said in err
-    path.write_text(path.read_text().replace(encoding.format(tmp_path), "all"))
-    assert run("check", str(path))[0] == 0, "of all encodings some never fit"
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("gl")
-def test_an_image_may_be_a_gate(run, tmp_path):
-    path = tmp_path / "gates.toml"
-    path.write_text('[[gate]]\ntable = "render"\nsize = "64x48"\nlights = 4\npsnr_db = "at least 20"\n')
-    status, out, _ = run("check", str(path), "--format", "json")
-    assert status == 0 and json.loads(out)[0]["table"] == "render"
-    path.write_text(path.read_text().replace("at least 20", "at least 99") + 'flip = "at most 0.5"\n')
-    status, out, _ = run("check", str(path), "--format", "json")
-    psnr, flip = json.loads(out)
-    assert status == 1 and "comes back as" in psnr["worst_normal"] and flip["holds"] == "pass" and flip["figure"] > 0
-
-
 @pytest.mark.usefixtures("gl")
 def test_a_layout_alone_is_held_to_as_it_is(run, tmp_path):
     """The codec that is usual for a gate is not put into it."""
@@ -152,31 +122,6 @@ def test_rows_of_another_version_are_no_bug_of_a_gate(run, tmp_path):
     path.write_text('[[gate]]\nencoding = "xy"\npsnr_db = "at least 1"\n')
     status, _, err = run("check", str(path), "--run", str(folder))
     assert status == 2 and "are not those of this version; measure them again: " in err, err
-
-
-TABLES_GATED = {
-    "cost": 'encoding = "octahedral"\noperation = "encode"\ninstructions = "at most {}"',
-    "lights": 'light_buffer = "rgbm"\nexperiment = "random"\ncounts = "8"\nmodel_max = "at most {}"',
-    "depth": 'depth = "linear"\nstorage = "packed16"\nerror_max = "at most {}"',
-    "frames": 'encoding = "qtangent"\nstorage = "rgba8"\ncount = 4096\nrotation_max_deg = "at most {}"',
-    "vectors": 'encoding = "sqrt"\nstorage = "rg8"\ncount = 256\nspeed = 1\nerror_max_px = "at most {}"',
-    "pick": 'encoding = "octahedral"\nstorage = "rg8"\ncount = 4096\nangle_max_deg = "at most {}"',
-    "quality": 'encoding = "octahedral"\narithmetic = "half"\ncount = 4096\nangle_max_deg = "at most {}"',
-    "mix": 'encoding = "octahedral"\nstorage = "rg8"\ncount = 4096\nangle_max_deg = "at most {}"',
-    "tune": 'encoding = "stereographic"\nnormals = "hemisphere"\ncount = 4096\ntuned = "at most {}"',
-}
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("gl", "radv")
-@pytest.mark.parametrize("table", TABLES_GATED)
-def test_every_table_may_be_a_gate(run, tmp_path, table):
-    path = tmp_path / "gates.toml"
-    for most, status, holds in ((1e6, 0, "pass"), (1e-9, 1, "FAIL")):
-        path.write_text(f'[[gate]]\ntable = "{table}"\n{TABLES_GATED[table].format(most)}\n')
-        found, out, err = run("check", str(path), "--format", "json")
-        assert found == status and {row["table"] for row in json.loads(out)} == {table}, err
-        assert holds in {row["holds"] for row in json.loads(out)}
 
 
 def test_an_identity_that_rows_of_a_run_do_not_have_is_one_line(run, tmp_path):
@@ -251,7 +196,11 @@ def test_a_missing_file_and_a_folder_that_is_no_run_are_one_line(run, tmp_path):
 
 
 LIMITS = st.sampled_from(["at least 1", "at most nan"])
+
+
 VALUES = st.one_of(st.text(max_size=8), st.integers(), st.floats(), st.booleans(), LIMITS)
+
+
 NAMES = st.sampled_from(["encoding", "storage", "table", "count", "seed", "psnr_db", "x", "normals"])
 
 
@@ -269,22 +218,6 @@ def test_no_gates_give_a_traceback(tmp_path_factory, content):
         list(checked(gates, None, lambda _: None))
     except (UsageError, MissingError) as error:
         assert "\n" not in str(error) or "gates" in str(error)
-
-
-MINE = """
-vec2 mine_encode(vec3 n, vec3 view) { return n.xy; }
-vec3 mine_decode(vec2 e, vec3 view) { return DECODED; }
-"""
-PLAIN = "vec3(e, sqrt(max(1.0 - dot(e, e), 0.0)))"
-
-
-def golden_gate(tmp_path, decoded: str) -> str:
-    """A gate that compares what an encoder's decode costs with a file; the encoder's decode as given."""
-    (tmp_path / "mine.glsl").write_text(MINE.replace("DECODED", decoded))
-    path = tmp_path / "gates.toml"
-    asked = f'encoding = "{tmp_path}/mine.glsl"\nfamily = "navi21"\noperation = "decode"\nstage = "fragment"\n'
-    path.write_text(f'[[gate]]\ntable = "cost"\n{asked}storage = "rgba8"\nmatches_baseline = "kept/costs.json"\n')
-    return str(path)
 
 
 def test_files_of_a_gate_lie_next_to_the_file_of_gates(run, tmp_path, monkeypatch):
@@ -338,44 +271,6 @@ def test_a_gate_on_a_distance_judges_no_other(run, tmp_path):
     assert [row["row"].split() for row in rows] == [
         ["linear", "r32f", "nearest", "eye_ray", "jax", "0.1", "1000.0", "10.0"]
     ]
-
-
-@pytest.mark.usefixtures("radv")
-def test_a_gate_on_decoding_does_not_judge_unpacking(run, tmp_path):
-    (row,) = json.loads(run("check", golden_gate(tmp_path, PLAIN), "--write-baseline", "--format", "json")[1])
-    assert row["row"] == "isa mine decode fragment navi21"
-
-
-@pytest.mark.usefixtures("radv")
-def test_a_cost_that_grew_is_shown_with_the_instructions_that_came_to_it(run, tmp_path):
-    gates = golden_gate(tmp_path, PLAIN)
-    assert run("check", gates, "--write-baseline")[0] == 0
-    status, out, _ = run("check", gates, "--format", "json")
-    assert status == 0 and {row["holds"] for row in json.loads(out)} == {"pass"}
-    status, out, err = run("check", golden_gate(tmp_path, f"normalize({PLAIN})"), "--format", "json")
-    (row,) = [row for row in json.loads(out) if row["holds"] == "FAIL"]
-    assert status == 1 and "instructions is 10, the baseline says 4 (+6)" in row["changed"]
-    added = [line.split() for line in row["changed"].splitlines() if line.startswith(("  +", "  -"))]
-    names = [f"{sign} {name}" for sign, name, *_ in added]
-    # Two multiply-adds make the squared length, then its reciprocal root scales three components.
-    assert names == ["+ v_fmac_f32_e32", "+ v_fmac_f32_e32", "+ v_rsq_f32_e32", *["+ v_mul_f32_e32"] * 3]
-    assert "\n  + v_rsq_f32_e32" in err and err.count("+ v_mul_f32_e32") == 3
-
-
-@pytest.mark.usefixtures("radv")
-def test_costs_by_another_compiler_are_not_compared_and_both_are_kept(run, tmp_path):
-    gates, kept = golden_gate(tmp_path, PLAIN), tmp_path / "kept" / "costs.json"
-    status, _, err = run("check", gates)
-    assert status == 1 and err.count("\n") == 3, err
-    assert "costs.json has no row isa mine decode fragment navi21; normalbench check --write-baseline" in err
-    run("check", gates, "--write-baseline")
-    entries = json.loads(kept.read_text())
-    mesa = entries[0]["key"]["driver"]
-    kept.write_text(kept.read_text().replace(mesa, "Mesa 0.0.1"))
-    status, _, err = run("check", gates)
-    assert status == 1 and f"by {mesa}; it has one by Mesa 0.0.1" in err
-    run("check", gates, "--write-baseline")
-    assert len(json.loads(kept.read_text())) == 2 * len(entries) and run("check", gates)[0] == 0
 
 
 @pytest.mark.parametrize(

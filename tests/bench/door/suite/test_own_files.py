@@ -1,60 +1,10 @@
 """A run with an encoder, a capture, a scene and a layout of one's own: its rows, its page and what `compare` says."""
 
-import json
-
-import pytest
-from packed import packed_text
-from written import as_document, planes_of, some_normals, write_exr
-
 from normalbench.bench.door.run import options_of
 from normalbench.bench.tables.quality.table import QualityOutputs
 from normalbench.bench.tables.registry import TABLES
-from normalbench.gbuffer.scenes.mesh import sphere
-
-MINE = """
-vec2 mine_encode(vec3 n, vec3 view) { return n.xy * SCALE; }
-vec3 mine_decode(vec2 e, vec3 view) {
-    vec2 p = e / SCALE;
-    return normalize(vec3(p, sqrt(max(1.0 - dot(p, p), 0.0))));
-}
-"""
-LAYOUT = """
-title = "normals in 11:11 bits"
-encoding = "octahedral"
-space = "world"
-targets = [
-    { format = "rgba8", holds = "normal.x:11 normal.y:11 power:10" },
-    { format = "rgba8", holds = "albedo.r albedo.g albedo.b kind" },
-    { format = "rgba8", holds = "specular.r specular.g specular.b" },
-]
-"""
-WORDS = {
-    "--encoding": "mine.glsl,octahedral,octahedral_precise",
-    "--storage": "rg8,rgb10a2",
-    "--normals": "frame.exr,sphere",
-    "--scene": "scene.glb",
-    "--layout": "mine.toml",
-    "--tables": "quality,render,cost",
-    "--count": "4096",
-    "--family": "navi21",
-}
 
 NO_FILES = QualityOutputs()
-
-
-@pytest.fixture
-def runs(run, tmp_path, monkeypatch):
-    """`before` and `after`: a constant of the encoder is another, nothing else."""
-    monkeypatch.chdir(tmp_path)
-    write_exr(tmp_path / "frame.exr", planes_of(some_normals()))
-    as_document([sphere(1.0, 16, 8)]).write(tmp_path / "scene.glb")
-    (tmp_path / "mine.toml").write_text(LAYOUT)
-    for name, scale in (("before", "1.0"), ("after", "0.7")):
-        (tmp_path / "mine.glsl").write_text(MINE.replace("SCALE", scale))
-        words = [word for pair in WORDS.items() for word in pair]
-        status, _, err = run("run", *words, "-o", name)
-        assert status == 0, err
-    return tmp_path
 
 
 def test_a_layout_is_measured_as_it_is_unless_an_encoding_is_said():
@@ -73,27 +23,3 @@ def test_a_named_encoding_is_measured_on_all_that_it_is_made_for():
     assert met == both | {("octahedral", "sphere"), ("octahedral", "axes")}
     assert {one.normals for one in options_of(quality, {"storage": "rg8"})} == {"playground,hemisphere"}
     assert {one.normals for one in options_of(quality, {"encoding": "xy", "normals": "axes"})} == {"axes"}
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("gl", "radv")
-def test_all_of_it_is_measured_shown_and_compared(run, runs):
-    """Every row is on the page; what changed with the constant is the encoder's rows and no others, worst first."""
-    tables = {name: json.loads((runs / f"before/{name}.json").read_text()) for name in ("quality", "render", "cost")}
-    page = (runs / "before/report.html").read_text()
-    for name, rows in tables.items():
-        assert "mine" in {row["encoding"] for row in rows}, name
-        data = json.loads(packed_text(page, f"data-{name}"))
-        assert data["count"] == len(rows)
-        words = {word for column in data["columns"] for word in column.get("words", ())}
-        assert {str(row["encoding"] or row["storage"]) for row in rows} <= words, name
-    assert {row["normals"] for row in tables["quality"]} == {"frame.exr", "sphere"}
-    assert {row["scene"] for row in tables["render"]} == {"scene.glb"}
-    assert any("mine" in row["layout"] for row in tables["render"])
-
-    status, out, _ = run("compare", "before", "after", "--format", "json")
-    changes = json.loads(out)
-    assert status == 0 and changes and all("mine" in change["row"].split() for change in changes), changes
-    assert changes[0]["verdict"] == "worse", "worst first"
-    status, said, _ = run("compare", "before", "after", "--fail-on", "worse")
-    assert status == 1 and len(said.splitlines()) <= 20 and "mine" in said and "worse" in said

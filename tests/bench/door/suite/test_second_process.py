@@ -1,127 +1,21 @@
 """A run of two processes: the answer first, the same rows and files, and nothing left of it when it is ended."""
 
-import os
-import shutil
-import signal
-import subprocess
-import sys
-import time
-from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
 from normalbench.bench.door import beside
 from normalbench.bench.door import run as run_of
-from normalbench.bench.ground.machine.children import environment
-from normalbench.bench.keep.runs import read_run
-from normalbench.bench.run import piped, second
+from normalbench.bench.run import second
 from normalbench.bench.run.measuring import HERE, Asked
-from normalbench.bench.show import report
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.table import Measured
-
-# The first process measures `effects`, the second one the others.
-CODE = ("--encoding", "octahedral", "--storage", "rg8", "--normals", "axes", "--backend", "jax")
-SMALL = ("run", "--tables", "mix,effects,quality", "--effect", "water", *CODE)
 
 
 @pytest.fixture
 def cores(monkeypatch):
     """Says how many cores there are."""
     return lambda count: monkeypatch.setattr(second, "cores", lambda: count)
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("gl")
-def test_two_processes_leave_what_one_does(run, tmp_path, cores):
-    """Rows and files are those of a run in one process, and tables are printed in their order."""
-    said = {}
-    for count in (1, 2):
-        cores(count)
-        status, said[count], err = run(*SMALL, "-o", str(tmp_path / str(count)))
-        assert status == 0 and err == "", err
-    one, two = (read_run(tmp_path / str(count)).tables for count in (1, 2))
-    assert {name: one[name] for name in sorted(one)} == {name: two[name] for name in sorted(two)}
-    files = [{str(p.relative_to(tmp_path / n)) for p in (tmp_path / n).rglob("*")} for n in ("1", "2")]
-    assert files[0] == files[1] and "report.html" in files[1]
-    assert len(list((tmp_path / "1/charts").glob("*.svg"))) == report.CHARTS_OF_A_RUN
-    assert (tmp_path / "1/charts/mix.png").read_bytes() == (tmp_path / "2/charts/mix.png").read_bytes()
-    assert said[1].replace(f"{tmp_path}/1", "") == said[2].replace(f"{tmp_path}/2", "")
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("gl")
-def test_what_a_dead_process_did_not_measure_is_measured_here(run, tmp_path, cores, monkeypatch):
-    """A second process that dies costs time and no rows; what it said last is told."""
-    cores(2)
-    monkeypatch.setattr(piped, "python", lambda _: [sys.executable, "-c", "raise SystemExit('broken')"])
-    status, _, err = run(*SMALL, "-o", str(tmp_path / "run"))
-    assert status == 0 and read_run(tmp_path / "run").finished, err
-    assert set(read_run(tmp_path / "run").tables) == {"mix", "effects", "quality"}
-    assert err == "normalbench: broken\n"
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("gl")
-def test_charts_that_cannot_be_written_are_one_line(run, tmp_path, cores):
-    """Where their folder is a file."""
-    cores(2)
-    folder = tmp_path / "run"
-    assert run("run", "--tables", "mix", *CODE, "-o", str(folder))[0] == 0
-    shutil.rmtree(folder / "charts")
-    (folder / "charts").touch()
-    status, _, err = run(*SMALL, "-o", str(folder))
-    lines = err.splitlines()
-    assert status == 2 and len(lines) == 2 and "goes on" in lines[0] and "charts" in lines[1], err
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("gl")
-def test_an_error_there_is_an_error_here(run, tmp_path, cores):
-    """One line, the same exit status, and what was measured is kept: here a folder has the name of a file."""
-    cores(2)
-    folder = tmp_path / "run"
-    assert run("run", "--tables", "mix", *CODE, "-o", str(folder))[0] == 0
-    (folder / TABLES["quality"].files["live"] / "octahedral-rg8.json").mkdir(parents=True)
-    status, _, err = run(*SMALL, "-o", str(folder))
-    lines = err.splitlines()
-    assert status == 2 and len(lines) == 2 and "goes on" in lines[0] and f"cannot write {folder}/live" in lines[1], err
-    assert set(read_run(folder).tables) == {"mix", "quality", "effects"}
-
-
-def children_of(process: int) -> set[int]:
-    """The processes that a process has started."""
-    return {int(word) for path in Path(f"/proc/{process}/task").glob("*/children") for word in path.read_text().split()}
-
-
-def is_there(process: int) -> bool:
-    try:
-        return "\nState:\tZ" not in Path(f"/proc/{process}/status").read_text()
-    except OSError:
-        return False
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("gl")
-@pytest.mark.parametrize("ended", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
-def test_no_process_outlives_a_run(tmp_path, ended):
-    """However the first process ends, the second one ends too, and the same command goes on with the rows of both."""
-    words = ("run", "--tables", "effects,depth", "-o", "ended")
-    command = [sys.executable, "-m", "normalbench", *words]
-    with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        rows, until = tmp_path / "ended/rows.jsonl", time.monotonic() + 120
-        while not (rows.exists() and b'"table": "depth"' in rows.read_bytes()):
-            assert time.monotonic() < until and process.poll() is None, "no row of the second process"
-            time.sleep(0.05)
-        others = children_of(process.pid)
-        process.send_signal(ended)
-        process.communicate(timeout=30)
-    until = time.monotonic() + 10
-    while any(map(is_there, others)) and time.monotonic() < until:
-        time.sleep(0.05)
-    assert others and not any(map(is_there, others)), "the second process is still there"
-    assert any(step["table"] == "depth" for step in read_run(tmp_path / "ended").steps)
 
 
 def test_the_answer_comes_first(cores, monkeypatch):
@@ -146,53 +40,3 @@ def test_the_second_process_writes_what_the_first_has_measured(monkeypatch, rows
     monkeypatch.setattr(beside, "measured", lambda *_: rows)
     beside._write_others([ask], SimpleNamespace(find=lambda *_: rows), sent.append)
     assert (written, sent) == (([rows], [second.Written("pick")]) if rows else ([], []))
-
-
-@pytest.mark.slow
-def test_each_chart_is_drawn_once(run, tmp_path, monkeypatch):
-    """A chart's two files come of one drawing."""
-    drawn = []
-    kept = report._write_chart
-    monkeypatch.setattr(report, "_write_chart", lambda one, folder: drawn.append(one.name) or kept(one, folder))
-    assert run("run", "--tables", "quality", *CODE, "-o", str(tmp_path / "run"))[0] == 0
-    assert sorted(drawn) == sorted({path.stem for path in (tmp_path / "run/charts").iterdir()})
-
-
-def measured(folder: Path, *more: str, **variables: str) -> str:
-    """What a process says of one code whose caches lie in a folder."""
-    words = ("quality", "--encoding", "octahedral", "--storage", "rg8", "--normals", "axes", "--backend", "jax")
-    own = {name: value for name, value in environment().items() if not name.startswith("JAX_")}
-    command = [sys.executable, "-m", "normalbench", *words, *more, "--format", "json"]
-    done = subprocess.run(
-        command, env=own | {"XDG_CACHE_HOME": str(folder)} | variables, capture_output=True, text=True
-    )
-    assert done.returncode == 0 and not done.stderr, done.stderr
-    return done.stdout
-
-
-def programs(folder: Path) -> dict[str, int]:
-    return {path.name: path.stat().st_mtime_ns for path in folder.glob("normalbench/programs/*/*-cache")}
-
-
-@pytest.mark.slow
-def test_a_second_process_compiles_nothing(tmp_path):
-    """It finds every program in the cache, and says the same."""
-    first, made = measured(tmp_path), programs(tmp_path)
-    assert made, "nothing was kept"
-    assert measured(tmp_path) == first and programs(tmp_path) == made
-    damaged = next(tmp_path.glob("normalbench/programs/*/*-cache"))
-    damaged.write_bytes(damaged.read_bytes()[:100])
-    assert measured(tmp_path) == first, "a damaged program"
-
-
-@pytest.mark.slow
-def test_compiled_programs_need_not_be_kept(tmp_path):
-    found = measured(tmp_path, JAX_ENABLE_COMPILATION_CACHE="0")
-    assert not programs(tmp_path)
-    assert measured(tmp_path, "--no-cache") == found
-    assert not [*tmp_path.iterdir()], "without the cache nothing is kept"
-
-
-@pytest.mark.slow
-def test_a_cache_that_cannot_be_written_is_no_error():
-    assert measured(Path(os.devnull) / "nowhere")

@@ -2,8 +2,6 @@
 
 import json
 import re
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -19,6 +17,8 @@ from normalbench.encodings.vec import Vec2
 
 # Of GLSL ES 3.10 and later: a browser's 3.00 has none of them.
 LATER = re.compile(r"\b(bitfield\w+|fma|frexp|ldexp|(un)?pack[US]norm4x8|findMSB|findLSB|textureGather)\(")
+
+
 MINE = "vec2 mine_encode(vec3 n) { return n.xy; }\nvec3 mine_decode(vec2 e) { return vec3(e, 0.5); }\n"
 
 
@@ -104,15 +104,3 @@ def test_a_damaged_scene_is_left_out(tmp_path):
     (tmp_path / "a.npz").write_bytes(b"PK\x03\x04")
     np.savez(tmp_path / "b.npz", codes=np.zeros((2, 2, 3), np.uint16), covered=np.ones((2, 2), bool), slope=np.ones(2))
     assert list(scenes.read_scenes(tmp_path)) == []
-
-
-@pytest.mark.slow
-def test_a_page_has_its_laboratory_wherever_its_files_are_written(tmp_path):
-    """With --live, too, which writes them elsewhere."""
-    page, folder = tmp_path / "page.html", tmp_path / "there"
-    words = ("--encoding", "octahedral", "--backend", "jax", "--normals", "sphere", "--count", "4096")
-    command = [sys.executable, "-m", "normalbench", "quality", *words, "--live", str(folder)]
-    done = subprocess.run([*command, "--report", str(page)], capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    assert [path.name for path in folder.iterdir()] == ["octahedral-rgba8.json"]
-    assert '<section id="live"' in page.read_text()

@@ -22,10 +22,15 @@ from normalbench.encodings.vec import Vec3, select
 
 pytestmark = pytest.mark.skipif(not library.compiler(), reason="no C compiler")
 
+
 # What is written for each element of a table, or by a loop, is measured by XLA's code.
 BY_XLA = {"best_fit", "best_fit_searched", "optimised_rings", "spherical_fibonacci", "spherical_lut"}
+
+
 # A root of what cancels next to -z: whether a product is rounded before it is added shows, by hundredths of a degree.
 CANCELS, CANCELLED_DEG = {"spheremap": 1e-3, "cryengine3": 1e-4}, 1e-2
+
+
 # A unit in the last place of a component, as an angle.
 UNIT_DEG = float(np.degrees(2.0**-23))
 
@@ -61,7 +66,7 @@ def codecs_of(name: str) -> list[Codec]:
     return [*kinds.values()]
 
 
-@pytest.mark.parametrize("at", [0, pytest.param(1, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("at", [0])
 @pytest.mark.parametrize("name", sorted(set(ENCODINGS) - BY_XLA))
 def test_rows_are_those_of_xla(name, at):
     """Every codec of the catalogue, in a format of each kind."""

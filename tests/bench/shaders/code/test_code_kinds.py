@@ -6,8 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from languages import RUN, require_runner
-from slowly import a_tenth
+from languages import require_runner
 
 from normalbench.bench.shaders.code.files import code_of, stem_of
 from normalbench.bench.shaders.code.kinds.normal import is_catalogues
@@ -15,29 +14,6 @@ from normalbench.bench.shaders.code.reference import reference
 from normalbench.bench.shaders.code.verify import agreement
 from normalbench.bench.subjects.codecs.kinds.codecs import NAMED, codecs_of_kind, kinds_named
 from normalbench.encodings.catalogue import BY_KIND, ENCODINGS
-
-# Of each kind, codes and storages that are made otherwise: shares, polynomials, powers, floats, and integers.
-CODECS = (
-    ("motion", "cube_root", "rg16_snorm"),
-    ("motion", "linear", "rg16f"),
-    ("motion", "log", "rg8_centred"),
-    ("motion", "sqrt", "float:4:5"),
-    ("curve", "srgb", "r8"),
-    ("curve", "log", "r16f"),
-    ("curve", "ray_bits", "rgb10a2"),
-    ("curve", "squared", "unorm:5"),
-    ("light", "plain", "rgba16f"),
-    ("light", "plain", "r11g11b10f"),
-    ("light", "rgbm", "rgba8"),
-    ("light", "nao32", "rgba8"),
-    ("light", "rgb9e5", "rgba8"),
-    ("depth", "linear", "r32f"),
-    ("depth", "linear", "unorm:20"),
-    ("depth", "linear_sign", "packed24"),
-    ("depth", "window", "packed24"),
-    ("depth", "reversed_window", "depth32f"),
-    ("depth", "logarithmic", "packed16"),
-)
 
 
 def codec_of(kind, names, storage):
@@ -53,24 +29,6 @@ def agreement_of(codec, language, folder: Path, text=None):
     if text is not None:
         (folder / code.name).write_text(text(code.body))
     return agreement(codec, language, folder / code.name, code.interface)
-
-
-def pairs() -> list:
-    """Each codec with each language; those whose runner starts slowly are slow."""
-    every = [(*codec, language) for codec in CODECS for language in RUN]
-    return [pytest.param(*one, marks=[] if one[-1] == "c" else [pytest.mark.slow]) for one in every]
-
-
-EACH = "bench/shaders/code/test_code_kinds.py::test_the_code_of_a_kind_gives_the_catalogues_texels"
-
-
-@pytest.mark.usefixtures("gl")
-@pytest.mark.parametrize("kind, name, storage, language", a_tenth(EACH, pairs()))
-def test_the_code_of_a_kind_gives_the_catalogues_texels(kind, name, storage, language, tmp_path):
-    """2^16 values: texels, numbers that come back, and render targets."""
-    require_runner(language)
-    found = agreement_of(codec_of(kind, name, storage), language, tmp_path)
-    assert found.holds, found.says
 
 
 @pytest.mark.usefixtures("gl")
@@ -142,8 +100,14 @@ OWN_MOTION = """
 float2 EncodeVelocity(float2 velocity) { return velocity * 0.499 + 0.5; }
 float2 DecodeVelocity(float2 code) { return (code - 0.5) / 0.499; }
 """
+
+
 OWN_ROUGHNESS = "float PackRoughness(float roughness) { return sqrt(roughness); }\n"
+
+
 OWN_ROUGHNESS += "float UnpackRoughness(float code) { return code * code; }\n"
+
+
 OWN = {"motion": (OWN_MOTION, "rg16"), "curve": (OWN_ROUGHNESS, "r8")}
 
 
@@ -171,9 +135,6 @@ def test_a_users_light_is_of_light_and_stays_theirs(tmp_path, monkeypatch, run):
         assert [one.word for one in kinds_named(word, "")] == ["light"]
         _, out, err = run("code", word, "--storage", "rgba8", "--to", "glsl")
         assert "Encode and decode are yours." in out, err
-
-
-# The command.
 
 
 @pytest.mark.usefixtures("gl")

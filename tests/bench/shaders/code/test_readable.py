@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from pasted import LONGEST, loops_without_unrolling, names_in
 
-from normalbench.bench.shaders.code.emit import LANGUAGES
 from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.shaders.code.fold import WIDTH
 from normalbench.bench.shaders.code.tables import dds, header, kept, texels_of
@@ -15,17 +14,10 @@ from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.encodings.catalogue import BY_KIND, ENCODINGS
 from normalbench.encodings.codecs.kind import KINDS, NORMAL
 from normalbench.encodings.storages.storage import (
-    CURVE_STORAGES,
-    FRAME_STORAGES,
-    LIGHT_STORAGES,
-    MOTION_STORAGES,
     STORAGES,
 )
 
 QUICK = ("hlsl", "c")
-# Storages whose functions are the longest: bytes, bits across channels, floats, signed numbers, two words.
-SOME = "rg8,rgba8,rgb8_12_12,rg16f,rgba8_10_10_10_snorm"
-OF_KIND = {"motion": MOTION_STORAGES, "curve": CURVE_STORAGES, "light": LIGHT_STORAGES, "frame": FRAME_STORAGES}
 
 
 def codecs_of(kind, name, storages):
@@ -59,14 +51,6 @@ EVERY = [(kind, name) for kind in KINDS for name in BY_KIND[kind]]
 def test_the_code_of_an_encoding_has_short_names_and_lines(kind, name):
     """Names of 24 letters, lines of 99 with the comments at the top."""
     check(codecs_of(kind, name, "rgba8" if kind is NORMAL else "")[:1], QUICK)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("kind, name", EVERY, ids=[f"{kind.word}-{name}" for kind, name in EVERY])
-def test_code_in_other_storages_has_short_names_and_lines(kind, name):
-    """In every language, and in storages of each kind."""
-    storages = SOME if kind is NORMAL else ",".join(OF_KIND.get(kind.word, ()))
-    check(codecs_of(kind, name, storages), LANGUAGES)
 
 
 def test_a_loop_that_nothing_unrolls_is_found():

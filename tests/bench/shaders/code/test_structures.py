@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from languages import RUN, require_runner
+from languages import require_runner
 
 from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.shaders.code.kinds.table import kind_of
@@ -12,11 +12,19 @@ from normalbench.bench.shaders.code.reference import reference
 from normalbench.bench.shaders.code.verify import agreement
 from normalbench.bench.subjects.codecs.kinds.codecs import NAMED, codecs_of_kind, kinds_named
 from normalbench.bench.subjects.codecs.names import codecs_named
-from normalbench.encodings.catalogue import FRAME_ENCODINGS
 
 pytestmark = pytest.mark.usefixtures("gl")
+
+
 OWN = Path(__file__).parents[3] / "inputs" / "own_codes"
+
+
 FAST = ("c",)
+
+
+ENDINGS = [("glsl",), ("hlsl",), ("slang",), ("wgsl",)]
+
+
 # Words of bits, roundings, numbers that depend on how others are rounded, and quaternions.
 FRAMES = (
     ("octahedral_angle", "unorm:12:12:7:1", "nearest"),
@@ -27,10 +35,9 @@ FRAMES = (
 )
 
 
-def in_languages(rows) -> list:
-    """Rows with each language; those whose runner starts slowly are slow."""
-    every = [(*row, language) for row in rows for language in RUN]
-    return [pytest.param(*one, marks=[] if one[-1] in FAST else [pytest.mark.slow]) for one in every]
+def in_languages(rows, languages) -> list:
+    """Rows with each language."""
+    return [(*row, language) for row in rows for language in languages]
 
 
 def agreement_of(codec, language, folder: Path, old="", new=""):
@@ -47,19 +54,11 @@ def frame_codec(name: str, storage: str, rounding: str = "nearest"):
     return codec
 
 
-@pytest.mark.parametrize("name, storage, rounding, language", in_languages(FRAMES))
+@pytest.mark.parametrize("name, storage, rounding, language", in_languages(FRAMES, FAST))
 def test_the_code_of_tangent_frames_gives_the_catalogues_texels(name, storage, rounding, language, tmp_path):
     """2^16 frames, half of them mirrored: texels, numbers that come back, normals, tangents and hands."""
     found = agreement_of(frame_codec(name, storage, rounding), language, tmp_path)
     assert found.holds, found.says
-
-
-@pytest.mark.slow
-def test_every_code_of_tangent_frames_is_written(tmp_path):
-    """In the first storage where each usually lies, in C."""
-    for name in FRAME_ENCODINGS:
-        found = agreement_of(frame_codec(name, ""), "c", tmp_path)
-        assert found.holds, f"{name}: {found.says}"
 
 
 # What is changed in C, and what must notice.
@@ -90,7 +89,7 @@ def test_a_hand_that_comes_back_as_the_other_is_an_error_of_half_a_turn():
 
 
 @pytest.mark.usefixtures("slang")
-@pytest.mark.parametrize("ending, language", in_languages([("glsl",), ("hlsl",), ("slang",), ("wgsl",)]))
+@pytest.mark.parametrize("ending, language", in_languages(ENDINGS, FAST))
 def test_a_users_code_of_tangent_frames_is_written(ending, language, tmp_path):
     """Bitangents, out parameters, a structure, and a quaternion alone."""
     path = str(OWN / f"frame.{ending}")
@@ -137,7 +136,7 @@ vec3 mine_decode(vec2 e, vec3 view) {
 """
 
 
-@pytest.mark.parametrize("language", in_languages([()]))
+@pytest.mark.parametrize("language", FAST)
 def test_structures_of_users_are_written(language, tmp_path):
     (tmp_path / "mine.glsl").write_text(STRUCTURES)
     (codec,) = codecs_named(str(tmp_path / "mine.glsl"), "rg16", "nearest")

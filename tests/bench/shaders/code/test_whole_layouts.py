@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 from languages import require_runner
 from pasted import LONGEST, loops_without_unrolling, names_in
-from slowly import a_tenth
 
 from normalbench.bench.door import gbuffer_command
 from normalbench.bench.ground.output.errors import UsageError
@@ -18,7 +17,6 @@ from normalbench.bench.shaders.code.fold import WIDTH, folded
 from normalbench.bench.shaders.code.whole.bits import packed_texts, parts_of, taken_text
 from normalbench.bench.shaders.code.whole.emit import gbuffer_code
 from normalbench.bench.shaders.code.whole.head import table
-from normalbench.bench.shaders.code.whole.run import RUNS
 from normalbench.bench.shaders.code.whole.surface import Contents
 from normalbench.bench.shaders.code.whole.verify import agreement
 from normalbench.bench.subjects.codecs.layout_names import layouts_named
@@ -27,6 +25,8 @@ from normalbench.gbuffer.layouts.presets import LAYOUTS
 from normalbench.gbuffer.layouts.words import Word
 
 pytestmark = pytest.mark.usefixtures("gl")
+
+
 # As `budget --layouts` writes them, into whole numbers.
 WORDS = """
 title = "16 bytes"
@@ -46,6 +46,8 @@ holds = "sqrt(motion.x):14 sqrt(motion.y):14 other:4"
 format = "rgba8"
 holds = "occlusion other kind:4 other:12"
 """
+
+
 SIGNED = """
 encoding = "xyz_renormalised"
 packing = "signed"
@@ -70,6 +72,8 @@ holds = "motion.x motion.y"
 format = "rgb10a2"
 holds = "occlusion:7 other:9 other:14 other"
 """
+
+
 # A sign in a depth of 24 bits, which lies across the bytes of two targets' formats; a sign in the roughness, on a curve
 # and in bits; a logarithmic depth, tables and a view.
 DEPTH_SIGN = """
@@ -83,6 +87,8 @@ holds = "normal.x normal.y"
 format = "rgba8"
 holds = "depth*normal.z:24 roughness"
 """
+
+
 ROUGHNESS_SIGN = """
 encoding = "signed_octahedral"
 
@@ -94,6 +100,8 @@ holds = "normal.x:10 normal.y:10 squared(roughness)*normal.z:9 other:3"
 format = "rgba16f"
 holds = "depth albedo"
 """
+
+
 PLANES = """
 encoding = "spherical_lut"
 depth = "logarithmic"
@@ -106,6 +114,8 @@ holds = "depth:24 roughness"
 format = "rgba16"
 holds = "normal.x normal.y metalness occlusion"
 """
+
+
 SEEN = """
 encoding = "per_pixel_view"
 depth = "window"
@@ -118,6 +128,8 @@ holds = "normal.x normal.y"
 format = "rg32_uint"
 holds = "depth:24 roughness:8 metalness:8 other:24"
 """
+
+
 HALVES = """
 encoding = "octahedral"
 rounding = "truncate_half"
@@ -130,6 +142,8 @@ holds = "normal.x normal.y roughness metalness"
 format = "rgba16f"
 holds = "albedo occlusion"
 """
+
+
 FILES = {
     "halves": HALVES,
     "words": WORDS,
@@ -139,11 +153,19 @@ FILES = {
     "planes": PLANES,
     "seen": SEEN,
 }
+
+
 PRESETS = ("unreal4", "bevy", "unity_hdrp", "nrd", "xy_depth_sign", "cryengine3", "wicked_truncated")
+
+
 FAST, FEW, MANY = ("c",), 2**12, 10**6
+
+
 # Of the layouts of MANY surfaces: those whose curves have powers, or whose codes have quotients and roots, which
 # languages round otherwise, have ties.
 TIES = {"unreal4": 1e-4, "bevy": 1e-4, "unity_hdrp": 1e-4, "words": 0.0, "signed": 0.0, "xy_depth_sign": 0.0}
+
+
 TIES |= {
     "wicked_truncated": 1e-4,
     "halves": 1e-3,
@@ -165,39 +187,13 @@ def layouts(tmp_path) -> dict:
     return {layout.name: layout for layout in (*named, *(LAYOUTS[name] for name in PRESETS))}
 
 
-def in_languages(names, fast) -> list:
-    every = [(name, language) for name in names for language in RUNS]
-    return [pytest.param(*one, marks=[] if one[1] in fast else [pytest.mark.slow]) for one in every]
-
-
-@pytest.mark.parametrize("name, language", in_languages(TIES, FAST))
+@pytest.mark.parametrize("name, language", [*product(TIES, FAST)])
 def test_it_packs_and_unpacks_as_the_renderer_does(name, language, layouts):
     """Bits of every target, and every number that comes back, of surfaces with the ends of each range and beyond."""
     require_runner(language)
     found = agreement(gbuffer_code(layouts[name], language), FEW)
     assert found.holds, found.says
     assert found.differing <= max(TIES[name] * FEW, 2 * (TIES[name] > 0)), found.says
-
-
-MILLIONS = "bench/shaders/code/test_whole_layouts.py::test_it_packs_and_unpacks_as_the_renderer_does"
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name, language", a_tenth(MILLIONS, product(TIES, FAST)))
-def test_a_million_surfaces_are_packed_as_the_renderer_packs_them(name, language, layouts):
-    """None differs where no curve has a power; else a few do, by a step where they lie next to a tie."""
-    require_runner(language)
-    found = agreement(gbuffer_code(layouts[name], language), MANY, seed=1)
-    assert found.holds, found.says
-    assert found.differing <= TIES[name] * MANY, found.says
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", LAYOUTS)
-def test_every_preset_is_written(name):
-    """In C: what the renderer's own GLSL writes and reads."""
-    require_runner("c")
-    assert (found := agreement(gbuffer_code(LAYOUTS[name], "c"), FEW)).holds, found.says
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

@@ -2,16 +2,12 @@
 
 import pytest
 
-from normalbench.bench.ground.options.gpu_families import CHOICES, FAMILIES
-from normalbench.bench.shaders.isa import disassembly, intel_disassembly, isa, occupancy
-from normalbench.bench.shaders.isa.compiler import uses_halves
+from normalbench.bench.ground.options.gpu_families import FAMILIES
+from normalbench.bench.shaders.isa import disassembly, intel_disassembly, occupancy
 from normalbench.bench.subjects.codecs.half.kernels import half_operation
-from normalbench.bench.tables.cost import measure as cost
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.variants import in_half
 from normalbench.gbuffer.gl.shader import ShaderError
-
-OCTAHEDRAL = ENCODINGS["octahedral"]
 
 
 def test_what_lies_between_a_label_and_the_jump_back_to_it_is_in_a_loop():
@@ -50,56 +46,6 @@ def test_waves_are_by_registers_and_at_most_what_a_simd_holds(family, registers,
 def test_every_family_but_those_of_no_rule_has_waves():
     assert set(occupancy.OCCUPANCY) <= set(FAMILIES)
     assert occupancy.waves("another", 16) is None and occupancy.waves("navi21", None) is None
-
-
-@pytest.mark.usefixtures("radv")
-def test_polaris_and_vega_hold_as_many_waves_as_radv_says():
-    """Of RDNA's it says twice as many: what two SIMDs hold."""
-    prepared = cost.prepare(cost.cases([ENCODINGS["octahedral_precise"]], [], ["encode"])[0], "compute")
-    for family, outcome in compiled(prepared.job, CHOICES["radeon"]).items():
-        said = outcome.kernels[0].statistics
-        twice = 1 if family in ("polaris10", "vega10") else 2
-        assert said["Subgroups per SIMD"] == twice * occupancy.waves(family, said["VGPRs"]), family
-
-
-def compiled(job, families) -> dict:
-    return {family: outcome for (family, _), outcome in isa.compile_all([job], families, cost.nobody).items()}
-
-
-@pytest.mark.usefixtures("radv")
-def test_half_arithmetic_is_compiled_in_halves_and_doing_nothing_costs_nothing():
-    rows = [
-        row
-        for row, _ in cost.isa_rows(
-            cost.cases(map(in_half, (OCTAHEDRAL, ENCODINGS["xyz"])), [], ["encode", "decode"]),
-            ["fragment", "compute"],
-            ["vega10", "navi31"],
-            [],
-            cost.nobody,
-        )
-    ]
-    assert len(rows) == 16 and not [row["skipped"] for row in rows if row["skipped"]]
-    for row in rows:
-        assert sum(row[kind] for kind in disassembly.KINDS) == row["instructions"]
-        assert (row["instructions"] == 0) == (row["encoding"] == "xyz:arithmetic=half"), row
-        assert (row["packed"] > 0) == (row["instructions"] > 0), row
-
-
-@pytest.mark.usefixtures("radv")
-def test_a_gpu_without_16_bits_says_so_and_the_others_are_measured():
-    prepared = cost.prepare(cost.cases([in_half(OCTAHEDRAL)], [], ["encode"])[0], "fragment")
-    assert uses_halves(prepared.job.code) and not uses_halves(prepared.job.vertex)
-    found = compiled(prepared.job, ["polaris10", "vega10"])
-    assert found["polaris10"].reason == "Null hardware (RADV POLARIS10) computes no shaders in 16 bits"
-    assert found["vega10"].kernels
-
-
-@pytest.mark.usefixtures("nvidia")
-def test_half_arithmetic_that_is_not_counted_is_said_in_a_line():
-    chosen = cost.cases([in_half(OCTAHEDRAL)], [], ["encode"])
-    rows = [row for row, _ in cost.isa_rows(chosen, ["fragment", "compute"], ["sm_86"], [], cost.nobody)]
-    said = {row["family"]: row["skipped"] for row in rows if row["family"]}
-    assert said["sm_86"] == "octahedral:arithmetic=half encode: half arithmetic is not counted for NVIDIA"
 
 
 def test_precise_rounding_in_halves_is_refused_in_a_line():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from normalbench.bench.subjects.codecs.names import encodings_named
-from normalbench.bench.tables.cost import executed, measure
+from normalbench.bench.tables.cost import executed
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.gbuffer.codecs.loops import turns_made
 
@@ -58,14 +58,3 @@ def test_a_loop_takes_its_slots_as_often_as_it_runs():
     turns = [[3.0, 0.0], [4.0, 0.5], [12.0, 0.5]]
     assert executed.executed_slots(kinds, rates, loops, turns) == 35
     assert executed.executed_slots(kinds, rates, loops, turns[:1]) is None
-
-
-@pytest.mark.usefixtures("gl", "radv")
-def test_a_search_over_128_lengths_is_priced_as_one():
-    """A static count says 50 slots; it runs its 32 slots of the loop 128 times."""
-    encodings = [ENCODINGS["best_fit_searched"], ENCODINGS["octahedral"]]
-    found = measure.counted(measure.cases(encodings, (), measure.OPERATIONS), "navi21", "fragment")
-    search, plain = found["best_fit_searched", "encode"], found["octahedral", "encode"]
-    assert plain["executed_slots"] == plain["issue_slots"] == 14
-    per_turn = (search["executed_slots"] - search["issue_slots"]) / 127
-    assert search["issue_slots"] < 60 and per_turn == pytest.approx(32, abs=2), search["executed_slots"]

@@ -1,19 +1,12 @@
 """Instructions by Intel's compilers: what listings hold, which kernels compare, and the device that is not there."""
 
-import json
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
-from vendors import INTEL, every_or_some
 
-from normalbench.bench.ground.compilers.text import judged, own
 from normalbench.bench.ground.options import gpu_families as families
 from normalbench.bench.ground.options.gpu_families import FAMILIES
-from normalbench.bench.ground.output.errors import MissingError, UsageError
-from normalbench.bench.keep.machine import require_intel
+from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.shaders.isa import intel_disassembly, null_device
 from normalbench.bench.shaders.isa.isa import Compiled, Kernel
 from normalbench.bench.tables.cost import extras
@@ -22,6 +15,8 @@ from normalbench.bench.tables.cost.work import chosen_families
 from normalbench.bench.tables.registry import TABLES
 
 LISTINGS = Path(__file__).with_name("listings")
+
+
 # By hand, line by line, of listings that Mesa 22.3.6 wrote for 16 lanes.
 COUNTED = {
     "hsw-spheremap-encode": {"other_alu": 16, "transcendental": 1, "scalar": 3, "memory": 3},
@@ -38,7 +33,6 @@ COUNTED = {
     "dg2-12-12-pack": {"other_alu": 27, "conversion": 5, "scalar": 1, "memory": 3, "waiting": 4},
     "skl-compute-xy-decode": {"other_alu": 23, "transcendental": 1, "memory": 14, "control_flow": 2},
 }
-EVERY = ["cost", "--isa", "--format", "json", "--encoding", "spheremap", "--storage", "rgba8", "--stage", "fragment"]
 
 
 @pytest.mark.parametrize("name", COUNTED)
@@ -147,125 +141,12 @@ def test_a_page_speaks_of_the_first_vendors_last_family():
     assert extras.usual_family({}) == ""
 
 
-# What a process with the null device finds: errno of each try, 0 where it works.
-TRIES = """
-import fcntl, json, os, struct
-def tried(what):
-    try:
-        what()
-    except OSError as error:
-        return error.errno
-    return 0
-capability = 0xC010640C
-zero, null, pipe = os.open("/dev/zero", os.O_RDWR), os.open("/dev/null", os.O_RDWR), os.pipe()[0]
-print(json.dumps([
-    tried(lambda: fcntl.ioctl(zero, capability, bytes(16))),
-    tried(lambda: fcntl.ioctl(null, capability, bytes(16))),
-    tried(lambda: os.open("/dev/dri/renderD128", os.O_RDWR)),
-    tried(lambda: os.open("/dev/dri/card0", os.O_RDWR)),
-    tried(lambda: fcntl.ioctl(pipe, 0x541B, bytes(4))),
-]))
-"""
-NO_DEVICE = 19  # ENODEV
-
-
-def tried(**told: str) -> list[int]:
-    done = subprocess.run([sys.executable, "-c", TRIES], capture_output=True, text=True, env=os.environ | told)
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
-
-
-@pytest.mark.usefixtures("intel", "own_cache")
-def test_the_null_device_answers_for_itself_alone():
-    """DRM requests on other files and the opening of real devices are refused; other requests pass."""
-    told = null_device.variables(FAMILIES["skl"].null_device)
-    assert tried(**told) == [0, NO_DEVICE, NO_DEVICE, NO_DEVICE, 0]
-    assert tried(LD_PRELOAD=told["LD_PRELOAD"]) == [NO_DEVICE] * 4 + [0]
-
-
-@pytest.mark.usefixtures("intel")
-def test_the_null_device_is_built_once_and_again_where_it_is_damaged(own_cache, monkeypatch):
-    path = null_device.library()
-    made = path.stat().st_mtime_ns
-    assert path.parent == own_cache / "normalbench" and null_device.library().stat().st_mtime_ns == made
-    whole = path.read_bytes()
-    path.write_bytes(whole[:100])
-    assert null_device.library().read_bytes() == whole
-    monkeypatch.setattr(null_device, "SOURCE", own_cache / "null_i915.c")
-    monkeypatch.setattr(
-        null_device, "own", lambda path: judged(path.read_text(), "c") if "915" in path.name else own(path)
-    )
-    (own_cache / "null_i915.c").write_text("int nothing;\n")
-    assert null_device.library().name[:26] != path.name[:26]
-    assert not [file for file in path.parent.iterdir() if file.suffix != ".so"]
-
-
-def without_cc(monkeypatch, _):
-    monkeypatch.setattr(null_device, "COMPILER", "no-such-cc")
-
-
-def with_a_broken_cc(monkeypatch, folder):
-    (folder / "cc").write_text("#!/bin/sh\necho 'stdio.h: no such file' >&2\nexit 1\n")
-    (folder / "cc").chmod(0o755)
-    monkeypatch.setenv("PATH", f"{folder}:{os.environ['PATH']}")
-
-
-@pytest.mark.usefixtures("intel", "own_cache")
-@pytest.mark.parametrize(
-    "take, status, said",
-    [(without_cc, 3, "apt-get install gcc"), (with_a_broken_cc, 0, "stdio.h: no such file; the headers of libc")],
-)
-def test_a_machine_without_a_c_compiler_loses_intels_rows_alone(run, monkeypatch, tmp_path, take, status, said):
-    take(monkeypatch, tmp_path)
-    found, out, err = run(*EVERY, "--family", "navi21,skl")
-    rows = json.loads(out)
-    assert (found, err.count("\n")) == (status, 1) and said in err, err
-    (lost,) = [row for row in rows if row["skipped"]]
-    assert lost["family"] == "skl" and said in lost["skipped"] and lost["instructions"] is None
-    counted = [row for row in rows if row["family"] == "navi21"]
-    assert len(counted) == 6 and all(row["instructions"] > 0 for row in counted)
-
-
-@pytest.mark.usefixtures("intel", "own_cache")
-def test_doctor_says_what_intels_counts_lack(monkeypatch):
-    require_intel()
-    monkeypatch.setattr(null_device, "COMPILER", "no-such-cc")
-    null_device.library().unlink()
-    with pytest.raises(MissingError, match="apt-get install gcc"):
-        require_intel()
-
-
 def test_a_cache_that_cannot_be_written_is_one_line(monkeypatch, tmp_path):
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
     with pytest.raises(null_device.NullDeviceError, match="XDG_CACHE_HOME names another one") as error:
         null_device.library()
     assert not error.value.is_missing
-
-
-# To encode octahedral, by hand; Tiger Lake's wait is one more (Mesa 22.3.6).
-OCTAHEDRAL = {"hsw": 11, "bdw": 11, "skl": 11, "tgl": 12, "adl": 12, "dg2": 11}
-
-
-@every_or_some("bench/shaders/cost/test_intel.py::test_known_counts_of_intels_compilers")
-@pytest.mark.slow
-def test_known_counts_of_intels_compilers(vendor_rows, is_every):
-    rows = vendor_rows(INTEL, is_every)
-    assert {row["transcendental"] for row in rows if row["encoding"] == "octahedral"} == {1}
-    if {row["driver"] for row in rows} != {"Mesa 22.3.6"}:
-        pytest.skip("counts hold for one Mesa")
-    for name in INTEL.families(is_every):
-        asked = (name, "fragment", "encode")
-        chosen = [row for row in rows if (row["family"], row["stage"], row["operation"]) == asked]
-        found = {row["encoding"]: row["instructions"] for row in chosen}
-        assert found["octahedral"] == OCTAHEDRAL[name], name
-        order = [found[encoding] for encoding in ("xy", "stereographic", "spheremap", "octahedral")]
-        assert order == sorted(set(order)), name
-
-
-@pytest.mark.slow
-def test_no_kernel_of_intels_spills(vendor_rows):
-    assert {row["spills"] for row in vendor_rows(INTEL, True)} == {0}
 
 
 def test_every_family_has_a_title_and_a_driver():

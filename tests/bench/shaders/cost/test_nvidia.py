@@ -1,17 +1,13 @@
 """Instructions by NVIDIA's compiler of CUDA: what listings hold, what is compiled, and what a machine may lack."""
 
-import json
 import re
 import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
-from vendors import NVIDIA, every_or_some
 
 from normalbench.bench.ground.options.gpu_families import CHOICES, FAMILIES
-from normalbench.bench.ground.output.errors import MissingError
-from normalbench.bench.keep.machine import require_nvidia
 from normalbench.bench.shaders.isa import isa
 from normalbench.bench.shaders.isa.compiler import DriverError
 from normalbench.bench.shaders.isa.nvidia import cubin, listing, sass, source, tools
@@ -20,12 +16,13 @@ from normalbench.bench.shaders.isa.nvidia.cubin import Kernel
 from normalbench.bench.tables.cost import extras
 from normalbench.bench.tables.cost.work import chosen_families
 from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.vec import Vec2, Vec3
 from normalbench.gbuffer.defines import kernels
 from normalbench.gbuffer.defines.packings import PACKINGS
 from normalbench.gbuffer.gl.shader import ShaderError
 
 LISTINGS = Path(__file__).with_name("nvidia_listings")
+
+
 # By hand, line by line, of listings that NVRTC 12.9.86 and nvdisasm 13.5.37 wrote.
 COUNTED = {
     "sm_75-spheremap-encode": {"other_alu": 15, "transcendental": 2, "memory": 14, "control_flow": 3},
@@ -33,9 +30,6 @@ COUNTED = {
     "sm_90-rgba8-depth-8-8-pack": {"other_alu": 13, "conversion": 3, "memory": 15, "control_flow": 3},
     "sm_120-spherical_lut-decode": {"other_alu": 12, "conversion": 2, "scalar": 1, "memory": 18, "control_flow": 3},
 }
-EVERY = ["cost", "--isa", "--format", "json", "--encoding", "spheremap", "--storage", "rgba8"]
-# What the figures below hold for.
-VERSIONS = "NVRTC 12.9.86 (CUDA's compiler, not the graphics driver's), nvdisasm 13.5.37"
 
 
 def line(code: str, place: int = 0, control: int = 0x000FE40000000F00) -> str:
@@ -192,29 +186,6 @@ def test_an_installed_cuda_is_found_by_its_variable(monkeypatch, tmp_path):
     assert taken(tmp_path) == ["lib64/libnvrtc.so.12", "bin/nvdisasm"] and not tools.missing()
 
 
-@pytest.mark.slow
-@pytest.mark.usefixtures("radv", "own_cache")
-def test_a_machine_without_the_compiler_loses_nvidias_rows_alone(run, monkeypatch):
-    monkeypatch.setattr(tools, "library", lambda: None)
-    status, out, err = run(*EVERY, "--family", "navi21,sm_86")
-    (lost,) = [row for row in json.loads(out) if row["skipped"]]
-    assert status == 3 and err.count("\n") == 1 and "pip install 'normalbench[nvidia]'" in err
-    assert lost["family"] == "sm_86" and "normalbench[nvidia]" in lost["skipped"]
-    assert sum(row["family"] == "navi21" for row in json.loads(out)) == 12
-    with pytest.raises(MissingError, match=r"normalbench\[nvidia\]"):
-        require_nvidia()
-
-
-@pytest.mark.usefixtures("radv", "own_cache")
-def test_a_fragment_shader_is_refused_in_a_line(run, monkeypatch):
-    """CUDA has none; other vendors' rows are there."""
-    monkeypatch.setattr(tools, "missing", lambda: "")
-    status, out, _ = run(*EVERY, "--family", "navi21,sm_86", "--stage", "fragment")
-    (lost,) = [row for row in json.loads(out) if row["skipped"]]
-    assert status == 0 and lost["family"] == "sm_86" and "ask for --stage compute" in lost["skipped"]
-    assert sum(row["family"] == "navi21" for row in json.loads(out)) == 6
-
-
 def test_glsl_that_cannot_be_translated_is_named_with_its_place(tmp_path):
     file = tmp_path / "mine.glsl"
     file.write_text(
@@ -253,6 +224,8 @@ static inline int max(int a, int b) { return a > b ? a : b; }
 static inline unsigned umin(unsigned a, unsigned b) { return a < b ? a : b; }
 static inline unsigned umax(unsigned a, unsigned b) { return a > b ? a : b; }
 """
+
+
 CALL = """
 extern "C" void call_{at}(const float *given, const float *beside, float *made, int count) {{
     for (int i = 0; i < count; ++i) {{
@@ -265,8 +238,12 @@ extern "C" void call_{at}(const float *given, const float *beside, float *made, 
     }}
 }}
 """
+
+
 # Encodings that read no texture, which the machine's C++ has none of.
 PLAIN = [encoding for encoding in ENCODINGS.values() if not encoding.tables()]
+
+
 PACKED = ("rgba8", "12:12", "16:16", "11:10:11", "11:11", "rgba8_snorm")
 
 
@@ -305,34 +282,6 @@ def called(shared):
     return call
 
 
-def normals(count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Unit normals in front, the axes among them, and places before the camera."""
-    random = np.random.default_rng(7)
-    n = random.normal(size=(count, 3))
-    n[:5] = [[1, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0], [0, -1, 0]]
-    n[:, 2] = np.abs(n[:, 2])
-    view = random.uniform((-1, -1, -4), (1, 1, -2), (count, 3))
-    return (n / np.linalg.norm(n, axis=1, keepdims=True)).astype(np.float32), view.astype(np.float32)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("at", range(len(PLAIN)), ids=[encoding.name for encoding in PLAIN])
-def test_the_cuda_of_an_encoding_computes_its_formula(called, at):
-    """As Python's twin has it: codes of normals to 2^-19, and the normals of these codes."""
-    encoding, (n, view) = PLAIN[at], normals(2000)
-    codes = called(at, n, view)
-    found = called(len(PLAIN) + at, codes, view)
-    expected = np.stack(encoding.encode(Vec3(*n.T), Vec3(*view.T)), axis=-1)
-    code = (Vec2 if codes.shape[1] == 2 else Vec3)(*codes.T)
-    back = np.stack(encoding.decode(code, Vec3(*view.T)), axis=-1)
-    if not encoding.is_precise:
-        apart = np.abs(codes - expected).max(axis=1)
-        # A code on a seam may be either of two.
-        assert np.mean(apart > 2.0**-19) < 0.005, f"{apart.max()} of {n[apart.argmax()]}"
-    apart = np.abs(found - back).max(axis=1)
-    assert apart.max() < 2.0**-18, f"{apart.max()} of {codes[apart.argmax()]}"
-
-
 @pytest.mark.parametrize("name", PACKED)
 def test_the_cuda_of_a_packing_brings_numbers_back(called, name):
     """To a step of the channel that has the fewest bits, 8."""
@@ -344,50 +293,3 @@ def test_the_cuda_of_a_packing_brings_numbers_back(called, name):
         texels = called(first + 2 * at, given, np.zeros((500, 3)))
         back = called(first + 2 * at + 1, texels, np.zeros((500, 3)))
         assert np.abs(back - given).max() < 1 / 127, packing.name
-
-
-@pytest.mark.usefixtures("nvidia", "own_cache")
-def test_an_architecture_that_nvrtc_does_not_know_is_one_line(run, monkeypatch):
-    monkeypatch.setattr(isa, "FAMILIES", FAMILIES | {"sm_120": FAMILIES["sm_90"]})
-    monkeypatch.setattr(isa, "_variables", lambda *_: {isa.ARCHITECTURE: "sm_999"})
-    status, out, _ = run(*EVERY, "--family", "sm_120")
-    row = json.loads(out)[0]
-    assert status == 0 and row["family"] == "sm_120"
-    assert re.match(r"NVRTC [\d.]+ does not compile for sm_999; it knows sm_", row["skipped"])
-
-
-# To encode octahedral: one fewer on Blackwell than before, as on a Radeon.
-OCTAHEDRAL = {"sm_75": 15, "sm_86": 15, "sm_89": 15, "sm_90": 15, "sm_100": 14, "sm_120": 14}
-
-
-@every_or_some("bench/shaders/cost/test_nvidia.py::test_known_counts_of_nvidias_compiler")
-def test_known_counts_of_nvidias_compiler(vendor_rows, is_every):
-    """The order of cheap encodings is a Radeon's."""
-    rows = vendor_rows(NVIDIA, is_every)
-    if {row["driver"] for row in rows} != {VERSIONS}:
-        pytest.skip("counts hold for one version")
-    found = {(row["encoding"], row["operation"], row["family"]): row["instructions"] for row in rows}
-    for name in NVIDIA.families(is_every):
-        assert (found["octahedral", "encode", name], found["octahedral", "decode", name]) == (OCTAHEDRAL[name], 17), (
-            name
-        )
-        order = [found[encoding, "encode", name] for encoding in ("xy", "stereographic", "spheremap")]
-        assert order == [0, 8, 10], name
-
-
-@every_or_some("bench/shaders/cost/test_nvidia.py::test_an_instruction_of_nvidias_is_16_bytes_and_none_spills")
-def test_an_instruction_of_nvidias_is_16_bytes_and_none_spills(vendor_rows, is_every):
-    for row in vendor_rows(NVIDIA, is_every):
-        assert (row["code_bytes"], row["spills"]) == (16 * row["instructions"], 0), row
-        if row["encoding"] == "octahedral":
-            assert (row["transcendental"], row["branches"], row["memory"]) == (1, 0, 0), row
-
-
-def test_the_compiler_is_told_from_the_graphics_driver(nvidia, monkeypatch):  # noqa: ARG001 (asks for the compiler)
-    """By name and version, wherever a row or `doctor` names it; a library that pip did not bring by its own number."""
-    assert re.match(
-        r"NVRTC [\d.]+ \(CUDA's compiler, not the graphics driver's\), nvdisasm [\d.]+$", tools.title("1.2")
-    )
-    monkeypatch.setattr(tools, "_package_version", lambda _: "")
-    assert tools.title("1.2").startswith("NVRTC 1.2 (CUDA's")
-    assert isa.driver_versions()["NVIDIA NVRTC"].startswith("NVRTC ")

@@ -1,7 +1,5 @@
 """An encoder and its decoder in two files: FILE:ENCODE,FILE:DECODE."""
 
-import json
-
 import pytest
 
 from normalbench.bench.ground.output.errors import UsageError
@@ -12,12 +10,16 @@ from normalbench.bench.shaders.languages.words import files_in, functions_of, se
 from normalbench.bench.tables.quality.table import QualityOptions
 
 ENC = '#include "common.hlsl"\nfloat2 PackDir(float3 n) { return scaled(n.xy); }\n'
+
+
 DEC = """#include "common.hlsl"
 #define HALF 2.0
 static const float ONE = 1.0;
 float2 PackDir(float2 e) { return scaled(e) * (HALF / 2.0); }
 float3 UnpackDir(float2 e) { e = PackDir(e); return float3(e, sqrt(saturate(ONE - dot(e, e)))); }
 """
+
+
 COMMON = "#ifndef COMMON\n#define COMMON\n#define HALF 1.0\nfloat2 scaled(float2 e) { return e * HALF; }\n#endif\n"
 
 
@@ -56,18 +58,3 @@ def test_what_both_define_does_not_clash(two):
 def test_one_name_for_both_is_refused(two):
     with pytest.raises(UsageError, match="both functions are called PackDir; rename one"):
         Source(two.replace("UnpackDir", "PackDir"))
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("gl", "slang", "two")
-@pytest.mark.parametrize("more", [(), ("--on", "local:1")])
-def test_two_files_have_the_figures_of_xy(run, tmp_path, monkeypatch, more):
-    monkeypatch.chdir(tmp_path)
-    asked = ("--storage", "rg8", "--backend", "glsl", "--count", "65536", "--normals", "hemisphere", "--format", "json")
-    words = "enc.hlsl:PackDir,dec.hlsl:UnpackDir,xy"
-    status, out, err = run("quality", "--encoding", words, *asked, *more)
-    assert status == 0, err
-    mine, xy = (row["angle_mean_deg"] for row in json.loads(out))
-    assert mine == pytest.approx(xy, rel=1e-4)
-    status, out, err = run("doctor", "enc.hlsl:PackDir,dec.hlsl:UnpackDir")
-    assert status == 0, err

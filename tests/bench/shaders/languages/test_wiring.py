@@ -1,7 +1,5 @@
 """Functions that are given and give more than a normal and its code."""
 
-import json
-
 import pytest
 from manual import ROOT
 
@@ -11,32 +9,9 @@ from normalbench.bench.shaders.languages.translated import translated
 from normalbench.bench.shaders.languages.wiring import Wiring, wiring_of
 
 FORMS = ROOT / "tests" / "inputs" / "encoders"
+
+
 MATERIAL = "PackSurface(s.normalWS=n; s.roughness=0.25)->o1.xy:UnpackSurface(o1.xy=e)->normalWS"
-# The mean angle in bytes on the sphere of what each file does, in degrees: the catalogue's xyz_renormalised, xy with a
-# side, octahedral, and the three times ten bits that one packs itself.
-MEANS = {
-    "vec4.hlsl": 0.1696,
-    "rough.hlsl": 0.1696,
-    "rough.glsl": 0.1696,
-    "out.hlsl": 0.4673,
-    "sign_in_w.hlsl": 0.4673,
-    "material.hlsl": 0.3354,
-    f"material.hlsl:{MATERIAL}": 0.3354,
-    "uint_out.hlsl": 0.0423,
-}
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("gl", "slang")
-def test_roughness_structures_and_out_parameters_are_bound(run):
-    """Files untouched: what is bound is found by types and names, tried, and said."""
-    words = ("--storage", "rgba8", "--normals", "sphere", "--count", "65536", "--backend", "glsl", "--format", "json")
-    status, out, err = run("quality", "--encoding", ",".join(str(FORMS / name) for name in MEANS), *words)
-    assert status == 0, err
-    found = sorted(row["angle_mean_deg"] for row in json.loads(out))
-    assert found == pytest.approx(sorted(MEANS.values()), abs=0.0005)
-    assert "what is measured is EncodeNormal(n=n)->(n.xy; face):DecodeNormal(n.xy=e.xy; face=e.z)->n" in err
-    assert "EncodeGBuffer(worldNormal=n; worldPos=view; depth=0.5)->xyw:DecodeGBuffer(gb.xyw=e)->worldNormal" in err
 
 
 @pytest.mark.parametrize(

@@ -12,10 +12,13 @@ from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.subjects.codecs import user_encodings
 from normalbench.bench.subjects.codecs.first_look import first_look
 from normalbench.bench.subjects.codecs.user_encodings import read_encoding
-from normalbench.encodings.catalogue import NAMES
 
 pytestmark = pytest.mark.usefixtures("gl")
+
+
 (MINE,) = re.findall(r"```glsl\n(.*?)```", (Path(__file__).parents[4] / "README.md").read_text(), re.S)
+
+
 TWIN = """
 from normalbench.encodings.vec import Vec2, Vec3, normalize
 
@@ -29,6 +32,8 @@ def decode(e, view):
     x, y = (e.x + e.y) * 0.5, (e.x - e.y) * 0.5
     return normalize(Vec3(x, y, 1.0 - abs(x) - abs(y)))
 """
+
+
 QUICK = ("--normals", "hemisphere", "--count", "65536", "--format", "json")
 
 
@@ -72,27 +77,6 @@ def test_without_a_twin_the_jax_row_says_so_and_with_one_it_agrees(run, tmp_path
     assert [row["psnr_db"] for row in renamed] == [by_jax["psnr_db"], by_gl["psnr_db"]], renamed
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "text, said",
-    [
-        (MINE.replace("p.x + p.y, p.x", "q.x + p.y, p.x"), "mine.glsl:4: error"),
-        (MINE.partition("vec3 mine_decode")[0], "no function vec3 mine_decode(vec2 e, vec3 view)"),
-        (MINE.replace("vec2(p.x + p.y, p", "vec2(sqrt(n.z - 2.0), p"), "encode of"),
-        (MINE.replace("mine_", "octahedral_"), "there is an encoding named octahedral already"),
-        (MINE + "float2 half_of(float2 e) { return e * 0.5; }", "(float2 is HLSL: rename float2 to vec2"),
-        ("", "no function vec2"),
-    ],
-)
-def test_what_is_wrong_with_one_spares_the_others(run, tmp_path, text, said):
-    path = written(tmp_path, text)
-    status, out, err = run("quality", "--encoding", path, *QUICK)
-    assert (status, out) == (2, "") and err.count("\n") == 1 and said in err, err
-    status, out, err = run("quality", "--encoding", f"{path},octahedral", "--backend", "glsl", *QUICK)
-    assert status == 0 and [row["encoding"] for row in json.loads(out)] == ["octahedral"]
-    assert err.startswith("normalbench: left out: ") and said in err and err.count("\n") == 1
-
-
 @pytest.mark.parametrize("words", ["quality --normals axes --encoding", "depth --depth", "lights --light-buffer"])
 def test_an_unknown_name_next_to_a_file_that_is_left_out_is_one_line(run, tmp_path, words):
     """What is left out is said once the command goes on."""
@@ -112,15 +96,6 @@ def test_two_files_of_one_name_are_told_apart(run, tmp_path):
     one, other = written(tmp_path), written(tmp_path, name="other.glsl")
     status, out, err = run("quality", "--encoding", f"{one},{other}", "--backend", "glsl", *QUICK)
     assert status == 0 and len(json.loads(out)) == 1 and "another file has an encoding named mine" in err
-
-
-@pytest.mark.slow
-def test_all_is_the_catalogue_whatever_files_there_were(tmp_path):
-    """A session of tests, or a file of gates, measures the same in any order."""
-    path = written(tmp_path)
-    assert [encoding.name for encoding in user_encodings.encodings_named(path)] == ["mine"]
-    assert [encoding.name for encoding in user_encodings.encodings_named("all")] == list(NAMES)
-    assert [encoding.name for encoding in user_encodings.encodings_named(f"{path},all")] == [*NAMES, "mine"]
 
 
 @pytest.mark.parametrize(
@@ -171,34 +146,6 @@ def test_only_what_is_read_from_outside_is_refused(tmp_path, before, told):
 def test_a_missing_file_is_one_line(run, tmp_path):
     status, _, err = run("quality", "--encoding", str(tmp_path / "none.glsl"), *QUICK)
     assert (status, err) == (2, f"normalbench: {tmp_path / 'none.glsl'}: there is no such file\n")
-
-
-GOOD_ENCODE = "from normalbench.encodings.vec import Vec2\ndef encode(n, view):\n    return Vec2(n.x, n.y)\n"
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "twin, said",
-    [
-        (
-            "def encode(n, view):\n    return n.w\ndef decode(e, view):\n    return e\n",
-            "mine.py: AttributeError in line 2",
-        ),
-        (
-            GOOD_ENCODE + "def decode(e, view):\n    return [e.x, e.y, e.x]\n",
-            "mine.py: decode returns list, not a Vec3",
-        ),
-        ("print('hello')\nraise SystemExit(0)\n", "mine.py: SystemExit"),
-    ],
-)
-def test_a_twin_that_fails_costs_the_rows_by_jax(run, tmp_path, twin, said):
-    (tmp_path / "mine.py").write_text(twin)
-    status, out, err = run("quality", "--encoding", written(tmp_path), *QUICK)
-    by_jax, by_gl = json.loads(out)
-    assert status == 0 and said in by_jax["skipped"] and by_gl["psnr_db"]
-    assert said in err and [line for line in err.splitlines() if "taken to be made for" not in line] == [
-        err.splitlines()[-1]
-    ], err
 
 
 def test_a_shader_that_does_not_end_or_kills_the_process_is_named(run, tmp_path, monkeypatch):

@@ -1,0 +1,12 @@
+"""The limit of N codes: its figures, that nothing measured is below it, and that a wrong measure is."""
+
+import pytest
+import test_code_limits_slow
+from test_code_limits_slow import SOME
+
+from normalbench.encodings.storages.storage import STORAGES
+
+
+@pytest.mark.parametrize("name", [name for name in STORAGES if name not in SOME])
+def test_no_row_is_below_its_limit_in_any_storage(name):
+    test_code_limits_slow.test_no_row_is_below_its_limit(name)

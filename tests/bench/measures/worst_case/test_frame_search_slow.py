@@ -1,0 +1,60 @@
+"""The largest rotations of tangent frame codecs: a closed form, samples that stay below, and the table's columns."""
+
+import json
+import math
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from normalbench.bench.measures.worst_case import frame_search
+from normalbench.bench.measures.worst_case.frame_search import worst_frame
+from normalbench.bench.tables.tangent_frames import measure
+from normalbench.bench.tables.tangent_frames.sets import rotations
+from normalbench.encodings.catalogue import FRAME_ENCODINGS
+from normalbench.encodings.codecs.frame_codec import FrameCodec
+from normalbench.encodings.storages.storage import FRAME_STORAGES
+
+
+def codec_of(encoding: str, storage: str) -> FrameCodec:
+    return FrameCodec(FRAME_ENCODINGS[encoding], FRAME_STORAGES[storage])
+
+
+def test_smallest_three_is_worst_where_all_components_are_a_half():
+    """There the largest component makes up for the others: half steps of e, e and, of the one that has the hand's bit,
+    2 e move the quaternion by sqrt(1 + 1 + 4 + 16) e, where e is sqrt(1/2) / 65535 at 16 bits. The rotation is twice
+    that. It is reached to a part in a hundred: no corner of a cell is just there."""
+    closed = math.degrees(2 * math.sqrt(22) * math.sqrt(0.5) / 65535)
+    found = worst_frame(codec_of("smallest_three", "rgba16"))
+    assert 0.98 * closed < found.angle_deg < 1.0001 * closed
+    assert np.abs(found.quaternion) == pytest.approx(0.5, abs=0.02)
+    assert found.moved_deg < 1e-6 * found.angle_deg
+
+
+def test_the_frame_that_is_named_is_turned_so_far():
+    """By the codec's float64 maths, an operation at a time. It lies at a corner of a cell, so that its last bit decides
+    which of two codes it gets, which are nearly as far."""
+    codec = codec_of("octahedral_angle", "rgb10a2")
+    found = worst_frame(codec)
+    with jax.enable_x64(True):
+        q, hand = jnp.asarray(found.quaternion)[:, None], jnp.asarray([found.hand])
+        moved = float(frame_search._moves(codec, q, hand)[0])
+    assert math.degrees(2 * math.asin(math.sqrt(moved / 8))) == pytest.approx(found.angle_deg, rel=2e-3)
+
+
+@pytest.mark.parametrize("name", [f"{e.name}/{e.storages[0]}" for e in FRAME_ENCODINGS.values()])
+def test_no_sample_is_above_the_supremum(name):
+    """2^18 rotations by Haar's measure come near, and only float32 can carry one beyond."""
+    codec = codec_of(*name.split("/"))
+    met = measure.measure(measure.Case(codec, rotations(2**18, 5), "jax"))["rotation_max_deg"]
+    assert 0.75 < met / worst_frame(codec).angle_deg < 1.001
+
+
+def test_the_table_has_the_supremum_where_it_is_asked_for(run):
+    words = ["frames", "--encoding", "hexadecachoral", "--storage", "rgba8", "--backend", "jax", "--count", "4096"]
+    (plain,) = json.loads(run(*words, "--format", "json")[1])
+    (row,) = json.loads(run(*words, "--worst-case", "--format", "json")[1])
+    assert plain["rotation_sup_deg"] is None
+    assert row["rotation_sup_deg"] > row["rotation_max_deg"] == plain["rotation_max_deg"]
+    assert row["reached_max_percent"] == pytest.approx(100 * row["limit_max_deg"] / row["rotation_sup_deg"])

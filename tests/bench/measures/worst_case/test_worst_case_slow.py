@@ -1,0 +1,174 @@
+"""Suprema by search: against geometry, against samples, and found in time."""
+
+import json
+import time
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from exact_codes import fibonacci, nearest_of, storage
+from test_worst_case import codec_of
+
+from normalbench.bench.measures.worst_case.exact_codec import BLOCK, ExactCodec, ahead, degrees
+from normalbench.bench.measures.worst_case.search import worst_case
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.vec import Vec3
+
+
+def octahedral_unorm8(n: np.ndarray) -> np.ndarray:
+    """NumPy's own float64 octahedral map through UNORM8 and back, of normals of shape (3,)."""
+    e = n[:2] / np.abs(n).sum()
+    if n[2] < 0:
+        e = (1 - np.abs(e[::-1])) * np.where(e < 0, -1, 1)
+    e = np.rint((e / 2 + 0.5) * 255) / 255 * 2 - 1
+    z = 1 - np.abs(e).sum()
+    v = np.array([*(e - np.where(e < 0, -1, 1) * max(-z, 0)), z])
+    return v / np.linalg.norm(v)
+
+
+def test_the_normal_makes_the_error_that_is_said():
+    worst = worst_case(codec_of("octahedral", "rg8"))
+    n = np.array(worst.normal)
+    other = octahedral_unorm8(n)
+    angle = np.degrees(np.arctan2(np.linalg.norm(np.cross(n, other)), n @ other))
+    assert angle == pytest.approx(worst.angle_deg, rel=1e-12)
+    assert np.linalg.norm(n) == pytest.approx(1, abs=1e-15)
+    assert worst.found_by == "all corners" and 0 <= worst.moved_deg < 1e-9
+
+
+def sphere_and_grid(scale: int) -> float:
+    """The worst of a cubic grid of 1 / scale, rounded to nearest, on the sphere: every point where the sphere meets an
+    edge of a cell, and each of the four cells there."""
+    half = (np.arange(-scale, scale) + 0.5) / scale
+    a, b = (c.ravel() for c in np.meshgrid(half, half))
+    inside = a * a + b * b < 1
+    a, b = a[inside], b[inside]
+    c = np.sqrt(1 - a * a - b * b)
+    n = np.stack([a, b, c])
+    largest = 0.0
+    for da in (-0.5, 0.5):
+        for db in (-0.5, 0.5):
+            code = np.stack([np.rint(a * scale - da) + 0.0, np.rint(b * scale - db) + 0.0, np.rint(c * scale)])
+            code[0], code[1] = a * scale + da, b * scale + db
+            cosine = (n * code).sum(axis=0) / np.linalg.norm(code, axis=0)
+            largest = max(largest, float(np.degrees(np.arccos(cosine.min()))))
+    return largest
+
+
+@pytest.mark.parametrize("bits", [5, 8])
+def test_three_numbers_are_worst_where_the_sphere_meets_an_edge(bits):
+    """Climbing, which knows nothing of it, finds the exact geometry's worst."""
+    codec = Codec(ENCODINGS["xyz_renormalised"], storage("snorm", bits, bits, bits))
+    worst = worst_case(codec)
+    assert worst.angle_deg == pytest.approx(sphere_and_grid(2 ** (bits - 1) - 1), rel=1e-7)
+    assert worst.found_by == "climbing" and worst.moved_deg < 1e-9
+
+
+def test_a_lattices_worst_is_its_covering_radius():
+    """Of points that are looked up, the largest circle between them (by SciPy's Voronoi diagram of the sphere)."""
+    from scipy.spatial import SphericalVoronoi
+
+    points = fibonacci(256)
+    cells = SphericalVoronoi(points)
+    cosines = [(cells.vertices[region] @ point).min() for region, point in zip(cells.regions, points, strict=True)]
+    worst = worst_case(Codec(nearest_of(points, 16), storage("unorm", 4, 4)))
+    assert worst.angle_deg == pytest.approx(np.degrees(np.arccos(min(cosines))), rel=1e-6)
+    assert worst.found_by == "nearest codes"
+
+
+@pytest.mark.parametrize(
+    ("encoding", "where", "sup"),
+    [
+        ("octahedral_precise", "rg8", 0.6354766834),
+        ("octahedral_precise", "rg8_snorm", 0.6379930671),
+        ("equal_area_octahedral_precise", "rg8", 0.6355206575),
+        ("equal_area_octahedral_precise", "rg8_snorm", 0.5839288567),
+    ],
+)
+def test_precise_rounding_is_worst_where_another_search_finds_it(encoding, where, sup):
+    """By climbing from 6 million directions in NumPy's float64, written by somebody else."""
+    assert worst_case(codec_of(encoding, where)).angle_deg == pytest.approx(sup, rel=1e-6)
+
+
+@pytest.mark.parametrize("where", ["rg8", "rg8_snorm"])
+def test_precise_codes_are_searched_as_the_codec_rounds_them(where):
+    """The search decodes all codes around as one array; the codec decodes one after the other."""
+    codec = codec_of("octahedral_precise", where)
+    n = np.random.default_rng(11).normal(size=(3, 4096))
+    n /= np.linalg.norm(n, axis=0)
+    with jax.enable_x64(True):
+        planes = Vec3(*map(jnp.asarray, n))
+        back = np.stack(codec.round_trip(planes, ahead(planes.z)))
+    expected = ((n - back / np.linalg.norm(back, axis=0)) ** 2).sum(axis=0)
+    assert ExactCodec(codec, False).chords(n) == pytest.approx(expected, rel=1e-9)
+
+
+def test_two_forms_of_one_map_have_one_supremum():
+    """At the opposite pole the one computes 8 n.z + 8, of which a rounding of n.z alone is all there: 60 degrees were
+    found 1e-6 from it."""
+    published, classic = (worst_case(codec_of(name, "rg16")) for name in ("spheremap", "spheremap_classic"))
+    assert published.angle_deg == pytest.approx(classic.angle_deg, rel=1e-8)
+    assert published.normal == pytest.approx(classic.normal, abs=1e-9)
+
+
+def test_a_hemisphere_is_searched_for_its_code_and_the_sphere_where_z_has_its_sign():
+    """The sign of z makes the sphere two hemispheres: the same worst case."""
+    half, whole = worst_case(codec_of("xy", "rg8"), True), worst_case(codec_of("xy_sign", "rg8"))
+    assert half.angle_deg == pytest.approx(whole.angle_deg, rel=1e-8) and half.normal[2] >= 0
+    assert worst_case(codec_of("xy", "rg8")).angle_deg > 179
+
+
+SEARCHED = [
+    codec_of("octahedral", "rg8"),
+    codec_of("spherical_lut", "rg8"),
+    codec_of("octahedral_precise", "rg8"),
+]
+
+
+SEARCHED_LONG = [
+    *(codec_of(name, "rg8") for name in ("spherical", "spheremap_classic", "cryengine3")),
+    codec_of("octahedral", "rg16f", "truncate"),
+    codec_of("spherical", "rg8_snorm", "truncate"),
+    codec_of("octahedral", "rg16"),
+    codec_of("best_fit", "rgba8"),
+    codec_of("equal_area_octahedral_precise", "rg8_snorm"),
+]
+
+
+@pytest.mark.parametrize("codec", [*SEARCHED, *SEARCHED_LONG], ids=lambda codec: codec.name)
+def test_no_sample_is_worse(codec):
+    """Of two million random directions; 10^8 have been tried by hand, on these and fifty others."""
+    exact, worst = ExactCodec(codec, False), worst_case(codec)
+    random = np.random.default_rng(7)
+    largest = 0.0
+    for _ in range(2**21 // BLOCK):
+        n = random.normal(size=(3, BLOCK))
+        largest = max(largest, float(exact.chords(n / np.linalg.norm(n, axis=0)).max()))
+    assert 0.9 * worst.angle_deg < degrees(largest) <= worst.angle_deg * (1 + 1e-12)
+
+
+@pytest.mark.parametrize("encoding", ["octahedral", "spherical"])
+def test_24_bits_take_less_than_five_seconds_on_two_cores(encoding):
+    """Processor time, for other work may be going on; what was searched before is not kept."""
+    codec = Codec(ENCODINGS[encoding], storage("snorm", 12, 12))
+    assert codec.codes > 2**23
+    begin = time.process_time()
+    worst = worst_case.__wrapped__(codec)
+    assert worst.found_by == "all corners"
+    assert time.process_time() - begin < 10
+
+
+def test_the_command_says_where_and_how(run):
+    words = ["--encoding", "octahedral,xy", "--storage", "rg8", "--normals", "sphere,hemisphere", "--backend", "jax"]
+    status, out, _ = run("quality", *words, "--count", "100000", "--worst-case", "--codes", "--format", "json")
+    rows = {(row["encoding"], row["normals"]): row for row in json.loads(out)}
+    assert status == 0
+    one, half, lost = rows["octahedral", "sphere"], rows["xy", "hemisphere"], rows["xy", "sphere"]
+    assert one["angle_sup_deg"] == pytest.approx(0.953188, abs=1e-6) and one["angle_sup_deg"] > one["angle_max_deg"]
+    assert one["sup_x"] ** 2 + one["sup_y"] ** 2 + one["sup_z"] ** 2 == pytest.approx(1)
+    assert (one["domain"], half["domain"]) == ("sphere", "hemisphere") and half["sup_z"] >= 0
+    assert one["reached_max_percent"] == pytest.approx(100 * 0.492225 / 0.953188, rel=1e-5)
+    assert one["codes_unused"] == 0 and half["codes_unused"] > 0
+    assert lost["angle_sup_deg"] is None and "the set is larger" in lost["sup_found_by"], "half of it has no code"

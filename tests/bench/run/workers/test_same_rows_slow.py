@@ -1,0 +1,138 @@
+"""What workers measure is what one process measures, to the digit, with the same pictures."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from speed.scheduled import scheduled
+from written import as_document
+
+import normalbench as nb
+from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.tables.registry import TABLES
+from normalbench.bench.tables.table import Role
+from normalbench.gbuffer.scenes.mesh import sphere
+
+OCTAHEDRAL = """
+vec2 wrap(vec2 v) { return (1.0 - abs(v.yx)) * vec2(v.x >= 0.0 ? 1.0 : -1.0, v.y >= 0.0 ? 1.0 : -1.0); }
+vec2 mine_encode(vec3 n) {
+    n /= abs(n.x) + abs(n.y) + abs(n.z);
+    return n.z >= 0.0 ? n.xy : wrap(n.xy);
+}
+vec3 mine_decode(vec2 e) {
+    vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
+    if (n.z < 0.0) n.xy = wrap(n.xy);
+    return normalize(n);
+}
+"""
+
+
+LAYOUT = """
+encoding = "own/mine.glsl"
+targets = [
+    { format = "rgba8", holds = "normal.x:11 normal.y:11 power:10" },
+    { format = "rgba8", holds = "albedo.r albedo.g albedo.b kind" },
+    { format = "rgba8", holds = "specular.r specular.g specular.b" },
+]
+"""
+
+
+# Of every kind: several back ends, frames with pictures, and steps that are functions.
+COMMANDS = {
+    "quality": "--encoding octahedral,spheremap --storage rgba8,rg8 --normals sphere,axes --count 4096",
+    "depth": "--depth linear,logarithmic --near 0.1 --count 512 --storage depth16,depth24",
+    "lights": "--experiment equal,banding --light-buffer linear,rgba16f --sum 1 --counts 4",
+    "render": "--encoding octahedral,spheremap --scene gloss --size 64x36 --repeats 0",
+    "motion": "--encoding octahedral --storage rg8 --turn 0.25,1 --frames 4 --count 256 --size 64x36",
+}
+
+
+PICTURED = ("lights", "render")
+
+
+@pytest.fixture(scope="module")
+def scheduler():
+    """The address of a scheduler of two workers."""
+    with scheduled({}, {}) as there:
+        yield there.address
+
+
+def rows_of(path: Path, table: str) -> list[dict]:
+    times = {column.name for column in TABLES[table].of_role(Role.TIME)}
+    return [{k: v for k, v in row.items() if k not in times} for row in json.loads(path.read_text())]
+
+
+def pictures(folder: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def measured(run, folder: Path, table: str, words: str, *on: str) -> tuple[list[dict], dict[str, bytes]]:
+    pictured = ("--images", str(folder / "images")) if table in PICTURED else ()
+    said = run(table, *words.split(), *pictured, "-o", str(folder / "rows.json"), *on)
+    assert said[0] == 0, said[2]
+    assert "measured by this process" not in said[2], said[2]
+    return rows_of(folder / "rows.json", table), pictures(folder / "images")
+
+
+@pytest.mark.parametrize("table", COMMANDS)
+def test_the_rows_and_pictures_are_those_of_one_process(gl, run, tmp_path, table):  # noqa: ARG001
+    """Every figure to the last digit, in the same order; every picture to the last byte."""
+    (tmp_path / "one").mkdir()
+    (tmp_path / "two").mkdir()
+    here = measured(run, tmp_path / "one", table, COMMANDS[table])
+    there = measured(run, tmp_path / "two", table, COMMANDS[table], "--on", "local:2")
+    assert here[0] and here == there
+    assert bool(here[1]) == (table in PICTURED), f"{len(here[1])} pictures"
+
+
+@pytest.mark.parametrize("is_absolute", [False, True], ids=["relative", "absolute"])
+def test_users_files_travel(gl, run, scheduler, tmp_path, monkeypatch, is_absolute):  # noqa: ARG001
+    """An encoder with what it includes, a layout that names it, a scene and a set of normals, named in any way: the
+    same rows."""
+    typed = tmp_path / "typed" / "here"
+    (typed / "own").mkdir(parents=True)
+    monkeypatch.chdir(typed)
+    wrap, rest = OCTAHEDRAL.strip().split("\n", 1)
+    (typed / "own" / "wrap.glsl").write_text(wrap)
+    (typed / "own" / "mine.glsl").write_text('#include "wrap.glsl"\n' + rest)
+    (typed.parent / "other.glsl").write_text(OCTAHEDRAL.replace("mine", "other"))
+    (typed / "lay.toml").write_text(LAYOUT)
+    as_document([sphere(1.0, 16, 8)]).write(typed / "scene.glb")
+    n = np.random.default_rng(1).normal(size=(500, 3))
+    np.save(typed / "list.npy", (n / np.linalg.norm(n, axis=1, keepdims=True)).astype(np.float32))
+    at = f"{typed}/" if is_absolute else ""
+    encoders = f"{at}own/mine.glsl,{typed.parent}/other.glsl,../other.glsl" if is_absolute else "own/mine.glsl"
+    encoders = encoders.removesuffix(",../other.glsl") if is_absolute else f"{encoders},../other.glsl"
+    for number, (table, words) in enumerate(
+        [
+            ("quality", f"--encoding {encoders} --storage rg8 --normals {at}list.npy --backend glsl"),
+            ("render", f"--encoding {encoders} --storage rg8 --scene {at}scene.glb --size 64x36 --repeats 0"),
+            ("render", f"--layout {at}lay.toml,hybrid --scene {at}scene.glb --size 64x36 --repeats 0"),
+        ]
+    ):
+        if is_absolute and table == "quality":
+            continue  # to look at encoders first takes seconds, and paths are the same everywhere
+        for name in ("one", "two"):
+            (tmp_path / f"{number}-{name}").mkdir()
+        here = measured(run, tmp_path / f"{number}-one", table, words)
+        there = measured(run, tmp_path / f"{number}-two", table, words, "--on", scheduler)
+        assert len(here[0]) >= 2 and here == there, words
+
+
+def test_python_takes_workers_as_well(scheduler):
+    """Of this machine, and of a scheduler."""
+    alone, *others = (
+        nb.quality(encoding=["octahedral", "xyz"], storage=["rgba8"], normals="axes", on=on)
+        for on in (None, "local:2", scheduler)
+    )
+    for one in others:
+        pd.testing.assert_frame_equal(one, alone)
+
+
+def test_a_value_of_pythons_own_is_refused():
+    """Workers measure what has a name or is a file."""
+    normals = {"own": np.eye(3)}
+    with pytest.raises(UsageError, match="normals: own is a value of this process; workers measure names and files"):
+        nb.quality(encoding="octahedral", storage="rg8", normals=normals, on="local:1")

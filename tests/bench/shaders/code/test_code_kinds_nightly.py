@@ -1,0 +1,11 @@
+"""Code of motion vectors, depth, light and curves: run in each language, and equal to the catalogue's."""
+
+import pytest
+import test_code_kinds_slow
+from test_code_kinds_slow import pairs
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("kind, name, storage, language", pairs())
+def test_the_code_of_a_kind_gives_the_catalogues_texels_in_any_language(kind, name, storage, language, tmp_path):
+    test_code_kinds_slow.test_the_code_of_a_kind_gives_the_catalogues_texels(kind, name, storage, language, tmp_path)

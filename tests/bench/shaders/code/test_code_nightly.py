@@ -1,0 +1,38 @@
+"""Code of codecs: written in every language, run there, and equal to the catalogue's."""
+
+from itertools import product
+
+import pytest
+import test_code_slow
+from languages import RUN, require_runner
+from test_code import written
+from test_code_slow import CODECS
+
+from normalbench.bench.shaders.code.files import code_of
+from normalbench.bench.shaders.code.verify import agreement
+from normalbench.bench.subjects.codecs.names import codecs_named
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.storages.storage import STORAGES
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("name, language", [*product(CODECS, RUN)])
+def test_the_code_of_a_codec_gives_the_catalogues_texels_in_any_language(language, name, tmp_path):
+    test_code_slow.test_the_code_of_a_codec_gives_the_catalogues_texels(language, name, tmp_path)
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("encoding", ENCODINGS)
+def test_the_code_of_every_codec_gives_the_catalogues_texels(encoding, tmp_path):
+    """As above, of every storage that fits. Slang is given HLSL's text, and OpenGL that of GLSL ES but for
+    precisions."""
+    languages = ("hlsl", "wgsl", "c", "essl")
+    for language in languages:
+        require_runner(language)
+    wrong = []
+    for codec in (codec for codec in codecs_named(encoding, ",".join(STORAGES), "nearest") if codec.fits):
+        for language in languages:
+            code = code_of(codec, language)
+            found = agreement(codec, language, written(tmp_path, code), code.interface)
+            wrong += [] if found.holds else [f"{codec.name} in {language}: {found.says}"]
+    assert not wrong, wrong

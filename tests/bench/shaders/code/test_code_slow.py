@@ -1,0 +1,115 @@
+"""Code of codecs: written in every language, run there, and equal to the catalogue's."""
+
+import re
+from itertools import product
+from pathlib import Path
+
+import pytest
+from languages import RUN, require_runner
+from slowly import a_tenth
+from test_code import codec_of, written
+
+from normalbench.bench.door import code_command
+from normalbench.bench.shaders.code.files import code_of
+from normalbench.bench.shaders.code.verify import agreement
+from normalbench.bench.subjects.codecs.user_encodings import encodings_named
+from normalbench.bench.tables.cost import measure as cost
+
+# One of each that is made otherwise: plain, precise, with a view, a sign, tables, levels, polynomials, an axis, a
+# parameter, floats of each size, numbers across bytes, signed ones, the ways to round, centred numbers, floats of any
+# form, signed integers over a power of two, and words of 64 bits.
+CODECS = (
+    "octahedral/rgb10a2",
+    "octahedral_precise/rgb8_12_12_snorm",
+    "per_pixel_view/rg16f",
+    "xy_sign/rg8",
+    "spherical_lut/rg8",
+    "cube/rgba8_11_11_10/truncate",
+    "tetrahedral/rgb8_10_10_2",
+    "spherical:scale=0.9/rg16",
+    "xyz_renormalised:axis=y/r11g11b10f",
+    "spherical_fibonacci/rg8",
+    "stereographic/rg16_snorm/truncate_half",
+    "xyz/rgba32f",
+    "hemi_octahedral/rgba16f/truncate",
+    "octahedral/centred:8:8",
+    "octahedral/float:4:3",
+    "octahedral/ufloat:8:7/truncate",
+    "octahedral_precise/snorm_full:8:7",
+    "xyz/unorm:20:17:20",
+    "cube/snorm:18:18:4/truncate",
+)
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("name, language", a_tenth(product(CODECS, RUN)))
+def test_the_code_of_a_codec_gives_the_catalogues_texels(language, name, tmp_path):
+    """2^16 hard and random normals: texels, numbers that come back, and render targets, in each language."""
+    require_runner(language)
+    codec = codec_of(name)
+    code = code_of(codec, language, "p")
+    found = agreement(codec, language, written(tmp_path, code), code.interface)
+    assert found.holds, found.says
+
+
+INSTRUCTIONS = ("spheremap", "octahedral", "octahedral_precise", "best_fit_searched")
+
+
+@pytest.mark.usefixtures("radv")
+@pytest.mark.parametrize("language", ["glsl", "hlsl"])
+def test_written_code_costs_the_catalogues_instructions(language, tmp_path):
+    """Read again as a user's encoder, encode and decode take as many instructions on RADV, for 8-bit storage."""
+    require_runner("hlsl")
+    codecs = [codec_of(f"{name}/{'rgba8' if name == 'best_fit_searched' else 'rg8'}") for name in INSTRUCTIONS]
+    files = [written(tmp_path, code_of(codec, language, f"my_{codec.encoding.name}")) for codec in codecs]
+    mine = encodings_named(",".join(map(str, files)))
+    encodings = [*mine, *(codec.encoding for codec in codecs)]
+    counts = cost.counted(cost.cases(encodings, (), cost.OPERATIONS), "navi21", "fragment")
+    for one, codec in zip(mine, codecs, strict=True):
+        for operation in cost.OPERATIONS:
+            found, ours = (counts[name, operation]["instructions"] for name in (one.name, codec.encoding.name))
+            assert found == ours, f"{one.name} {operation}: {found} instructions, the catalogue's {ours}"
+
+
+@pytest.mark.usefixtures("gl")
+def test_code_prints_one_file_that_says_what_it_is(run):
+    """Codec, figures, how it was verified, the command that made it, licence; then the functions."""
+    status, out, err = run("code", "spheremap", "--storage", "rg8", "--to", "glsl", "--prefix", "sm")
+    assert (status, err) == (0, "")
+    head = " ".join(line.removeprefix("//").strip() for line in out.partition("\n\n")[0].splitlines())
+    assert head.startswith("spheremap/rg8 in GLSL: sm_encode, sm_pack, sm_unpack, sm_decode;")
+    assert re.search(
+        r"mean 0\.492\d degrees, RMS 0\.719\d; the largest of all directions is 11\.9\d degrees; 22\.\d+ was met", head
+    )
+    assert re.search(r"Instructions: \d+ to encode and \d+ to decode|Instructions: not counted", head)
+    assert re.search(r"texels of (\d+ of )?65536 normals", head)
+    assert "normalbench code spheremap --storage rg8 --to glsl --prefix sm" in head
+    assert "MIT License" in head
+    assert "vec2 sm_encode(vec3 n) {" in out
+
+
+@pytest.mark.usefixtures("gl")
+def test_code_writes_a_file_of_each_language_and_its_tables(run, tmp_path):
+    """The header of C and the texture of shaders lie beside them."""
+    status, _, err = run("code", "spherical_lut", "--storage", "rg8", "--to", "hlsl,c", "-o", str(tmp_path / "made"))
+    assert status == 0, err
+    assert "Table: normal_xy, 256 x 256 texels of R32G32_FLOAT, 512 kB." in _unwrapped(tmp_path / "made")
+    names = {path.name for path in (tmp_path / "made").iterdir()}
+    tables = {f"spherical_lut_rg8_{name}" for name in ("angle.dds", "xy.dds", "tables.h")}
+    assert names == {"spherical_lut_rg8.hlsl", "spherical_lut_rg8.h", *tables}
+
+
+def _unwrapped(folder: Path) -> str:
+    return " ".join((folder / "spherical_lut_rg8.hlsl").read_text().replace("//", "").split())
+
+
+@pytest.mark.usefixtures("gl")
+def test_a_codec_is_measured_once_for_all_languages(run, tmp_path, monkeypatch):
+    """Every file's head has its figures."""
+    seen, own = [], code_command.figures
+    monkeypatch.setattr(code_command, "figures", lambda codec: seen.append(codec.name) or own(codec))
+    words = ("octahedral,xy", "--storage", "rg8", "--to", "glsl,c,msl")
+    assert run("code", *words, "-o", str(tmp_path / "codec"))[0] == 0
+    assert seen == ["octahedral/rg8", "xy/rg8"]
+    texts = [path.read_text() for path in (tmp_path / "codec").iterdir()]
+    assert len(texts) == 6 and all("Error on " in text for text in texts)

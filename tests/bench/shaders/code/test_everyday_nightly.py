@@ -1,0 +1,13 @@
+"""Shaders as people write them: read, and meant the same in every language."""
+
+import pytest
+import test_everyday
+from everyday import GLSL
+
+pytestmark = pytest.mark.usefixtures("gl")
+
+
+@pytest.mark.parametrize("name", GLSL)
+@pytest.mark.parametrize("language", ["slang", "essl"])
+def test_everyday_glsl_is_read_and_means_the_same_in_two_others(language, name, tmp_path):
+    test_everyday.test_everyday_glsl_is_read_and_means_the_same(language, name, tmp_path)

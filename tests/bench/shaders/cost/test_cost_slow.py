@@ -1,0 +1,253 @@
+"""What encodings cost: exact subtraction, the same counts twice, and what happens where something fails."""
+
+import itertools
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from costing import glsl
+
+from normalbench.bench.ground.options.gpu_families import CHOICES
+from normalbench.bench.shaders.isa.disassembly import KINDS, names
+from normalbench.bench.tables.cost import measure as cost
+from normalbench.bench.tables.registry import TABLES
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.gbuffer.defines.kernels import STAGES
+from normalbench.gbuffer.defines.packings import PACKINGS
+
+
+@pytest.fixture(scope="session")
+def whole_table(radv, tmp_path_factory):  # noqa: ARG001 (asks for the compilers)
+    """Every row of the default table, and its disassembly, from an empty cache."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
+        packings = [
+            p
+            for name in ("rgba8", "rgba8_snorm", "12:12", "depth16", "depth24", "depth24_sign")
+            for p in PACKINGS[name]
+        ]
+        chosen = cost.cases(ENCODINGS.values(), packings, cost.OPERATIONS)
+        lacks: list[str] = []
+        found = list(cost.isa_rows(chosen, list(STAGES), CHOICES["radeon"], lacks, lambda _: None))
+        assert not lacks
+        return found
+
+
+# Of a Radeon's row.
+LISTED = ("issue_slots", *KINDS, "packed", "branches", "loops", "looped")
+
+
+IDENTITIES = [
+    ("two", "n.xy", "e.xyx", 2),
+    ("crossed", "n.zy", "vec3(view.y, e.yx)", 2),
+    ("three", "n", "e", 3),
+    ("turned", "vec3(n.yz, view.x)", "e.zxy", 3),
+]
+
+
+@pytest.mark.usefixtures("radv", "own_cache")
+def test_an_encoding_that_does_nothing_costs_exactly_nothing(tmp_path):
+    """Encode and decode, fragment and compute, every family, every figure; whatever it moves where."""
+    encodings = [glsl(tmp_path, *identity) for identity in IDENTITIES]
+    chosen = cost.cases(encodings, (), cost.OPERATIONS)
+    rows = [r for r, _ in cost.isa_rows(chosen, list(STAGES), CHOICES["radeon"], [], lambda _: None)]
+    assert len(rows) == len(IDENTITIES) * 2 * 2 * len(CHOICES["radeon"])
+    for row in rows:
+        columns = {*cost.STATISTICS, *LISTED, "spirv_instructions"} - {"stall_cycles"}
+        figures = {column: row[column] for column in columns}
+        assert set(figures.values()) == {0}, f"{row['encoding']} {row['operation']} {row['stage']} {row['family']}"
+
+
+def costs_of(encode: str, before: str, folder: Path, families=CHOICES["radeon"]) -> list[dict]:
+    """Rows of what encodes so, in both stages."""
+    encoding = glsl(folder, "mine", encode, "vec3(e, 0.0)", 2, before)
+    chosen = cost.cases([encoding], (), ["encode"])
+    return [row for row, _ in cost.isa_rows(chosen, list(STAGES), list(families), [], lambda _: None)]
+
+
+@pytest.mark.usefixtures("radv", "own_cache")
+def test_two_multiply_adds_cost_two_slots_everywhere(tmp_path):
+    for row in costs_of("n.xy * view.x + n.z", "", tmp_path):
+        assert (row["instructions"], row["full_rate"], row["issue_slots"]) == (2, 2, 2), row
+
+
+@pytest.mark.usefixtures("radv", "own_cache")
+def test_a_loop_of_a_known_length_costs_what_it_does_written_out(tmp_path):
+    turns = "vec2 turned(vec2 e, vec3 n) { for (int i = 0; i < 4; ++i) e = e * n.yz + n.zx; return e; }\n"
+    once = "vec2 once(vec2 e, vec3 n) { return e * n.yz + n.zx; }\n"
+    looped = costs_of("turned(n.xy, n)", turns, tmp_path)
+    for row, written in zip(looped, costs_of("once(once(once(once(n.xy, n), n), n), n)", once, tmp_path), strict=True):
+        columns = ("spirv_instructions", "instructions", "issue_slots", "loops", "branches")
+        assert [row[c] for c in columns] == [written[c] for c in columns], row
+        assert (row["issue_slots"], row["loops"], row["branches"]) == (8, 0, 0) and row["spirv_instructions"] > 8
+
+
+@pytest.mark.usefixtures("radv", "own_cache")
+def test_a_loop_that_stays_and_a_branch_are_told(tmp_path):
+    """Of either stage and each generation; the kernel's own branch is not one of them."""
+    loop = "vec2 many(vec2 e) { while (e.x < 0.9) e = sin(e + e.yx); return e; }\n"
+    rows = costs_of("many(n.xy)", loop, tmp_path, ("polaris10", "navi31"))
+    for row in rows:
+        assert row["loops"] == 1 and row["instructions"] < 40 and row["spirv_instructions"] is None, row
+    assert cost.static_notes(rows) == [
+        "static count: mine encode contains a loop, whose body counts once, however often it runs"
+    ]
+    dear = "; ".join("e = sin(e + e.yx) / e" for _ in range(12))
+    sides = f"vec2 sides(vec2 e) {{ if (e.x > 0.3) {{ {dear}; }} return e; }}\n"
+    rows = costs_of("sides(n.xy)", sides, tmp_path, ("polaris10", "navi31"))
+    assert [(row["branches"], row["loops"]) for row in rows] == [(1, 0)] * 4
+    assert cost.static_notes(rows) == ["static count: mine encode contains a branch, both of whose sides count"]
+
+
+@pytest.mark.usefixtures("radv", "own_cache")
+def test_names_of_the_kernels_are_free_for_users(tmp_path):
+    taken = "const float made = 0.5, lane = 2.0;\nfloat given(float operation) { return operation * made; }\n"
+    taken += "float beside(float sum) { return given(sum) * lane; }\n"
+    rows = costs_of("n.xy * beside(1.0)", taken, tmp_path, ("navi21",))
+    assert [row["skipped"] for row in rows] == [None, None] and {row["instructions"] for row in rows} == {0}
+
+
+def test_every_encoding_stage_and_family_has_its_row(whole_table):
+    keys = [tuple(row[c] for c in ("encoding", "storage", "operation", "stage", "family")) for row, _ in whole_table]
+    assert len(set(keys)) == len(keys)
+    wanted = itertools.product(ENCODINGS, [None], cost.OPERATIONS, STAGES, CHOICES["radeon"])
+    assert set(wanted) <= set(keys)
+    for row, assembly in whole_table:
+        assert tuple(row) == tuple(TABLES["cost"].empty())
+        assert row["skipped"] is None and row["driver"].startswith("Mesa ") and row["instructions"] >= 0, row
+        is_counted = row["encoding"] and not row["loops"] and not ENCODINGS[row["encoding"]].is_precise
+        assert not is_counted or row["spirv_instructions"] >= 0, row
+        assert assembly
+
+
+def test_the_kinds_add_up_to_the_drivers_own_count(whole_table):
+    for row, assembly in whole_table:
+        assert sum(row[kind] for kind in KINDS) == row["instructions"], row
+        assert len(names(assembly)) > row["instructions"]
+
+
+STORE = re.compile(r"^\s+buffer_store_\w+ v\d+, (v\d+), s\[[\d:]+\], (\S+) offen", re.M)
+
+
+def test_no_kernel_computes_addresses(whole_table):
+    """Every store of a compute kernel is by the lane's one register and an offset within the instruction."""
+    for row, assembly in whole_table:
+        if row["stage"] == "compute":
+            stores = STORE.findall(assembly)
+            assert len(stores) >= 7 and len(set(stores)) == 1 and stores[0][1] == "0", (
+                cost.listing(row, "")[0],
+                stores,
+            )
+
+
+def test_slots_are_what_the_drivers_model_says_where_arithmetic_is_all_there_is(whole_table):
+    """Navi's fragment shaders, wave of 64: two cycles a slot, from one kernel of two numbers to another."""
+    for family in ("navi10", "navi21", "navi31"):
+        found = {
+            row["encoding"]: (row["issue_slots"], row["kernel_inverse_throughput"])
+            for row, _ in whole_table
+            if (row["family"], row["stage"], row["operation"]) == (family, "fragment", "decode")
+        }
+        first = found["xy"]
+        for name in ("spheremap", "stereographic", "octahedral", "spherical", "per_pixel_view"):
+            slots, cycles = (a - b for a, b in zip(found[name], first, strict=True))
+            assert cycles == 2 * slots > 0, (family, name)
+
+
+def test_stages_have_one_count_of_spirv(whole_table):
+    found = {}
+    for row, _ in whole_table:
+        if row["encoding"]:
+            found.setdefault((row["encoding"], row["operation"]), set()).add(row["spirv_instructions"])
+    assert all(len(counts) == 1 for counts in found.values()), found
+
+
+def instructions(table, operation: str, stage: str = "fragment") -> dict[str, dict[str, int]]:
+    """By family and encoding or storage."""
+    found: dict[str, dict[str, int]] = {}
+    for row, _ in table:
+        if (row["operation"], row["stage"]) == (operation, stage):
+            found.setdefault(row["family"], {})[row["encoding"] or row["storage"]] = row["instructions"]
+    return found
+
+
+@pytest.mark.parametrize("stage", STAGES)
+def test_known_orders_hold_in_every_family(whole_table, stage):
+    for family, count in instructions(whole_table, "encode", stage).items():
+        cheap = [count[name] for name in ("xy", "spheremap", "stereographic", "octahedral")]
+        assert cheap == sorted(set(cheap)), (family, count)
+        # The other way round than in ps_3_0, where a slot computes up to four numbers.
+        assert count["octahedral"] < count["spherical"] < count["per_pixel_view"] < count["best_fit"], (family, count)
+        assert count["xyz"] == count["xy"] == 0
+    for family, count in instructions(whole_table, "decode", stage).items():
+        assert count["xy"] < count["stereographic"] < count["spheremap"] < count["octahedral"], (family, count)
+        assert count["octahedral"] < count["spherical"] < count["per_pixel_view"], (family, count)
+
+
+def test_spheremap_costs_the_articles_four_and_three_for_its_pole(whole_table):
+    """ps_3_0: mad, rsq, mad, mov. Here mad, rsq, two mul, and cmp and two cndmask for n.z = -1; no scale and bias."""
+    for row, assembly in whole_table:
+        if (row["encoding"], row["operation"], row["stage"]) == ("spheremap", "encode", "fragment"):
+            assert (row["full_rate"], row["transcendental"]) == (6, 1), row
+            assert sum(name.startswith(("v_cmp", "v_cndmask")) for name in names(assembly)) == 3
+
+
+def test_storages_cost_what_their_conversion_is(whole_table):
+    """UNORM one multiply-add a number, SNORM nothing, packed words more."""
+    for stage, operation in itertools.product(STAGES, ("pack", "unpack")):
+        for count in instructions(whole_table, operation, stage).values():
+            assert (count["rgba8 8:8"], count["rgba8 8:8:8"]) == (2, 3)
+            assert count["rgba8_snorm 8:8"] == count["rgba8_snorm 8:8:8"] == 0
+            assert min(count["rgb8_12_12 12:12"], count["rgba8 depth 8:8"]) > 3 * count["rgba8 8:8"]
+            assert count["rgba8 signed depth 8:8:8"] > count["rgba8 depth 8:8:8"]
+
+
+@pytest.mark.usefixtures("radv", "own_cache")
+def test_an_encoding_that_is_rounded_precisely_costs_its_choice():
+    """Of four codes of two numbers each is decoded: what a lane pays to round so."""
+    plain, precise = (ENCODINGS[name] for name in ("octahedral", "octahedral_precise"))
+    chosen = cost.cases([plain, precise], (), cost.OPERATIONS)
+    rows = {
+        (row["encoding"], row["operation"], row["stage"]): row
+        for row, _ in cost.isa_rows(chosen, list(STAGES), ["navi21"], [], lambda _: None)
+    }
+    for stage in STAGES:
+        once, again = (rows[name, "encode", stage] for name in ("octahedral", "octahedral_precise"))
+        decode = rows["octahedral", "decode", stage]["instructions"]
+        assert again["instructions"] > once["instructions"] + 4 * decode and again["spirv_instructions"] is None
+        assert rows["octahedral_precise", "decode", stage]["instructions"] == decode
+
+
+def test_the_far_plane_is_no_lanes_work(whole_table):
+    for row, _ in whole_table:
+        assert row["transcendental"] == 0 or "depth" not in str(row["storage"]), row
+
+
+@pytest.mark.usefixtures("radv", "own_cache")
+def test_instructions_wait_for_no_import_of_jax_or_pandas():
+    """From the cache the table is there in two seconds, of which JAX would take one more."""
+    program = (
+        "import sys; from normalbench.bench.door.cli.app import main;"
+        "asked = '--isa --encoding spheremap --family navi21 --storage rgba8';"
+        "sys.argv = ['normalbench', 'cost', *asked.split()]; main();"
+        "print({'jax', 'pandas', 'matplotlib'} & set(sys.modules) or 'light')"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert "spheremap" in done.stdout and done.stdout.strip().endswith("light"), done.stdout[-200:]
+
+
+@pytest.mark.usefixtures("radv")
+def test_disassembly_is_written(run, tmp_path):
+    out = tmp_path / "listings"
+    status, text, err = run(
+        *("cost", "--isa", "--article", "--encoding", "xy,octahedral", "--storage", "rgba8"),
+        *("--family", "navi10,navi21", "--disassembly", str(out)),
+    )
+    assert (status, err) == (0, "")
+    listing = (out / "navi21" / "fragment-octahedral-encode.asm").read_text()
+    assert listing.startswith("; octahedral encode, fragment, navi21\n") and "v_rcp_f32" in listing
+    assert (out / "source" / "octahedral.glsl").read_text() == ENCODINGS["octahedral"].glsl.read_text()
+    assert len(list(out.rglob("*.asm"))) == 2 * 2 * 2 * 4
+    assert "ps_3_0 slots / navi10 fragment instructions: xy 1/0" in text and "Radeon HD 2400" in text

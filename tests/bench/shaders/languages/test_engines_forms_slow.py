@@ -1,0 +1,126 @@
+"""Encoders in the forms that engines write: each is read as it lies, and has the figures of the code that it is."""
+
+import json
+import shutil
+
+import pytest
+from manual import ROOT
+
+from normalbench.bench.shaders.languages.translated import translated
+
+FORMS = ROOT / "tests" / "inputs" / "encoders"
+
+
+# The catalogue's mean on the sphere in 8:8 bits, in degrees.
+OCTAHEDRAL = 0.3356
+
+
+OF_OCTAHEDRAL = (
+    *("names.glsl", "main.glsl", "uniform.glsl", "other.glsl", "prelude.glsl"),
+    *("namespace.hlsl", "namespace.slang", "select.hlsl", "other.hlsl", "default.hlsl", "modify.hlsl"),
+    *("mine.ush", "mine.hlsl.h", "root/gbuffer/pack.hlsl", "a+b/mine.hlsl"),
+)
+
+
+OF_XY = (
+    *("mediump.glsl", "struct.wgsl", "binding.wgsl", "import.wgsl", "taken.wgsl", "struct.hlsl"),
+    *("half_literal.hlsl", "f16.hlsl", "real3x3.hlsl", "overloads.hlsl"),
+)
+
+
+def angles(run, tmp_path, files, normals) -> dict[str, float]:
+    """The mean angle of each file; GLSL that is named by its functions gets a name of its own."""
+    shutil.copytree(FORMS, tmp_path / "forms")
+    for path in (tmp_path / "forms").iterdir():
+        if path.is_file():
+            path.write_text(path.read_text().replace("dir_", f"{path.stem}_{path.suffix[1:]}_"))
+    asked = ",".join(str(tmp_path / "forms" / name) for name in files)
+    storage = ("--storage", "rg8", "--backend", "glsl", "--count", "65536", "--format", "json")
+    asked_of = ("--encoding", asked, "--normals", normals, "--arithmetic", "float")
+    status, out, err = run("quality", *asked_of, *storage)
+    assert status == 0, err
+    return {row["encoding"]: row["angle_mean_deg"] for row in json.loads(out)}
+
+
+@pytest.mark.usefixtures("gl")
+def test_octahedral_has_its_mean_in_every_form(run, tmp_path):
+    """Names, main, uniforms and functions that are not there, namespaces, defaults, include roots, endings."""
+    found = angles(run, tmp_path, OF_OCTAHEDRAL, "sphere")
+    assert len(found) == len(OF_OCTAHEDRAL)
+    assert found == {name: pytest.approx(OCTAHEDRAL, abs=0.002) for name in found}
+
+
+@pytest.mark.usefixtures("gl")
+def test_xy_has_its_mean_in_every_form(run, tmp_path):
+    """Half literals, overloads, Unity's types, structures, and WGSL of engines' preprocessors."""
+    found = angles(run, tmp_path, OF_XY, "hemisphere")
+    _, out, _ = run(
+        *("quality", "--encoding", "xy", "--storage", "rg8", "--backend", "glsl", "--count", "65536"),
+        *("--normals", "hemisphere", "--format", "json"),
+    )
+    (row,) = json.loads(out)
+    assert len(found) == len(OF_XY)
+    assert found == {name: pytest.approx(row["angle_mean_deg"], rel=1e-4) for name in found}
+
+
+@pytest.mark.usefixtures("gl", "slang")
+def test_of_several_pairs_the_one_that_undoes_itself_is_measured(run, tmp_path):
+    """Several that do are named."""
+    path = tmp_path / "mine.hlsl"
+    path.write_text(
+        "float2 MapA(float3 n) { return n.xy; }\nfloat2 MapB(float3 n) { return n.zz; }\n"
+        "float3 BackA(float2 e) { return float3(e, sqrt(saturate(1.0 - dot(e, e)))); }\n"
+    )
+    words = ("--storage", "rg8", "--normals", "hemisphere", "--count", "4096", "--backend", "glsl", "--format", "json")
+    _, out, _ = run("quality", "--encoding", str(path), *words)
+    (row,) = json.loads(out)
+    assert row["encoding"] == "mine.hlsl:MapA" and row["angle_mean_deg"] == pytest.approx(0.463, abs=0.01)
+    status, _, said = run("quality", "--encoding", str(FORMS / "many.hlsl"), *words)
+    assert status == 2 and "2 of its pairs undo themselves; name one, or take --all-pairs: " in said
+    assert all(f"many.hlsl:dir_to_oct_{one}:oct_to_dir_{one}" in said for one in ("snorm", "unorm"))
+    _, out, _ = run("quality", "--encoding", str(FORMS / "many.hlsl"), "--all-pairs", *words)
+    assert [row["encoding"] for row in json.loads(out)] == [f"many.hlsl:dir_to_oct_{one}" for one in ("snorm", "unorm")]
+
+
+@pytest.mark.usefixtures("slang")
+def test_thousands_of_functions_that_are_wrong_stand_in_no_pairs_way(tmp_path):
+    path = tmp_path / "mine.slang"
+    wrong = "".join(f"float unused_{at}(float2 p)\n{{ return gone(p).x; }}\n" for at in range(1000))
+    wrong += "".join(f"Gone{at} lost_{at}(float2 p)\n{{ return gone(p).x; }}\n" for at in range(1000))
+    path.write_text(
+        "float2 PackDir(float3 n) { return n.xy; }\n" + wrong + "float3 UnpackDir(float2 e) { return float3(e, 0); }\n"
+    )
+    assert "gone" not in translated(path).text
+
+
+CUT_OFF = "codes are cut off instead of rounded: rounding would halve the error"
+
+
+# The mean, of which normals, and the bits that are used.
+PACKED = {
+    "uint.hlsl:PackDir32:UnpackDir32": (0.00261, "sphere", 32),
+    "uint_only.hlsl": (0.3385, "sphere", 24),
+    "float.hlsl": (0.8607, "hemisphere", 16),
+}
+
+
+@pytest.mark.usefixtures("gl", "slang")
+@pytest.mark.parametrize("name", PACKED)
+def test_an_integer_is_measured_as_it_stands(run, name):
+    """Of a uint the halves are stored exactly, in one row whatever storages are named. 0.00261 degrees are octahedral's
+    16:16 cut off, twice what rounding leaves; 0.3385 those of 8:8:8, cut off and normalised; 0.8607
+    those of xy in 8:8."""
+    mean, normals, bits = PACKED[name]
+    storage = ("--storage", "rg8,rg16", "--backend", "glsl", "--count", "65536", "--format", "json")
+    status, out, err = run("quality", "--encoding", str(FORMS / name), "--normals", normals, *storage)
+    (row,) = json.loads(out)
+    assert status == 0 and CUT_OFF in err and (row["storage"], row["bits"]) == ("bits32", bits)
+    assert row["angle_mean_deg"] == pytest.approx(mean, rel=0.005)
+
+
+@pytest.mark.usefixtures("gl", "slang")
+def test_a_packed_pair_beside_another_is_named(run):
+    storage = ("--storage", "rg8", "--backend", "glsl", "--count", "4096", "--format", "json")
+    _, out, err = run("quality", "--encoding", str(FORMS / "uint.hlsl"), "--normals", "sphere", *storage)
+    assert json.loads(out)[0]["storage"] == "rg8"
+    assert "PackDir32:UnpackDir32, which packs into a uint, is measured if it is named" in err

@@ -1,0 +1,128 @@
+"""Users' files in HLSL and Slang in every command, and what is wrong with one said in a line that spares the others."""
+
+import itertools
+import json
+import re
+
+import pytest
+import test_translated
+from test_translated import MINE, QUICK, changed, written
+
+from normalbench.encodings import vec
+from normalbench.encodings.catalogue import ENCODINGS
+
+pytestmark = pytest.mark.usefixtures("gl")
+_here = test_translated._here
+
+
+BOMB = "#define A0 s += sin(s);\n" + "".join(f"#define A{i + 1} A{i} A{i} A{i} A{i}\n" for i in range(14))
+
+
+def test_a_file_is_measured_rendered_and_costed(run, tmp_path, ending):
+    path = written(tmp_path, MINE, f"mine.{ending}")
+    status, out, err = run("quality", "--encoding", f"{path},hemi_octahedral", *QUICK)
+    own, catalogues = (row["angle_mean_deg"] for row in json.loads(out))
+    assert status == 0 and own == pytest.approx(catalogues, rel=1e-3) and err.count("\n") == 1, err
+    render = ("--size", "64x48", "--repeats", "1", "--format", "json")
+    status, out, _ = run("render", "--encoding", path, *render)
+    assert status == 0 and json.loads(out)[0]["encoding"] == f"mine.{ending}"
+    status, out, _ = run("doctor", path, "--format", "json")
+    assert status == 0 and "made for normals with z >= 0 alone" in out
+
+
+@pytest.mark.usefixtures("hlsl")
+def test_a_run_and_gates_take_it(run, tmp_path):
+    written(tmp_path, MINE, "mine.hlsl")
+    written(tmp_path, '[[gate]]\nencoding = "mine.hlsl"\nstorage = "rg8"\nnormals = "hemisphere"\ncount = 4096\n'
+            'angle_mean_deg = "at most 0.3"\n', "gates.toml")  # fmt: skip
+    assert run("check", "gates.toml")[0] == 0
+    status, _, err = run("run", "-o", "results", "--tables", "quality", "--encoding", "mine.hlsl", *QUICK[:-2])
+    assert status == 0 and "mine.hlsl" in (tmp_path / "results" / "quality.csv").read_text(), err
+
+
+PLAIN = ("octahedral", "signed_octahedral", "spheremap", "xyz_largest", "cryengine3", "xy_sign")
+
+
+# What encodings/vec.glsl has, in HLSL.
+OF_VEC = f"""
+#define TINY {vec.TINY!r}
+float sign_not_zero(float v) {{ return v < 0.0 ? -1.0 : 1.0; }}
+float2 sign_not_zero(float2 v) {{ return float2(v.x < 0.0 ? -1.0 : 1.0, v.y < 0.0 ? -1.0 : 1.0); }}
+float2 unit(float2 v) {{ if (dot(v, v) > TINY) return v * rsqrt(dot(v, v)); return float2(1.0, 0.0); }}
+float3 unit(float3 v) {{ if (dot(v, v) > TINY) return v * rsqrt(dot(v, v)); return float3(1.0, 0.0, 0.0); }}
+"""
+
+
+def in_hlsl(name: str) -> str:
+    """An encoding of the catalogue, word for word."""
+    text = ENCODINGS[name].glsl.read_text().replace(f"{name}_", f"own_{name}_")
+    return OF_VEC + re.sub(r"\bvec([23])", r"float\1", re.sub("#include.*", "", text))
+
+
+@pytest.mark.usefixtures("radv")
+def test_the_same_steps_cost_the_same_instructions(run, ending, tmp_path):
+    """To the instruction, on two generations of GPUs."""
+    # Slang is given HLSL's text, and takes a second for each.
+    names = PLAIN if ending == "hlsl" else PLAIN[:2]
+    files = [written(tmp_path, in_hlsl(name), f"{name}.{ending}") for name in names]
+    row = ("--isa", "--stage", "fragment", "--family", "polaris10,navi21", "--storage", "rg8", "--format", "json")
+    _, out, _ = run("cost", "--encoding", ",".join([*files, *names]), *row)
+    found = {(row["encoding"], row["operation"], row["family"]): row["instructions"] for row in json.loads(out)}
+    for name, operation, family in itertools.product(names, ("encode", "decode"), ("polaris10", "navi21")):
+        own, glsl = (found[each, operation, family] for each in (f"own_{name}", name))
+        assert own == glsl, f"{name} {operation} on {family}: {own} instructions, {glsl} in GLSL"
+
+
+@pytest.mark.usefixtures("hlsl")
+def test_a_test_of_the_users_names_it(pytester):
+    """It is looked for next to the test, with the names of its functions or without."""
+    written(pytester.path, MINE, "mine.hlsl")
+    pytester.makepyfile(
+        """
+        def test_mine(normalbench):
+            for name in ("mine.hlsl", "mine.hlsl:EncodeNormal:DecodeNormal"):
+                row = normalbench.quality(encoding=name, storage="rg8", normals="hemisphere", count=4096)
+                row.assert_that(angle_mean_deg="at most 0.3")
+        """
+    )
+    pytester.runpytest_subprocess("-p", "no:cacheprovider").assert_outcomes(passed=1)
+
+
+ENDLESS = "float s = n.x; while (s < 2.0) s *= 0.5; return n.xy * s;"
+
+
+READS = "Texture2D<float4> T; SamplerState S;\n" + changed("return T.SampleLevel(S, n.xy, 0).xy;")
+
+
+# What is wrong, and what its line says.
+WRONG = {
+    "undeclared": (changed("\n return n.xy * strange;"), r":5:16: (strange: unknown variable|undefined.*'strange')"),
+    "cut": (MINE[:-3], "expected|at the end of the file"),
+    "stops": ("#error stop here\n" + MINE, "stop here"),
+    "missing": ('#include "gone.hlsli"\n' + changed("return gone(n);"), ":1: gone.hlsli is not next to missing"),
+    "elsewhere": ('#include "/etc/hostname"\n' + changed("return host(n);"), "lies outside the folder of elsewhere"),
+    "empty": ("", "no encoder and decoder found"),
+    "half": (MINE.split("float3 Dec")[0], "EncodeNormal has no decoder"),
+    "binary": (bytes(range(256)) * 40, "not text in UTF-8"),
+    "nan": (changed("return sqrt(n.xy - 2.0);"), "no number"),
+    "endless": (changed(ENDLESS), "do not end here"),
+    "recurses": (changed("return EncodeNormal(n.yzx);"), "[Rr]ecursion"),
+    "reads": (READS, "read a texture or a constant buffer"),
+    "bomb": (BOMB + changed("float s = n.x; A14 return n.xy * s;"), "too much for it|did not end|killed"),
+    "deep": (changed(f"return {'(' * 30000}p{')' * 30000};"), "too much for it|did not end|killed"),
+}
+
+
+def test_what_is_wrong_with_one_spares_the_others(run, tmp_path, ending):
+    """One line names the user's file, and the others' rows are measured."""
+    text = {name: text for name, (text, _) in WRONG.items()}
+    text |= {"large": "// " + "x" * 10_000_000 + "\n" + MINE, "good": MINE}
+    files = [str(tmp_path / written(tmp_path, each, f"{name}.{ending}")) for name, each in text.items()]
+    status, out, err = run("quality", "--encoding", ",".join([*files, "hemi_octahedral"]), *QUICK)
+    measured = {row["encoding"] for row in json.loads(out)}
+    assert status == 0 and measured == {f"large.{ending}", f"good.{ending}", "hemi_octahedral"}
+    said = [line for line in err.splitlines() if "left out: " in line]
+    assert len(said) == len(WRONG) and "Traceback" not in err
+    for name, (_, why) in WRONG.items():
+        (line,) = [line for line in said if f"/{name}.{ending}" in line.split(": ")[2]]
+        assert re.search(why, line), line

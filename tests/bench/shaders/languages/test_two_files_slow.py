@@ -1,0 +1,22 @@
+"""An encoder and its decoder in two files: FILE:ENCODE,FILE:DECODE."""
+
+import json
+
+import pytest
+import test_two_files
+
+two = test_two_files.two
+
+
+@pytest.mark.usefixtures("gl", "slang", "two")
+@pytest.mark.parametrize("more", [(), ("--on", "local:1")])
+def test_two_files_have_the_figures_of_xy(run, tmp_path, monkeypatch, more):
+    monkeypatch.chdir(tmp_path)
+    asked = ("--storage", "rg8", "--backend", "glsl", "--count", "65536", "--normals", "hemisphere", "--format", "json")
+    words = "enc.hlsl:PackDir,dec.hlsl:UnpackDir,xy"
+    status, out, err = run("quality", "--encoding", words, *asked, *more)
+    assert status == 0, err
+    mine, xy = (row["angle_mean_deg"] for row in json.loads(out))
+    assert mine == pytest.approx(xy, rel=1e-4)
+    status, out, err = run("doctor", "enc.hlsl:PackDir,dec.hlsl:UnpackDir")
+    assert status == 0, err

@@ -1,0 +1,38 @@
+"""What the layouts of `budget` cost: bytes that passes fetch, and issue slots to pack and to unpack."""
+
+import json
+import re
+
+import pytest
+
+from normalbench.bench.tables.budget.sentences import told
+
+# Few scenes, targets and kernels.
+FEW_KINDS = ["budget", "--scene", "ramps", "--size", "64x48", "--bytes", "20", "--classes", "rough", "--format", "json"]
+
+
+FEW_KINDS += ["--no-fields", "--formats", "rgba8,srgb8_a8,rgb10a2,rg16f,rg8"]
+
+
+@pytest.mark.usefixtures("gl", "radv")
+def test_rows_have_the_slots_of_the_emitted_code_and_the_bytes_of_readers(run):
+    """The figures of unreal4 are counted by hand: see test_layout_cost."""
+    status, out, err = run(*FEW_KINDS, "--against", "unreal4", "--readers", "1,normal+roughness")
+    assert status == 0, err
+    rows = {row["kind"]: row for row in json.loads(out)}
+    proposal, mine = rows["proposal"], rows["mine"]
+    assert [mine[name] for name in ("pack_slots", "unpack_slots", "slots")] == [20, 29, 1.5 * 20 + 29]
+    assert mine["mb_1080p"] == pytest.approx(1920 * 1080 * (1.5 * 16 + 16 + 8) / 1e6)
+    assert proposal["dearest_family"] == "navi21" and proposal["slots"] > 0
+    said = next(sentence for sentence in told(proposal) if sentence.startswith("Packing takes"))
+    assert said.endswith(f"{proposal['slots']:g} a pixel that is written 1.5 times and read once in full.")
+
+
+@pytest.mark.usefixtures("gl", "radv")
+def test_a_limit_of_slots_is_kept_or_the_least_is_named_and_can_be(run):
+    status, _, err = run(*FEW_KINDS, "--most-instructions", "1")
+    (least,) = map(int, re.findall(r"1 issue slots are too few: the cheapest .* takes (\d+) to pack and unpack", err))
+    assert status != 0 and "Traceback" not in err, err
+    status, out, err = run(*FEW_KINDS, "--most-instructions", str(least))
+    (row,) = json.loads(out)
+    assert status == 0 and row["pack_slots"] + row["unpack_slots"] <= least, err

@@ -1,0 +1,140 @@
+"""Light added up: the model, the GL device, and what the articles found."""
+
+import json
+
+import numpy as np
+import pytest
+import test_lights
+from drawing import FP32, scene_of
+from test_lights import EVERY, QUICK, by_model
+
+from normalbench.bench.ground.options.light_names import light_buffers_named
+from normalbench.bench.tables.lights import measure as lights
+from normalbench.bench.tables.lights.sums import (
+    ROUNDINGS,
+    Adder,
+    coloured_lights,
+    random_lights,
+    steps_apart,
+)
+from normalbench.bench.tables.registry import TABLES
+from normalbench.encodings.catalogue import LIGHT_BUFFERS
+from normalbench.encodings.codecs.light_codec import LightCodec
+from normalbench.gbuffer.display import displayed
+from normalbench.gbuffer.frame.plan import Plan
+from normalbench.gbuffer.pipelines import PIPELINES
+from normalbench.gbuffer.render import rendering
+
+# Hue in 6 bits and saturation in 2.
+COARSE = "hue_saturation"
+
+
+LIGHT_PIPELINES = [name for name, pipeline in PIPELINES.items() if pipeline.has_gbuffer]
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_the_device_adds_up_as_the_model_that_rounds_like_it(gl, name):
+    """Fixed point exactly and floats within a unit, for equal lights; a conversion of the device's own is said so."""
+    encoding = LIGHT_BUFFERS[name]
+    with Adder(encoding, gl) as adder:
+        rounding = adder.rounding
+        assert rounding
+        if rounding.name not in ROUNDINGS:
+            assert encoding.storage.curved and rounding.name.startswith("its own conversion"), rounding
+            return
+        assert rounding.share >= 0.99, rounding
+        for total, count in ((1.0, 8), (1.0, 64), (1.0, 256), (4.0, 64)):
+            light = np.full((count, 1, 4), total / count, np.float32)
+            got = adder.device(light)
+            apart = steps_apart(encoding.storage, adder.model(light, None, ROUNDINGS[rounding.name]).texels, got.texels)
+            allowed = 1 if encoding.storage.kind == "float" else 1e-3
+            assert apart.max() <= allowed, f"{name}, {count} lights that sum to {total}: {apart.max()} steps apart"
+
+
+@pytest.mark.parametrize("name", ["linear", "rgb9e5", "rgba32f"])
+def test_random_lights_add_up_to_the_same_texels(gl, name):
+    """Codes without a transcendental function: every pixel of 256 coloured lights, not one code apart."""
+    encoding = LIGHT_BUFFERS[name]
+    with Adder(encoding, gl) as adder:
+        light = coloured_lights(256, 1.0, 0)
+        model = adder.model(light, None, ROUNDINGS[adder.rounding.name])
+        apart = steps_apart(encoding.storage, model.texels, adder.device(light).texels)
+        assert apart.max() <= (1 if encoding.storage.kind == "float" else 1e-3), f"{name}: {apart.max()} steps"
+
+
+@pytest.mark.parametrize("name", EVERY[4:])
+def test_no_error_is_beyond_the_blends_times_half_a_step_of_any_code(name):
+    test_lights.test_no_error_is_beyond_the_blends_times_half_a_step(name)
+
+
+def test_light_beyond_the_range_is_in_the_bound():
+    for name, total in (("linear:0.01", 1.0), ("srgb", 4.0), ("rgbm:1", 30.0)):
+        (encoding,) = light_buffers_named(name)
+        for row in random_lights(Adder(encoding, None), total, [1, 8], 0):
+            assert row["model_max"] <= row["bound"] + 1e-4 * total, (name, row)
+
+
+@pytest.mark.parametrize("name", [name for name in EVERY if name not in ("linear", "rgba32f", COARSE)])
+def test_dim_lights_first_lose_less(name):
+    """A step is smallest where there is little light yet; in linear fixed point it is the same everywhere, and a hue of
+    6 bits is off by the same share."""
+    rms = {row["order"]: row["model_rms"] for row in random_lights(by_model(name), 1.0, [64], 0)}
+    assert rms["dimmest first"] < rms["as drawn"] <= rms["brightest first"] * 1.05, rms
+
+
+def plan(name: str, targets: int, samples: int = 1) -> Plan:
+    return Plan((160, 120), samples, FP32, LIGHT_BUFFERS[name], targets, True, 1.0)
+
+
+def targets_of(pipeline: str, encoding: LightCodec) -> list[int]:
+    """One target needs the fourth number, of a pipeline that may have two."""
+    asked = PIPELINES[pipeline].light_targets
+    return [n for n in asked if n == max(asked) or encoding.has_alpha]
+
+
+def frame(gl, pipeline: str, made_with: Plan) -> np.ndarray:
+    with rendering(gl, PIPELINES[pipeline], scene_of("room"), made_with) as made:
+        made.draw()
+        return made.image()
+
+
+@pytest.mark.parametrize("samples", [1, 4])
+@pytest.mark.parametrize("pipeline", LIGHT_PIPELINES)
+def test_every_code_is_the_light_buffer_of_every_pipeline(gl, pipeline, samples):
+    """Near the reference, and finite: by blending and by reading, with one target and two, also at several samples."""
+    samples = gl.given_samples(samples)
+    most = max(PIPELINES[pipeline].light_targets)
+    reference = displayed(frame(gl, pipeline, plan("rgba32f", most, samples)))
+    several = ("r11g11b10f", "srgb", "log", "nao32")  # of each blending
+    for encoding in LIGHT_BUFFERS.values() if samples == 1 else map(LIGHT_BUFFERS.get, several):
+        for targets in targets_of(pipeline, encoding):
+            image = frame(gl, pipeline, plan(encoding.name, targets, samples))
+            assert np.isfinite(image).all(), f"{encoding.name}x{targets}"
+            psnr = -10 * np.log10(np.mean((displayed(image) - reference) ** 2) + 1e-30)
+            # Saturation in four steps is for what a surface gives off.
+            least = 28 if encoding.encoding.name == COARSE else 40
+            assert psnr > least, f"{pipeline}, {encoding.name}x{targets}, {samples} samples: {psnr:.1f} dB"
+
+
+def test_rows_say_everything_once(run, gl):
+    status, out, err = run("lights", *QUICK, "--light-buffer", "linear,log,rgbm", "--format", "json")
+    rows = json.loads(out)
+    assert (status, err) == (0, "")
+    assert all(tuple(row) == tuple(TABLES["lights"].empty()) for row in rows)
+    assert list(dict.fromkeys(row["experiment"] for row in rows)) == list(lights.EXPERIMENTS)
+    assert {row["device"] for row in rows} == {gl.renderer} and not any(row["skipped"] for row in rows)
+    rebuilt = {row["light_buffer"] for row in rows if row["experiment"] == "chromaticity"}
+    assert rebuilt == {"linear", "log"}
+
+
+def test_pictures_and_plot_are_written(run, tmp_path):
+    from PIL import Image
+
+    images, plot = tmp_path / "pictures", tmp_path / "plot.svg"
+    asked = ("--light-buffer", "srgb,nao32", "--images", str(images), "--plot", str(plot))
+    status, _, err = run("lights", *QUICK, *asked)
+    assert (status, err) == (0, "")
+    assert {path.name for path in images.iterdir()} == {"banding-srgb.png", "banding-nao32.png"}
+    for path in images.iterdir():
+        assert np.asarray(Image.open(path)).max() > 0, f"{path.name} is black"
+    assert "srgb" in plot.read_text() and "dotted" in plot.read_text()

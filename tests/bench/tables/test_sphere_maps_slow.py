@@ -1,0 +1,25 @@
+"""Errors over the sphere and their histograms: what rows and files keep agrees with what rows say."""
+
+import numpy as np
+import pytest
+from test_sphere_maps import codec
+
+from normalbench.bench.subjects.normals.normal_sets import hemisphere
+from normalbench.bench.tables.quality import measure as quality
+from normalbench.bench.tables.quality import sphere_maps
+
+
+def row(name: str, normals) -> dict:
+    return quality.measure(quality.Case(codec(name), normals, "jax"))
+
+
+@pytest.mark.parametrize("name", ["octahedral", "xy", "spheremap", "spherical"])
+def test_a_map_agrees_with_the_hemisphere_row(name):
+    """Cells, each as often as directions lie in it, have the mean of the uniform set and nearly its largest angle."""
+    found = sphere_maps.sphere_map(codec(name))
+    cells, fine = sphere_maps.CELLS, sphere_maps.FINE
+    weights = sphere_maps._grid()[1].reshape(cells, fine, cells, fine).sum(axis=(1, 3))
+    measured = row(name, hemisphere(2**20))
+    mean = np.nansum(found.mean_deg[0] * weights) / weights.sum()
+    assert mean == pytest.approx(measured["angle_mean_deg"], rel=0.01)
+    assert 0.85 * measured["angle_max_deg"] <= np.nanmax(found.max_deg[0]) <= 1.01 * measured["angle_max_deg"]

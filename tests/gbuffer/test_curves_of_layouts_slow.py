@@ -1,0 +1,31 @@
+"""What a material is on a curve, or in a code of light: the image follows, and a layout says what cannot be."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+import test_curves_of_layouts
+
+exact = test_curves_of_layouts.exact
+
+
+@pytest.mark.parametrize("first", ["roughness", "reflectance", "albedo"])
+def test_the_manual_says_what_a_curve_is_worth(gl, run, tmp_path, first):  # noqa: ARG001 # a device is needed
+    """Each row of its table that keeps this quantity, by `render` of a layout file; to a tenth of a decibel."""
+    page = (Path(__file__).parents[2] / "docs" / "render.md").read_text()
+    rows = re.findall(rf"^\| `([\w:.]*\(?{first}\)?)`[^|]*\| ([\d.]+) \|$", page, re.M)
+    others = {"albedo", "metalness", "roughness", "reflectance", "occlusion"} - {first}
+    exact = "".join(
+        f'[[targets]]\nformat = "rgba32f"\nholds = "{name}"\n' for name in ("normal.x normal.y normal.z kind", *others)
+    )
+    paths = []
+    for number, (words, _) in enumerate(rows):
+        paths.append(tmp_path / f"kept{number}.toml")
+        own = f'[[targets]]\nformat = "rgba8"\nholds = "{words}"\n'
+        paths[-1].write_text(f'encoding = "xyz"\nspace = "world"\n{exact}{own}')
+    status, out, err = run("render", "--layout", ",".join(map(str, paths)), "--repeats", "0", "--format", "json")
+    assert status == 0, err
+    found = {row["layout"]: row["psnr_db"] for row in json.loads(out)}
+    assert len(rows) == 3
+    assert [found[path.stem] for path in paths] == pytest.approx([float(kept) for _, kept in rows], abs=0.1)

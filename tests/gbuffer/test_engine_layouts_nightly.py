@@ -1,0 +1,12 @@
+"""The layouts of engines: their codes have the errors that were measured for them outside, and all of them render."""
+
+from itertools import product
+
+import pytest
+import test_engine_layouts_slow
+from test_engine_layouts import ENGINES
+
+
+@pytest.mark.parametrize("pipeline, name", [*product(["deferred", "hybrid"], ENGINES)])
+def test_every_engines_layout_renders_by_either_pipeline(gl, pipeline, name):
+    test_engine_layouts_slow.test_every_engines_layout_renders(gl, pipeline, name)

@@ -1,0 +1,60 @@
+"""Rows that one test measured, for all that ask for the same in one run of pytest, whichever of its processes has them.
+
+A step's rows follow from its key, as long as nobody changes the program, which tests do that measure by themselves.
+Steps that read a clock, and tables that leave more behind than rows, are measured each time.
+"""
+
+import json
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+from normalbench.bench.ground.output.cache import key_of
+from normalbench.bench.keep.plain import key_text, plain
+from normalbench.bench.run.measuring import Asked
+from normalbench.bench.tables.table import Row, Step, Tick
+
+Measure = Callable[..., Iterator[tuple[Step, list[Row]]]]
+
+
+def shared(measure: Measure, folder: Path) -> Measure:
+    """`Here.measure`, which takes what is asked, the steps and a function that is called for each part that is done."""
+
+    def shared_measure(
+        place: object, ask: Asked, steps: Sequence[Step], tick: Tick
+    ) -> Iterator[tuple[Step, list[Row]]]:
+        table = ask.table
+        if table.work.stays:
+            yield from measure(place, ask, steps, tick)
+            return
+        known = {id(step): _read(folder / _key(ask, step)) for step in steps if not table.work.is_timed(step)}
+        missing = [step for step in steps if known.get(id(step)) is None]
+        measured = iter(measure(place, ask, missing, tick))
+        for step in steps:
+            rows = known.get(id(step))
+            if rows is None:
+                rows = next(measured)[1]
+                if id(step) in known:
+                    _write(folder / _key(ask, step), rows)
+            yield step, rows
+
+    return shared_measure
+
+
+def _key(ask: Asked, step: Step) -> str:
+    return key_of(key_text(ask.table.name, step.key))
+
+
+def _read(path: Path) -> list[Row] | None:
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except OSError:
+        return None
+
+
+def _write(path: Path, rows: Sequence[Row]) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    # Processes may write the same at once.
+    with tempfile.NamedTemporaryFile("w", dir=path.parent, encoding="utf-8", delete=False) as file:
+        json.dump(plain(rows), file)
+    Path(file.name).replace(path)

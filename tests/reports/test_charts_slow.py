@@ -1,0 +1,90 @@
+"""Charts as values: a file and the page show the same marks, axes and labels of one."""
+
+import pytest
+from test_charts import HOSTILE, ROWS, a_chart
+
+from normalbench.bench.tables.registry import TABLES
+from normalbench.reports.charts import draw, wire
+from normalbench.reports.charts.chart import (
+    ALL,
+    Axis,
+    Kind,
+    Mark,
+    Names,
+    Scale,
+    Shades,
+    Switch,
+    distinct,
+)
+
+
+def test_lines_and_the_names_at_their_ends_are_the_same_both_ways(agree):
+    (shown,) = agree(a_chart())
+    assert shown.marks == {Kind.LINES: 2} and shown.texts == [HOSTILE, "xy rg8"]
+    assert shown.extents["y"] == pytest.approx((16 - 0.04 * 2384, 2400 + 0.04 * 2384))
+
+
+def test_every_kind_of_mark_is_the_same_both_ways(agree):
+    rows = tuple({"codec": f"c{n}", "x": float(n), "z": n + 2.0, "name": f"c{n}", "rest": n == 1} for n in range(4))
+    names = Axis(title="", scale=Scale.NAMES, names=distinct(rows, "name"))
+    marks = [Mark(kind=kind, y="name") for kind in (Kind.POINTS,)]
+    marks += [Mark(kind=kind, x2="z", y="name") for kind in (Kind.RULES, Kind.BARS)]
+    marks += [Mark(kind=Kind.TEXTS, x="z", y="name", text="name")]
+    (shown,) = agree(a_chart(rows=rows, y=names, x=Axis(title="ms"), marks=tuple(marks)))
+    assert shown.marks == {Kind.POINTS: 4, Kind.RULES: 4, Kind.BARS: 4} and len(shown.texts) == 4
+    marks = [Mark(kind=Kind.POINTS, y="z"), Mark(kind=Kind.LABELS, y="z", text="name", rest="rest", colour="ink")]
+    marks += [Mark(kind=Kind.RULES, y="z", y2="x"), Mark(kind=Kind.AREAS, y="z", y2="x", is_stepped=True)]
+    (shown,) = agree(a_chart(rows=rows, x=Axis(title="instructions", scale=Scale.COUNT), marks=tuple(marks)))
+    assert shown.marks == {Kind.POINTS: 4, Kind.RULES: 4, Kind.AREAS: 1}
+    shades = Shades("z", "angle, degrees", 0.1, 180.0)
+    cells = (
+        Mark(kind=Kind.CELLS, x="codec", y="name", colour="z"),
+        Mark(kind=Kind.TEXTS, x="codec", y="name", text="codec"),
+    )
+    across = Axis(title="", scale=Scale.NAMES, names=distinct(rows, "codec"))
+    (shown,) = agree(a_chart(rows=rows, x=across, y=names, colour=shades, marks=cells))
+    assert shown.marks == {Kind.CELLS: 4} and shown.extents == {"x": (4,), "y": (4,)}
+
+
+@pytest.mark.parametrize("name", [name for name in ROWS if TABLES[name].work.has_charts])
+def test_every_chart_of_a_run_is_the_same_both_ways(agree, name):
+    charts = list(TABLES[name].work.charts(ROWS[name]))
+    assert charts and len({chart.name for chart in charts}) == len(charts)
+    for chart in charts:
+        shown = agree(chart)
+        assert sum(count for panel in shown for count in panel.marks.values()) > len(shown)
+        assert chart.title and chart.subtitle and chart.title != chart.subtitle and chart.description.endswith(".")
+
+
+def test_panels_share_an_axis_or_have_their_own(agree):
+    chart = a_chart(panels=Names("bits", (16, 24)), x=Axis(title="pixels", scale=Scale.LOG, is_shared=False))
+    one, other = agree(chart)
+    assert one.extents["y"] == other.extents["y"] and one.texts != other.texts
+
+
+def test_a_switch_is_a_control_of_the_page_and_panels_or_one_choice_in_a_file(agree):
+    switch = Switch("bits", "Bits shown", (ALL, "16", "24"), ALL)
+    said = {"field": "bits", "label": "Bits shown", "all": ALL, "values": [ALL, "16", "24"], "usual": ALL}
+    assert wire.spec(a_chart(switch=switch))["switch"] == said
+    (whole,) = agree(a_chart(switch=switch))
+    assert whole.marks[Kind.LINES] == 2
+    rows = tuple({**row, "gpu": f"gpu {row['bits']}"} for row in a_chart().rows)
+    for has_panels, count in ((True, 2), (False, 1)):
+        switch = Switch("gpu", "GPU", ("gpu 16", "gpu 24"), "gpu 24", has_panels)
+        shown = agree(a_chart(rows=rows, switch=switch))
+        assert len(shown) == count and shown[-1].marks[Kind.LINES] == 1
+    assert len(wire.spec(a_chart(rows=rows, switch=switch))["panels"]) == 1
+
+
+def test_what_has_no_place_is_left_out_and_a_browser_reads_the_rest(agree):
+    rows = [{"x": x, "y": y} for x, y in ((1.0, 2.0), (0.0, 2.0), (2.0, float("inf")), (3.0, None), (4.0, 1.0))]
+    (shown,) = agree(a_chart(rows=tuple(rows), colour=None, marks=(Mark(kind=Kind.POINTS),)))
+    assert shown.marks == {Kind.POINTS: 2}
+
+
+def test_a_chart_without_rows_is_an_empty_one(agree, tmp_path):
+    (shown,) = agree(a_chart(rows=()))
+    assert shown.marks == {} and shown.titles == {"x": "pixels", "y": "error, degrees"}
+    draw.write([], (tmp_path / "none.png", "png"))
+    draw.write([a_chart(rows=())], (tmp_path / "empty.svg", "svg"))
+    assert "A finding" in (tmp_path / "empty.svg").read_text()

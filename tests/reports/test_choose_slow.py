@@ -1,0 +1,247 @@
+"""The page's answer for a reader's constraints is pick's, to the letter."""
+
+import json
+
+import numpy as np
+from browsing import PHONE, Opened
+from test_pictures import answered_run, pick_row
+from test_report import a_run
+
+from normalbench.bench.tables.mix.table import USES
+from normalbench.bench.tables.pick.answer import answered
+from normalbench.bench.tables.pick.choices import CONSTANTS, extras
+from normalbench.bench.tables.pick.sentences import told
+from normalbench.bench.tables.registry import TABLES
+from normalbench.encodings.catalogue import ENCODINGS
+
+SETS = 500
+
+
+ASK = """([questions, constants]) => questions.map(([question, asked]) => {
+  const found = answerOf(question, asked, constants);
+  return [sentenceOf(question, asked, found), found.fit.map(({ codec }) => codec)];
+})"""
+
+
+def made_up_rows(rng: np.random.Generator, needs: str | None) -> list[dict]:
+    """Rows of a question as a run keeps them: prices and errors of a few sizes, so that many are equal, and codes of
+    every kind that is left out."""
+    usual = {
+        "asked": "rgb10a2",
+        "needs": needs,
+        "normals": needs or "sphere",
+        "scene": "studio",
+        "aim": "angle",
+        "bytes": 4,
+        "rounding": "nearest",
+    }
+    usual |= {
+        "readers": 4,
+        "worth": 3.0,
+        "enough": 0.35,
+        "against": False,
+        "accept_holes": False,
+        "accept_lengths": False,
+        "look_ups": True,
+        "family": "navi21",
+    }
+    rows = []
+    for name in ENCODINGS:
+        for storage in ("rgb10a2", "rgb8_10_10_2", "rg16"):
+            if rng.random() < 0.3:
+                continue
+            encode, decode = rng.choice([0, 5, 14, 16, 20, 36, 64, 115.5, 289], 2)
+            is_priced, mean = rng.random() < 0.9, float(0.02 * 2 ** (rng.integers(0, 24) / 4))
+            largest = mean * float(rng.choice([2, 3, 30]))
+            rows.append(
+                TABLES["pick"].empty()
+                | usual
+                | {"encoding": name, "storage": storage, "beside": storage == "rg16", "packed": "_" in storage}
+                | {"angle_mean_deg": mean, "angle_max_deg": largest, "worst_normal": "(1.0, 0.0, 0.0)"}
+                | {"angle_sup_deg": largest * 1.1 if rng.random() < 0.3 else None}
+                | {
+                    "encode_slots": float(encode) if is_priced else None,
+                    "decode_slots": float(decode) if is_priced else None,
+                }
+                | {"slots_once": float(encode + decode) if is_priced else None}
+                | {"slots": float(encode + 4 * decode) if is_priced else None}
+                | {
+                    "bits": int(rng.choice([20, 24, 30])),
+                    "free_bits": int(rng.integers(0, 3)),
+                    "table": rng.random() < 0.1,
+                }
+                | {
+                    "domain": str(rng.choice(["sphere"] * 9 + ["hemisphere"])),
+                    "length_share": float(rng.choice([0, 0.7], p=[0.9, 0.1])),
+                }
+                | {"invalid": int(rng.random() < 0.03), "code_bits": 10.0 if rng.random() < 0.05 else None}
+                | {"image_db_studio": float(rng.uniform(20, 80)) if rng.random() < 0.5 else None}
+                | {"image_lost_percent": 3.0 if rng.random() < 0.05 else None, "image_lost_scene": "studio"}
+            )
+            rows[-1] |= surveyed(rng, mean, float(encode), float(decode))
+            rows[-1]["by_family"] = rows[-1]["by_family"] if is_priced else None
+            if rows[-1]["domain"] == "hemisphere":
+                rows[-1]["lost_percent"] = 0.0 if needs else 50.0
+    return rows
+
+
+def asked_at_random(rng: np.random.Generator) -> dict:
+    return {
+        "most_instructions": [None, None, *range(0, 60, 5), 100, 300][rng.integers(16)],
+        "readers": int(rng.integers(0, 9)),
+        "worth": float(rng.choice([0.5, 1.0, 3.0, 6.0])),
+        "enough": float(rng.choice([0.0, 0.1, 360 / 1024, 1.0, 5.0])),
+        "accept_holes": bool(rng.integers(2)),
+        "accept_lengths": bool(rng.integers(2)),
+        "look_ups": bool(rng.integers(4)),
+        "mixing": [None, None, None, "filter", "blend,upsample", "filter,blend,resolve"][rng.integers(6)],
+        "family": ["navi21", "navi21", "polaris10"][rng.integers(3)],
+    }
+
+
+def surveyed(rng: np.random.Generator, mean: float, encode: float, decode: float) -> dict:
+    """What a survey adds to a row."""
+    uses = {
+        use: {
+            "cannot": f"cannot be {use}ed" if rng.random() < 0.3 else "",
+            "count": int(rng.integers(1, 5)),
+            "sum": float(mean * rng.choice([0.5, 2, 8])),
+            "max": float(mean * rng.choice([3, 9])),
+        }
+        for use in USES
+    }
+    return {"by_use": json.dumps(uses), "by_family": json.dumps({"polaris10": [encode * 2, decode + 5]})}
+
+
+def as_asked(row: dict, asked: dict) -> dict:
+    """A row as `pick` would have measured it for what is asked."""
+    made = row | asked
+    if asked["family"] != row["family"] and row["slots"] is not None:
+        encode, decode = json.loads(row["by_family"])[asked["family"]]
+        made |= {"encode_slots": encode, "decode_slots": decode, "slots_once": encode + decode}
+        made |= {"slots": encode + 4 * decode}
+    if asked["mixing"] and row["by_use"]:
+        uses = [json.loads(row["by_use"])[use] for use in asked["mixing"].split(",")]
+        said = [f"{use['cannot']}: why" for use in uses if use["cannot"]]
+        made |= {"cannot_mix": "; ".join(said) or None, "mixed_max_deg": max(use["max"] for use in uses)}
+        made |= {"mixed_mean_deg": sum(use["sum"] for use in uses) / sum(use["count"] for use in uses)}
+    return made | {"slots": _slots(made, asked["readers"])}
+
+
+def test_the_pages_answer_is_picks_for_any_constraints(opened, tmp_path):
+    rng = np.random.default_rng(11)
+    pairs, expected = [], []
+    for at in range(SETS):
+        if at % 25 == 0:
+            rows = made_up_rows(rng, needs=(None, "hemisphere")[at // 25 % 2])
+            (question,) = extras(tmp_path, {"pick": rows}, [])["choices"]["questions"]
+        asked = asked_at_random(rng)
+        # A price in the rows is that of their own readers.
+        own = [as_asked(row, asked) for row in rows]
+        found = answered(own)
+        pairs.append([question, asked])
+        fit = [f"{row['encoding']} {row['storage']}" for row in found if not row["left_out"] and not row["beside"]]
+        expected.append([told(found)[0], fit])
+    said = opened.page.evaluate(ASK, [pairs, CONSTANTS])
+    wrong = [(one, other) for one, other in zip(said, expected, strict=True) if one != other]
+    assert not wrong, f"{len(wrong)} of {SETS}: {wrong[0]}"
+    answers = {sentence for sentence, _ in expected}
+    assert (
+        len(answers) > 50
+        and any("no code qualifies" in one for one in answers)
+        and any("In rg16" in one for one in answers)
+        and any("on hemisphere: take" in one for one in answers)
+        and any("on hemisphere: no code qualifies" in one and "for hemisphere" in one for one in answers)
+    )
+
+
+def _slots(row: dict, readers: int) -> float | None:
+    return None if row["slots"] is None else row["encode_slots"] + readers * row["decode_slots"]
+
+
+def test_constraints_change_the_answer_the_count_and_the_address(browser, run, tmp_path):
+    """By the keyboard; what the run asked for itself is in no address, and a button brings it back."""
+    assert run("report", str(answered_run(tmp_path / "run")))[0] == 0
+    page = Opened(browser, tmp_path / "run/report.html")
+    page.says("[data-left]", "codes are left")
+    left, codes = page.page.locator("[data-left]"), page.page.locator("[data-codes] tbody tr")
+    assert left.text_content() == "2 of 2 codes are left" and codes.count() == 2
+    assert page.page.locator(".reply:visible .lead").all_text_contents() == ["rg8, on sphere: take fine."]
+    most = page.page.locator("[data-limit=most]")
+    most.focus()
+    page.page.keyboard.type("6")
+    assert left.text_content() == "1 of 2 codes are left" and codes.count() == 1
+    assert page.page.locator(".reply:visible .lead").all_text_contents() == ["rg8, on sphere: take xy."]
+    assert page.page.evaluate("location.hash") == "#v1/choose?most=6"
+    page.says("[data-of='choose-0'] [data-finding]", "rg8, on sphere: no other code beats 1 of 1 in both")
+    plot = page.page.locator("[data-of='choose-0'] .plot:has(svg)")
+    points = "(plot) => Object.fromEntries(charts.views.get(plot).tables.flat().map((row) => [row.codec, row.rest]))"
+    assert plot.evaluate(points) == {"fine rg8": True, "xy rg8": False}
+    page.page.locator("[data-part=of]").select_option("rgb10a2")
+    assert page.page.locator(".reply:visible .lead").all_text_contents() == ["rgb10a2, on sphere: take xy."]
+    # A copied address shows the same.
+    other = Opened(browser, tmp_path / "run/report.html", fragment=page.page.evaluate("location.hash"))
+    for one in (page, other):
+        one.says("[data-left]", "1 of 2 codes are left")
+        assert one.page.locator("[data-limit=most]").input_value() == "6"
+    other.context.close()
+    page.page.locator("[data-again]").click()
+    assert page.page.evaluate("state.most") == "" and left.text_content() == "2 of 2 codes are left"
+    most.fill("1")
+    assert (
+        page.page.locator(".reply:visible .lead").text_content().endswith("no code qualifies (at most 1 issue slots).")
+    )
+    width, height = PHONE
+    page.page.set_viewport_size({"width": width, "height": height})
+    assert page.page.evaluate("document.documentElement.scrollWidth") == width, "nothing is wider than a phone"
+    page.page.locator("[data-codes] summary").click()
+    assert "more than 1 issue slots" in page.page.locator("[data-codes] details").text_content()
+    assert page.said == []
+    page.context.close()
+
+
+def test_a_follows_the_answer_until_a_reader_chooses_it(browser, run, tmp_path):
+    """So that the card, and the code to copy in it, are the answer's. What a reader chose stands in the address."""
+    assert run("report", str(answered_run(tmp_path / "run")))[0] == 0
+    page = Opened(browser, tmp_path / "run/report.html")
+    page.says("[data-left]", "codes are left")
+    most, sides = page.page.locator("[data-limit=most]"), "[state.a, state.b]"
+    assert page.page.evaluate(sides) == ["fine rg8", "xy rg8"]
+    most.fill("6")
+    assert page.page.evaluate(sides) == ["xy rg8", "fine rg8"]
+    assert page.page.evaluate("location.hash") == "#v1/choose?most=6"
+    page.page.evaluate("choose('fine rg8')")
+    assert page.page.evaluate(sides) == ["fine rg8", "xy rg8"]
+    address = page.page.evaluate("location.hash")
+    assert address == "#v1/choose?most=6&a=fine%20rg8"
+    most.fill("")
+    most.fill("6")
+    assert page.page.evaluate(sides) == ["fine rg8", "xy rg8"] and page.said == []
+    page.context.close()
+    copied = Opened(browser, tmp_path / "run/report.html", fragment=address)
+    copied.says("[data-left]", "codes are left")
+    assert copied.page.evaluate(sides) == ["fine rg8", "xy rg8"]
+    copied.context.close()
+
+
+def test_half_of_the_sphere_is_a_question_of_its_own(browser, run, tmp_path):
+    """The storage stays, and A and B where they are codes of it; where a storage has no such question, one that has."""
+    half = {"needs": "hemisphere", "normals": "hemisphere"}
+    rows = [pick_row("octahedral", 0.2, 90), pick_row("spheremap", 0.3, 10)]
+    rows += [one | {"asked": "rgb10a2", "storage": "rgb10a2"} for one in rows]
+    rows += [rows[0] | half, pick_row("hemi_octahedral", 0.1, 90) | {"domain": "hemisphere"} | half]
+    assert run("report", str(a_run(tmp_path / "run", {"pick": rows}, request={"tables": "pick"})))[0] == 0
+    page = Opened(browser, tmp_path / "run/report.html")
+    page.says("[data-left]", "codes are left")
+    of, on = (page.page.locator(f"[data-part={name}]") for name in ("of", "on"))
+    assert on.locator("option").all_text_contents() == ["sphere", "hemisphere: normals with z >= 0"]
+    on.select_option("hemisphere: normals with z >= 0")
+    lead = page.page.locator(".reply:visible .lead")
+    assert lead.all_text_contents() == ["rg8, on hemisphere: take hemi_octahedral."]
+    assert page.page.evaluate("location.hash") == "#v1/choose?for=rg8%2C%20on%20hemisphere"
+    of.select_option("rgb10a2")
+    assert lead.all_text_contents()[0].startswith("rgb10a2, on sphere: take") and on.input_value() == "sphere"
+    on.select_option("hemisphere: normals with z >= 0")
+    assert lead.all_text_contents() == ["rg8, on hemisphere: take hemi_octahedral."] and of.input_value() == "rg8"
+    assert page.said == []
+    page.context.close()

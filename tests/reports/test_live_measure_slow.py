@@ -1,0 +1,377 @@
+"""Measuring in the page, by a browser's own renderer: codes against the run's, faults, interruptions, saved devices."""
+
+import json
+import re
+from functools import cache
+
+import numpy as np
+import pytest
+from browsing import AXE, PHONE, Laboratory, no_files, no_swiftshader
+
+from normalbench.bench.measures.live import checks, normals, programs
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.normals.octahedral import encode
+from normalbench.encodings.storages.storage import STORAGES
+from normalbench.encodings.vec import Vec3
+
+MEASURE = "[data-live=measure]"
+
+
+OCTAHEDRAL = Codec(ENCODINGS["octahedral"], STORAGES["rgba8"])
+
+
+# The least share of codes that are equal at 8 and 10 bits, which GLSL and JAX keep as well.
+LEAST_SHARE = 0.999
+
+
+SECONDS = 120
+
+
+KEYS = {
+    *("encoding", "storage", "rounding", "target", "normals", "equal", "one_step", "further"),
+    *("mean_deg", "max_deg", "run_mean_deg", "encode_ms", "decode_ms", "timer"),
+}
+
+
+class Measured(Laboratory):
+    """A laboratory that measures no times unless it is asked to."""
+
+    def __init__(self, browser, path, **more):
+        super().__init__(browser, path, **more)
+        self.page.locator("#measure-times").uncheck()
+
+    def reset(self):
+        super().reset()
+        self.page.locator("#measure-times").uncheck()
+
+    def ask(self, script, *given):
+        return self.page.evaluate(script, *given)
+
+    def only(self, *encodings):
+        """Measure these encodings' codecs alone."""
+        self.ask(
+            "names => { live.measuring.codecs = live.data.codecs.filter((c) => names.includes(c.encoding)); }",
+            encodings,
+        )
+
+    def start(self):
+        self.page.locator("[data-measure]").click()
+
+    def finish(self) -> list[dict]:
+        self.page.wait_for_selector(f"{MEASURE} progress", state="hidden", timeout=1000 * SECONDS)
+        return self.ask("live.measuring.rows.map((row) => ({ ...row, difference: row.difference }))")
+
+    @property
+    def status(self) -> str:
+        return self.page.locator("[data-measured]").inner_text()
+
+
+@pytest.fixture(scope="module")
+def open_laboratory(gl_browser, report):
+    opened = Measured(gl_browser, report)
+    yield opened
+    opened.context.close()
+
+
+@pytest.fixture
+def laboratory(open_laboratory, report):
+    open_laboratory.reset()
+    yield open_laboratory
+    assert not [line for line in open_laboratory.said if "rror" in line], open_laboratory.said
+    assert open_laboratory.asked == [report.as_uri()], "a page that asks for nothing"
+
+
+@no_files
+def test_every_code_of_a_run_is_this_devices_and_saved(laboratory, tmp_path):
+    """Of all codecs of the small run at least 99.9 % of the codes are equal, and the angles are the run's."""
+    laboratory.start()
+    rows = laboratory.finish()
+    assert len(rows) == laboratory.ask("live.data.codecs.length") >= 8, laboratory.status
+    for row in rows:
+        assert row["equal"] >= LEAST_SHARE * row["normals"] and not row["further"], (row["encoding"], row["difference"])
+        assert row["mean_deg"] == pytest.approx(row["run_mean_deg"], abs=1e-9), row
+        assert row["target"] == "RGBA8", row
+    shown = laboratory.page.locator("[data-results] tbody tr")
+    assert shown.count() == len(rows)
+    with laboratory.page.expect_download() as download:
+        laboratory.page.locator("[data-save]").click()
+    assert re.fullmatch(r"normalbench-[a-z0-9-]+\.json", download.value.suggested_filename)
+    assert download.value.suggested_filename in laboratory.page.locator("[data-keep] code").inner_text()
+    download.value.save_as(tmp_path / "device.json")
+    saved = json.loads((tmp_path / "device.json").read_text())
+    assert saved["normalbench_device"] == 1 and "SwiftShader" in saved["renderer"] and "Chrome" in saved["browser"]
+    assert re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ", saved["made"]) and saved["sources"]
+    assert all(set(row) == KEYS for row in saved["codecs"]), saved["codecs"][0]
+    assert all(row["equal"] + row["one_step"] + row["further"] == row["normals"] for row in saved["codecs"])
+    assert not laboratory.asked[1:], "nothing is asked for"
+
+
+STORED = """checks => live.measuring.codecs = live.data.storages
+  .filter(({ encoding }) => encoding === "octahedral")
+  .map((codec) => ({ ...codec, checks: checks[codec.storage] }))"""
+
+
+@no_swiftshader
+def test_every_storage_is_read_back_as_the_run_has_it(laboratory):
+    """Fixed point, halves, numbers across bytes, packed integers; small floats by SwiftShader, which cuts them off."""
+    given = {name: checks.checks(Codec(ENCODINGS["octahedral"], STORAGES[name])) for name in programs.USUAL}
+    laboratory.ask(STORED, given)
+    laboratory.start()
+    rows = {row["storage"]: row for row in laboratory.finish()}
+    assert set(rows) == set(programs.USUAL)
+    small = rows.pop("r11g11b10f")
+    for row in rows.values():
+        assert row["equal"] == row["normals"] and row["difference"] == "none", (row["storage"], row["difference"])
+    targets = {name: row["target"] for name, row in rows.items() if name != "rg16"}
+    assert targets == {"rgba8": "RGBA8", "rgb10a2": "RGB10_A2", "rg8": "RG8", "rg16f": "RG16F", "rgb8_12_12": "RGBA8"}
+    assert rows["rg16"]["target"] in ("RG16", "R32UI")
+    assert 0.2 < small["equal"] / small["normals"] < 0.4 and small["one_step"] > 0.4 * small["normals"]
+    assert re.match(r"x differs for \d+ normals, by 1 step; y differs for \d+ normals, by 1 step;", small["difference"])
+    assert small["mean_deg"] > 1.5 * small["run_mean_deg"]
+
+
+@no_swiftshader
+def test_a_device_is_known_by_what_it_does(laboratory):
+    """SwiftShader rounds fixed point and halves to nearest even, cuts small floats off, and computes in 32 bits."""
+    laboratory.only("xyz")
+    laboratory.start()
+    laboratory.finish()
+    facts = laboratory.ask("live.measuring.facts")
+    assert facts["rounds RGBA8"] == facts["rounds RGB10_A2"] == facts["rounds RG16F"] == "nearest, ties to even", facts
+    assert facts["rounds R11F_G11F_B10F"] == "truncate"
+    assert facts["renders RGB565"] == facts["renders RGBA32F"] == "yes"
+    assert facts["filters RGBA8"].startswith("yes") and facts["filters RGBA32F"] == "no"
+    assert facts["resolves RGBA8"] == "the mean of the codes, at most 0.5 steps from it"
+    assert facts["highp mantissa bits"] == 23 and facts["mediump mantissa bits"] >= 10
+    assert "RGBA16F stores NaN" in facts["NaN"] and facts["subnormal halves"] == "kept"
+
+
+WITHOUT_FLOATS = """{
+  const own = WebGL2RenderingContext.prototype.getExtension;
+  WebGL2RenderingContext.prototype.getExtension = function (name) {
+    return name.includes("color_buffer") ? null : own.call(this, name);
+  };
+}"""
+
+
+@no_swiftshader
+def test_a_device_that_renders_to_no_floats_is_measured(gl_browser, report):
+    """Angles come back as bits of integers, which every device renders to."""
+    opened = Measured(gl_browser, report, before=WITHOUT_FLOATS)
+    opened.only("octahedral")
+    opened.start()
+    (row,) = opened.finish()
+    facts = opened.ask("live.measuring.facts")
+    opened.context.close()
+    assert row["equal"] == row["normals"] and row["mean_deg"] == pytest.approx(row["run_mean_deg"], abs=1e-9)
+    assert facts["renders RGBA16F"] == facts["renders RGBA32F"] == "no" and facts["renders RGBA8"] == "yes"
+    assert facts["subnormal halves"] == "RGBA16F cannot be rendered to"
+
+
+def test_an_altered_constant_is_found_and_named(laboratory):
+    """Twice 0.5 in the fold of one codec: its row names the numbers and a normal, and no other codec differs."""
+    laboratory.only("octahedral", "stereographic", "xyz")
+    altered = laboratory.ask(
+        """() => {
+          const codec = live.data.codecs.find((c) => c.encoding === "octahedral"), before = codec.source;
+          codec.source = before.replace("(1.0 - abs(p.yx))", "(1.015625 - abs(p.yx))");
+          return codec.source !== before;
+        }"""
+    )
+    assert altered
+    laboratory.start()
+    rows = {row["encoding"]: row for row in laboratory.finish()}
+    wrong = rows.pop("octahedral")
+    assert all(row["equal"] == row["normals"] for row in rows.values())
+    # half of all directions have z < 0, and most of those lie in groups that nothing is known of
+    assert wrong["further"] > 0.5 * wrong["normals"]
+    assert re.search(r"x, y differ", wrong["difference"]) and re.search(
+        r"normal \d+ \(.*\): here ", wrong["difference"]
+    )
+    (name,) = laboratory.texts("[data-results] tr.differs th")
+    assert name == "octahedral rgba8"
+
+
+CANCEL_AT_TWO = """() => new MutationObserver((_, observer) => {
+  if (!document.querySelector("[data-results] tbody tr:nth-child(2)")) return;
+  observer.disconnect();
+  document.querySelector("[data-cancel]").click();
+}).observe(document.body, { childList: true, subtree: true })"""
+
+
+def test_measuring_is_cancelled_and_keeps_what_it_has(laboratory):
+    laboratory.start()
+    # By the page itself: the others may be measured before a click from outside arrives.
+    laboratory.page.evaluate(CANCEL_AT_TWO)
+    rows = laboratory.finish()
+    assert 2 <= len(rows) < laboratory.ask("live.data.codecs.length")
+    assert laboratory.status == f"Cancelled. {len(rows)} codecs that were measured before are kept."
+    assert laboratory.page.locator("[data-save]").is_visible()
+
+
+@no_swiftshader
+def test_a_lost_context_is_said_and_measuring_goes_on(laboratory):
+    laboratory.start()
+    laboratory.page.wait_for_selector("[data-results] tbody tr:nth-child(2)", timeout=1000 * SECONDS)
+    laboratory.ask("() => { window.loss = live.device.gl.getExtension('WEBGL_lose_context'); loss.loseContext(); }")
+    laboratory.page.wait_for_selector("[data-measured]:has-text('context was lost')")
+    laboratory.ask("() => loss.restoreContext()")
+    rows = laboratory.finish()
+    assert len(rows) == laboratory.ask("live.data.codecs.length")
+    assert all(row["equal"] == row["normals"] for row in rows), [row["difference"] for row in rows]
+
+
+@no_swiftshader
+def test_times_wait_for_a_page_that_is_seen(laboratory):
+    laboratory.only("xyz")
+    laboratory.page.locator("#measure-times").check()
+    hidden = "Object.defineProperty(document, 'visibilityState', { value: '%s', configurable: true })"
+    laboratory.ask(hidden % "hidden")
+    laboratory.start()
+    laboratory.page.wait_for_selector("[data-measured]:has-text('1 of 1')")
+    laboratory.page.wait_for_timeout(1000)
+    assert laboratory.ask("live.measuring.isBusy")
+    laboratory.ask(hidden % "visible")
+    laboratory.ask("() => document.dispatchEvent(new Event('visibilitychange'))")
+    (row,) = laboratory.finish()
+    assert row["timer"] == "EXT_disjoint_timer_query_webgl2"
+    times = [row[name] for name in ("encode_ms", "decode_ms")]
+    assert all(time is None or 0 < time < 10000 for time in times), times
+
+
+def test_times_are_measured_without_timer_queries(laboratory):
+    laboratory.only("octahedral")
+    laboratory.page.locator("#measure-times").check()
+    laboratory.ask(
+        """() => {
+          const { gl } = live.device, own = gl.getExtension.bind(gl);
+          gl.getExtension = (name) => (name.startsWith("EXT_disjoint") ? null : own(name));
+        }"""
+    )
+    laboratory.start()
+    (row,) = laboratory.finish()
+    assert row["timer"].startswith("wall clock") and (row["encode_ms"] is None or row["encode_ms"] > 0), (
+        laboratory.status
+    )
+
+
+def test_other_normals_than_the_runs_are_not_measured(laboratory):
+    laboratory.ask("() => { live.data.checks.sums.sphere[0] ^= 1; }")
+    laboratory.start()
+    assert not laboratory.finish()
+    assert laboratory.status == "Not finished: this browser makes other normals of the sphere than the run has."
+
+
+def stepped(*changes):
+    """The run's codes of octahedral rgba8 with (normal, number, steps) changed."""
+    n, view = normals.normals("sphere")
+    codes = checks.ordered(OCTAHEDRAL, checks.reference_of(OCTAHEDRAL, n, view, compiled=False))
+    for normal, number, steps in changes:
+        codes[normal, number] += steps
+    return codes
+
+
+# As text: Playwright takes seconds to pass as many numbers one by one.
+COMPARE = """(text) => {
+  const [codec, given, exact] = JSON.parse(text);
+  const codes = given.map((one) => Int32Array.from(one));
+  return live.measuring.checks.compare(codec, codes, exact && Float32Array.from(exact));
+}"""
+
+
+def compared(laboratory, *given, codec=OCTAHEDRAL, exact=None):
+    numbers = None if exact is None else exact.ravel().tolist()
+    return laboratory.ask(COMPARE, json.dumps([record_of(codec), [codes.ravel().tolist() for codes in given], numbers]))
+
+
+@cache
+def record_of(codec):
+    """What a page has of a codec, with the sums of its codes."""
+    return {**programs.program(codec), "checks": checks.checks(codec)}
+
+
+def test_a_checksum_tells_one_step_or_two_and_no_more(laboratory):
+    found = compared(laboratory, stepped((5, 1, 1), (300, 0, -1), (310, 1, 1)))
+    assert (found["equal"], found["oneStep"], found["further"]) == (2**16 - 3, 3, 0)
+    assert [one["normal"] for one in found["differing"]] == [5, 300, 310]
+    # two numbers of one normal
+    found = compared(laboratory, stepped((70, 0, 1), (70, 1, -1)))
+    assert (found["equal"], found["oneStep"], found["further"]) == (2**16 - 1, 0, 1)
+    # three in a group, or a larger step: the whole group
+    for changes in (((1, 0, 1), (2, 0, 1), (3, 1, -1)), ((0, 1, 5),)):
+        found = compared(laboratory, stepped(*changes))
+        assert (found["equal"], found["oneStep"], found["further"]) == (2**16 - 128, 0, 128)
+    assert found["checked"] == [1], "the number that differs is named"
+    assert found["differing"][0]["normal"] == 0, "normal 0 travels with the page"
+
+
+def test_a_target_that_rounds_in_its_own_way_is_told_exactly(laboratory):
+    """The shader's own packing says what the run's codes are; then every code of the target is compared."""
+    packed = stepped((9, 0, 1), (200, 1, -1), (500, 0, 1))
+    target = stepped()
+    generator = np.random.default_rng(0)
+    down = generator.random(target.shape) < 0.5
+    target[down] -= 1
+    twice, once = down.all(axis=1), down.any(axis=1) & ~down.all(axis=1)
+    found = compared(laboratory, packed, target)
+    assert (found["oneStep"], found["further"]) == (once.sum(), twice.sum())
+    assert [one["normals"] for one in found["numbers"]] == down.sum(axis=0).tolist()
+    assert [one["most"] for one in found["numbers"]] == [1, 1]
+
+
+def rounded(x, storage, whole):
+    """Numbers (float32) as a shader stores them, in the order of codes."""
+    half = np.float32(0.5)
+    if storage == "rg16f":
+        words = x.astype(np.float16).view(np.int16).astype(np.int32)
+        return np.where(words < 0, -(words & 0x7FFF), words)
+    if storage == "rg16_snorm":
+        return whole(x * np.float32(32767)).astype(np.int32)
+    return whole((x * half + half) * np.float32(65535 if storage == "rg16" else 4095)).astype(np.int32)
+
+
+FINE = [
+    ("rg16", "nearest"),
+    ("rg16_snorm", "nearest"),
+    ("rg16_snorm", "truncate"),
+    ("rgb8_12_12", "nearest"),
+    ("rg16f", "nearest"),
+]
+
+
+@pytest.mark.parametrize(("storage", "rounding"), FINE)
+def test_codes_of_a_gpu_with_inexact_arithmetic_are_told_by_their_ties(laboratory, storage, rounding):
+    """Numbers off by up to 3 units in the last place are rounded the other way near ties, several of them in a group.
+
+    Nothing is told of a group where many normals lie next to one tie: neighbours of diagonals, and where numbers are
+    cut off those of axes as well.
+    """
+    codec, generator = Codec(ENCODINGS["octahedral"], STORAGES[storage], rounding), np.random.default_rng(1)
+    n, view = normals.normals("sphere")
+    run = checks.ordered(codec, checks.reference_of(codec, n, view, compiled=False))
+    x = np.stack([np.asarray(one) for one in encode(*(Vec3(*part.T) for part in (n, view)))], axis=1)
+    x = (x * (1 + generator.integers(-3, 4, x.shape) * 2.0**-23)).astype(np.float32)
+    here = rounded(x, storage, np.rint if rounding == "nearest" else np.trunc)
+    differing = (here != run).any(axis=1)
+    assert 10 < differing.sum() < 2000
+    found = compared(laboratory, here, codec=codec, exact=np.pad(x, ((0, 0), (0, 2))))
+    assert found["untold"] <= (2 if rounding == "nearest" else 6) * 128, found["numbers"]
+    known = 2**16 - found["untold"]
+    assert known - differing.sum() <= found["equal"] <= 2**16 - differing.sum()
+    assert all(one["most"] <= 1 for one in found["numbers"])
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_what_was_measured_is_read_by_everybody(gl_browser, report, theme):
+    """WCAG 2.1 A and AA, of the table and the facts."""
+    from axe_playwright_python.base import AXE_FILE_PATH
+
+    opened = Measured(gl_browser, report, theme=theme, size=PHONE)
+    opened.only("octahedral", "xyz")
+    opened.start()
+    opened.finish()
+    opened.ask(AXE_FILE_PATH.read_text() + "; 0")
+    found = opened.ask(AXE)
+    opened.context.close()
+    assert found == []

@@ -1,0 +1,338 @@
+"""The laboratory of a page in a browser with WebGL2: controls, pixels, encoders, and what it survives."""
+
+import re
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from browsing import AXE, PHONE, Laboratory, Opened
+
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
+from normalbench.encodings.vec import Vec3
+
+# What a page may take for its laboratory, in bytes.
+LARGEST = 400_000
+
+
+LOSE = "() => (live.lose = live.device.gl.getExtension('WEBGL_lose_context')).loseContext()"
+
+
+RESTORE = "() => live.lose.restoreContext()"
+
+
+READ = "(side) => { const { codec, ...found } = live.inspect.read(side); return found; }"
+
+
+SLIDERS = ("power", "bits", "side", "above", "around", "over", "away")
+
+
+def apart(a: np.ndarray, b: np.ndarray) -> float:
+    """The share of pixels that differ visibly."""
+    return float((abs(a - b).max(axis=-1) > 3).mean())
+
+
+def test_the_section_is_small_and_unpacked_only_when_it_is_opened(gl_browser, report):
+    text = report.read_text()
+    parts = [*re.findall(r'<script type="text/plain" id="live-\w+">[^<]*</script>', text)]
+    assert len(parts) == 2
+    size = sum(map(len, parts)) + len(re.search(r'<section id="live".*?</section>', text, re.DOTALL)[0])
+    assert size < LARGEST, f"{size} bytes"
+    page = Opened(gl_browser, report)
+    assert page.page.evaluate("typeof openLaboratory") == "undefined"
+    assert page.page.locator("#live").is_hidden() and page.page.locator("nav [data-to=see]").is_visible()
+    page.context.close()
+
+
+def test_a_browser_without_webgl2_says_so(gl_browser, report):
+    page = Opened(gl_browser, report, before="delete window.WebGL2RenderingContext", fragment="#v1/see")
+    page.says("[data-live=said]", "no WebGL2")
+    page.context.close()
+    refused = "HTMLCanvasElement.prototype.getContext = function () { return null; }"
+    page = Opened(gl_browser, report, before=refused)
+    page.page.locator("nav [data-to=see]").click()
+    page.says("[data-live=said]", "cannot run")
+    assert "no WebGL2 context" in page.texts("[data-live=said]")[0]
+    page.context.close()
+
+
+def test_every_slider_changes_the_picture_and_its_number_by_keyboard(laboratory):
+    laboratory.choose(subject="studio", shown="lit")
+    for name in SLIDERS:
+        # Bits are lost where light hardly shows it.
+        laboratory.choose(shown="error" if name == "bits" else "lit")
+        before, said = laboratory.picture(), laboratory.texts(f"[data-see-out={name}]")
+        laboratory.press(f"[data-see={name}]", *["PageDown"] * 3)
+        assert laboratory.texts(f"[data-see-out={name}]") != said, name
+        assert apart(laboratory.picture(), before) > 1e-3, name
+
+
+def test_each_view_shows_what_its_name_says(laboratory):
+    laboratory.choose(subject="studio", left="exact normals", right="xy rgba8", shown="error")
+    picture = laboratory.picture()
+    middle = picture.shape[1] // 2
+    assert len(np.unique(picture[:, : middle - 2].reshape(-1, 3), axis=0)) == 1, "exact normals have no error"
+    before = picture
+    laboratory.press("[data-see=full]", *["ArrowLeft"] * 3)
+    assert laboratory.texts("[data-see-out=most]") == ["0.05°"]
+    assert apart(laboratory.picture()[:, middle:], before[:, middle:]) > 0.2
+    laboratory.choose(shown="normals", right="xy rgba8")
+    normals = laboratory.picture()[10, 10] / 255 * 2 - 1
+    assert abs(np.linalg.norm(normals) - 1) < 0.02
+    laboratory.choose(shown="code")
+    code = laboratory.picture()
+    assert (code[:, middle + 2 :, 2] == 0).all() and code[:, middle + 2 :, 0].max() > 200, "two numbers: no blue"
+    laboratory.choose(shown="lit")
+    lit = laboratory.picture()
+    laboratory.press("[data-see=gain]", *["PageUp"] * 5)
+    assert apart(laboratory.picture(), lit) > 0.3
+
+
+def test_the_divider_is_dragged_by_its_line_and_moved_by_keyboard(laboratory):
+    laboratory.choose(subject="studio", left="exact normals", right="xy rgba8", shown="error")
+    laboratory.page.locator("[data-live=canvas]").scroll_into_view_if_needed()
+    box = laboratory.page.locator("[data-live=canvas]").bounding_box()
+    laboratory.page.mouse.move(box["x"] + box["width"] / 2 + 4, box["y"] + 20)
+    laboratory.page.mouse.down()
+    laboratory.page.mouse.move(box["x"] + box["width"] * 0.2, box["y"] + 20, steps=4)
+    laboratory.page.mouse.up()
+    laboratory.settle()
+    assert laboratory.texts("[data-see-out=divider]") == ["20 %"]
+    picture = laboratory.picture()
+    at = round(0.2 * picture.shape[1])
+    nothing = picture[0, 0]
+    assert (picture[:, : at - 2] == nothing).all() and (picture[:, at + 2 :] != nothing).any(axis=2).mean() > 0.8
+    laboratory.press("[data-see=divider]", "End")
+    picture = laboratory.picture()
+    assert ((picture == nothing) | (picture == 0)).all(), "black where no surface is"
+
+
+def test_the_turntable_turns_until_it_is_stopped(laboratory):
+    assert laboratory.page.locator("[data-see=turn]").get_attribute("aria-pressed") == "false", "nothing moves at first"
+    before = laboratory.picture()
+    laboratory.press("[data-see=turn]", "Space")
+    laboratory.page.wait_for_timeout(600)
+    laboratory.press("[data-see=turn]", "Space")
+    still = laboratory.picture()
+    assert apart(still, before) > 0.05
+    laboratory.page.wait_for_timeout(300)
+    assert (laboratory.picture() == still).all()
+
+
+@pytest.mark.parametrize("encoding", ["octahedral", "spherical", "xyz", "xy"])
+def test_a_pixels_bits_are_those_of_the_emulation(laboratory, encoding):
+    codec = Codec(ENCODINGS[encoding], STORAGES["rgba8"], "nearest")
+    laboratory.choose(right=f"{encoding} rgba8")
+    found = []
+    for at in range(12):
+        laboratory.page.evaluate("([x, y]) => live.inspect.go([x, y])", [40 + 53 * at, 60 + 31 * at])
+        found.append(laboratory.page.evaluate(READ, "right"))
+    n = np.array([one["normal"] for one in found], np.float32)
+    view = np.array([one["view"] for one in found], np.float32)
+    planes = [Vec3(*(jnp.asarray(array[:, i]) for i in range(3))) for array in (n, view)]
+    stored = codec.stored(*planes)
+    expected = np.stack([np.rint((np.asarray(number) * 0.5 + 0.5) * 255) for number in stored], axis=1).astype(int)
+    words = np.array([one["texel"][0] for one in found], np.int64)
+    numbers = np.stack([words >> 8 * i & 255 for i in range(expected.shape[1])], axis=1)
+    assert (abs(numbers - expected) <= 1).all() and (numbers == expected).mean() > 0.95, (numbers, expected)
+    decoded = codec.encoding.decode(
+        type(stored)(*(jnp.asarray(x / 127.5 - 1, jnp.float32) for x in numbers.T)), planes[1]
+    )
+    assert abs(np.stack(decoded, axis=1) - [one["decoded"] for one in found]).max() < 1e-5
+
+
+def test_the_pixel_at_the_pointer_is_described_and_moved_by_keyboard(laboratory):
+    laboratory.choose(right="octahedral rgba8")
+    laboratory.page.locator("[data-live=canvas]").scroll_into_view_if_needed()
+    box = laboratory.page.locator("[data-live=canvas]").bounding_box()
+    laboratory.page.mouse.move(box["x"] + box["width"] * 0.25, box["y"] + box["height"] * 0.6)
+    laboratory.settle()
+    said = [laboratory.texts(f"[data-inspect={name}]")[0] for name in ("normal", "left", "right", "around")]
+    assert re.fullmatch(r"Exact normal \((-?\d\.\d{5}, ){2}-?\d\.\d{5}\), view space\.", said[0])
+    assert said[1] == "Left, exact normals."
+    assert re.fullmatch(r"Right, octahedral rgba8: bits [01]{8} [01]{8}; comes back as .*, off by [\d.]+°\.", said[2])
+    assert said[3].startswith("Codes of octahedral rgba8 around the exact normal")
+    drawn = (
+        "canvas => canvas.getContext('2d').getImageData(0, 0, 300, 300).data.filter((x, i) => i % 4 === 3 && x).length"
+    )
+    assert laboratory.page.locator("[data-inspect=sphere]").evaluate(drawn) > 500
+    x = int(laboratory.page.locator("[data-inspect=x]").input_value())
+    laboratory.press(".live-stage", "Shift+ArrowRight", "Shift+ArrowRight")
+    assert int(laboratory.page.locator("[data-inspect=x]").input_value()) == x + 2
+    laboratory.page.locator("[data-inspect=x]").fill("99999")
+    laboratory.settle()
+    width = laboratory.picture().shape[1]
+    assert laboratory.page.evaluate("live.inspect.pixel[0]") == width - 1, "the last pixel, and no error"
+
+
+def test_the_scene_of_the_run_is_seen_through_codecs(laboratory):
+    laboratory.choose(subject="0", shown="error", left="octahedral rgba8", right="octahedral rgba8")
+    picture = laboratory.picture()
+    assert (picture == 0).all(axis=2).mean() > 0.01, "there is a background"
+    assert len(np.unique(picture.reshape(-1, 3), axis=0)) > 100
+
+
+def test_an_encoder_is_compiled_as_it_is_typed(laboratory):
+    text = laboratory.page.locator("[data-own=text]")
+    typed = text.input_value()
+    (first,) = laboratory.texts("[data-own=said]")
+    assert re.search(r"16 bits in RGBA8\. On 65536 random directions: mean 0\.33\d°, RMS 0\.3[67]", first), first
+    # 10 log10 of 1 over the mean squared error, as `quality --normals sphere` has it.
+    assert float(re.search(r"PSNR ([\d.]+) dB", first)[1]) == pytest.approx(48.58, abs=0.05)
+    text.fill(typed.replace("max(-z, 0.0)", "max(-z, 0.1)"))
+    laboratory.says("[data-own=said]", re.compile(r"mean [1-9]"))
+    text.fill(typed.replace("max(-z, 0.0)", "maxi(-z, 0.0)"))
+    laboratory.page.wait_for_selector("[data-own=text][aria-invalid=true]")
+    assert any(line.startswith("Line 9: ") and "maxi" in line for line in laboratory.texts("[data-own=said] p"))
+    text.fill(typed)
+    laboratory.page.locator("[data-own=storage]").select_option("rg16")
+    laboratory.says("[data-own=said]", "32 bits in RG16")
+    assert float(re.search(r"mean ([\d.]+)°", laboratory.texts("[data-own=said]")[0])[1]) < 0.002
+    command = "normalbench quality --encoding mine.glsl --storage rg16 --normals sphere"
+    assert laboratory.texts("[data-own=command]") == [command]
+
+
+def test_what_is_typed_is_seen_in_the_scene(laboratory):
+    laboratory.choose(left="exact normals", right="your encoder", shown="error")
+    before = laboratory.picture()
+    text = laboratory.page.locator("[data-own=text]")
+    text.fill(text.input_value().replace("return normalize(vec3(p, z))", "return normalize(vec3(p, z + 0.2))"))
+    laboratory.says("[data-own=said]", re.compile(r"mean [1-9]"))
+    laboratory.settle()
+    assert apart(laboratory.picture(), before) > 0.2
+
+
+def test_a_name_of_the_pages_own_is_said_and_the_picture_goes_on(laboratory):
+    text = laboratory.page.locator("[data-own=text]")
+    good = text.input_value()
+    laboratory.choose(right="your encoder")
+    text.fill(f"const float levels = 2.0;\n{good}")
+    laboratory.says("[data-own=said]", "The page uses this name itself")
+    assert laboratory.page.locator("[data-see=right]").input_value() == "exact normals"
+    laboratory.settle()
+    before = laboratory.picture()
+    laboratory.choose(right="xy rgba8", shown="error")
+    assert apart(laboratory.picture(), before) > 0.2
+    own = laboratory.page.locator("[data-see=right] option", has_text="your encoder")
+    assert own.evaluate("option => option.disabled")
+    text.fill(good)
+    laboratory.says("[data-own=said]", "16 bits in RGBA8")
+    assert not own.evaluate("option => option.disabled")
+
+
+def test_helpers_named_like_encoders_are_no_encoders(laboratory):
+    text = laboratory.page.locator("[data-own=text]")
+    text.fill("vec2 fold_encode(vec2 p) { return p; }\n" + text.input_value())
+    laboratory.says("[data-own=said]", re.compile(r"mean 0\.33"))
+
+
+WRONG = {
+    "": "There is no encoder",
+    "vec2 a_encode(vec3 n) { return n.xy; }": "There is no decoder of it: vec3 a_decode(vec2 e)",
+    "vec2 a_encode(vec3 n) { discard; return n.xy; } vec3 a_decode(vec2 e) { return vec3(e, 0); }": re.compile(
+        "No direction|no return"
+    ),
+    "uniform float q; vec2 a_encode(vec3 n) { return q * n.xy; } vec3 a_decode(vec2 e) { return e.xyx; }": "uniform",
+    "/* vec2 a_encode(vec3 n) { return n.xy; } vec3 a_decode(vec2 e) { return vec3(e, 0.); }": "At the end of the text",
+    "vec2 a_encode(vec3 n) { return n.xy; } vec3 a_decode(vec3 e) { return e; }": "Where the page calls it",
+    "vec2 a_encode(vec3 n) { return n.xy; } vec3 a_decode(vec2 e) { return vec3(0.0) / 0.0; }": "as a number",
+    '#include "a.glsl"\nvec2 a_encode(vec3 n) { return n.xy; } vec3 a_decode(vec2 e) { return vec3(e, 0); }': "Line 1",
+    "vec2 a_encode(vec3 n) { return n.xy }\nvec3 a_decode(vec2 e) { return vec3(e, 0); }": "Line 1",
+}
+
+
+def test_what_is_wrong_with_an_encoder_is_said_in_words(laboratory):
+    for text, said in WRONG.items():
+        laboratory.page.locator("[data-own=text]").fill(text)
+        laboratory.says("[data-own=said]", said)
+    laboratory.page.locator("[data-own=storage]").select_option("rg8")
+    three = "vec3 a_encode(vec3 n) { return n; } vec3 a_decode(vec3 e) { return e; }"
+    laboratory.page.locator("[data-own=text]").fill(three)
+    laboratory.says("[data-own=said]", "no codes of 3")
+    laboratory.said.clear()  # of the division by zero
+
+
+def test_a_link_holds_the_text_and_runs_nothing_by_itself(gl_browser, report, laboratory):
+    text = laboratory.page.locator("[data-own=text]")
+    text.fill(text.input_value().replace("// A unit", "// <b>Shared</b>: a unit"))
+    laboratory.page.locator("[data-own=storage]").select_option("rgb10a2")
+    laboratory.says("[data-own=said]", "20 bits in RGB10 A2")
+    laboratory.page.locator("[data-share=share]").click()
+    laboratory.page.wait_for_selector("[data-share=link]:visible")
+    link = laboratory.page.locator("[data-share=link]").input_value()
+    address, _, fragment = link.partition("#")
+    assert address == report.as_uri() and len(link) < 2000
+    other = Laboratory(gl_browser, report, fragment=f"#{fragment}")
+    assert other.page.locator("[data-own=text]").input_value() == text.input_value()
+    assert other.texts("[data-own=said]") == ["This encoder came with the link. Read it, then run it."]
+    assert other.page.locator("[data-see=right]").input_value() != "your encoder"
+    other.page.locator("[data-own=run]").click()
+    other.says("[data-own=said]", "20 bits in RGB10 A2")
+    assert other.asked == [report.as_uri()] and not other.said
+    other.context.close()
+
+
+def test_a_lost_context_comes_back_with_the_same_picture(laboratory):
+    laboratory.choose(right="spherical rgba8")
+    laboratory.press("[data-see=around]", "PageUp")
+    before = laboratory.picture()
+    laboratory.page.evaluate(LOSE)
+    laboratory.says("[data-live=said]", "took the GPU")
+    laboratory.press("[data-see=power]", "ArrowLeft", "ArrowRight")
+    laboratory.page.wait_for_timeout(100)
+    laboratory.page.evaluate(RESTORE)
+    laboratory.says("[data-live=said]", "is back")
+    laboratory.settle()
+    assert (laboratory.picture() == before).all()
+
+
+def test_two_windows_sizes_and_screens_are_drawn(gl_browser, report, laboratory):
+    wide = laboratory.picture().shape
+    laboratory.page.set_viewport_size({"width": 500, "height": 700})
+    laboratory.page.wait_for_timeout(200)
+    laboratory.settle()
+    assert laboratory.picture().shape[1] < wide[1]
+    assert apart(laboratory.picture(), np.zeros(3, int)) > 0.8
+    dense = Laboratory(gl_browser, report, PHONE, scale=3, theme="dark")
+    assert dense.picture().shape[1] == 3 * PHONE[0], "three pixels for one"
+    assert apart(dense.picture(), np.zeros(3, int)) > 0.8
+    assert dense.page.evaluate("document.documentElement.scrollWidth <= innerWidth"), "nothing is wider than a phone"
+    dense.context.close()
+
+
+def test_the_open_laboratory_is_accessible(laboratory):
+    from axe_playwright_python.base import AXE_FILE_PATH
+
+    laboratory.page.evaluate(AXE_FILE_PATH.read_text() + "; 0")
+    assert laboratory.page.evaluate(AXE) == []
+
+
+def test_a_laboratory_that_was_reset_is_as_one_that_has_just_been_opened(gl_browser, report, laboratory):
+    """The tests here share a page: what one does to it, the next one does not see."""
+    fresh = Laboratory(gl_browser, report)
+    expected, picture = fresh.state(), fresh.picture()
+    fresh.context.close()
+    began = laboratory.page.evaluate("performance.timeOrigin")
+    assert laboratory.state() == expected
+    laboratory.choose(left="xy rgba8", right="spherical rgba8", subject="0", shown="code")
+    laboratory.press("[data-see=power]", "PageDown")
+    laboratory.press("[data-see=divider]", "End")
+    laboratory.press("[data-see=turn]", "Space")
+    laboratory.page.set_viewport_size({"width": 500, "height": 700})
+    laboratory.page.locator("[data-own=text]").fill("no encoder")
+    laboratory.says("[data-own=said]", "There is no encoder")
+    laboratory.page.locator("[data-own=storage]").select_option("rg16")
+    laboratory.page.locator("[data-inspect=x]").fill("7")
+    laboratory.page.locator("#measure-times").dispatch_event("click")
+    laboratory.page.evaluate("live.measuring.codecs = live.measuring.codecs.slice(0, 1)")
+    laboratory.page.locator("[data-measure]").click()
+    laboratory.page.wait_for_selector("[data-save]")
+    assert laboratory.state() != expected
+    laboratory.reset()
+    assert laboratory.state() == expected and (laboratory.picture() == picture).all()
+    assert laboratory.page.evaluate("performance.timeOrigin") == began, "not loaded anew"
+    laboratory.page.evaluate("live.data.checks.sums.sphere[0] ^= 1")
+    laboratory.reset()
+    assert laboratory.state() == expected
+    assert laboratory.page.evaluate("performance.timeOrigin") != began, "loaded anew"

@@ -1,0 +1,357 @@
+"""The laboratory's window in a browser: presets, the camera by hand, files of the reader's, addresses and pictures."""
+
+import base64
+import io
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pixel_files
+import pytest
+from browsing import Laboratory, no_files
+from PIL import Image
+
+# The least share of pixels that a step of octahedral 8:8 is to be seen in, and by how much of 255.
+LEAST_SHARE, VISIBLE = 0.03, 8
+
+
+CAMERA = "['around', 'over', 'away'].map((name) => live.see.value(name))"
+
+
+SMALL = """async () => {
+  const canvas = new OffscreenCanvas(64, 64), pen = canvas.getContext("2d");
+  pen.drawImage(live.device.canvas, 0, 0, 64, 64);
+  return Array.from(pen.getImageData(0, 0, 64, 64).data);
+}"""
+
+
+DROP = """([name, text]) => {
+  const files = new DataTransfer();
+  files.items.add(new File([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))], name));
+  live.root.querySelector(".live-stage").dispatchEvent(new DragEvent("drop", { dataTransfer: files, bubbles: true }));
+}"""
+
+
+def bumps(size: int = 48) -> np.ndarray:
+    """Unit normals of waves, float64 of shape (size, size, 3), +y up."""
+    y, x = np.mgrid[0:size, 0:size] / size * 6.0
+    n = np.stack([0.6 * np.sin(x), 0.5 * np.cos(y), np.ones_like(x)], axis=-1)
+    return n / np.linalg.norm(n, axis=-1, keepdims=True)
+
+
+def sky(width: int = 64) -> np.ndarray:
+    """Radiance by longitude and latitude, with a lamp that is brighter than a screen."""
+    made = np.full((width // 2, width, 3), 0.25)
+    made[4:8, 10:30] = (8.0, 4.0, 2.0)
+    return made
+
+
+def opened_file(laboratory, name: str, data: bytes) -> str:
+    """Chooses a file; what is said of it then."""
+    said = laboratory.page.locator("[data-drop=said]")
+    laboratory.page.locator("[data-drop=file]").set_input_files({"name": name, "mimeType": "", "buffer": data})
+    laboratory.says("[data-drop=said]", re.compile(r" as |is not shown"))
+    laboratory.settle()
+    return said.text_content()
+
+
+def shown_normals(laboratory) -> np.ndarray:
+    """The dropped normals as they are on the GPU's side, upper row first."""
+    found = laboratory.page.evaluate(
+        "live.see.scene.normals().then((n) => [live.see.scene.width, live.see.scene.height, Array.from(n)])"
+    )
+    width, height, normals = found
+    return np.array(normals, np.float64).reshape(height, width, 4)[::-1]
+
+
+def test_the_first_picture_shows_the_steps_of_eight_bits(laboratory):
+    assert laboratory.texts("[data-preset][aria-pressed=true]") == ["Bonnet"]
+    pictures = []
+    for name in ("exact normals", "octahedral rgba8"):
+        laboratory.choose(left=name, right=name)
+        pictures.append(laboratory.picture())
+    apart = abs(pictures[0] - pictures[1]).max(axis=-1)
+    share = float((apart > VISIBLE).mean())
+    print(f"{share:.1%} of the pixels differ by more than {VISIBLE}")
+    assert share >= LEAST_SHARE, f"{share:.4f} of the pixels"
+
+
+def test_a_preset_sets_scene_shading_and_camera(laboratory):
+    found = {}
+    for name in ("floor", "face", "bonnet"):
+        laboratory.page.locator(f"[data-preset={name}]").click()
+        laboratory.settle()
+        shown = laboratory.page.locator("[data-see=shown]").input_value()
+        found[name] = (shown, laboratory.page.evaluate(CAMERA), laboratory.picture())
+        assert laboratory.page.locator("[data-see=subject]").input_value() == name
+        assert len(np.unique(found[name][2].reshape(-1, 3), axis=0)) > 300, name
+    assert [found[name][0] for name in ("floor", "face", "bonnet")] == ["studio", "studio", "zebra"]
+    assert len({tuple(camera) for _, camera, _ in found.values()}) == 3
+
+
+def test_less_roughness_is_sharper(laboratory):
+    """A soft box's edge is the steepest where the surface is a mirror."""
+    steep = []
+    laboratory.page.locator("[data-preset=floor]").click()
+    laboratory.choose(left="exact normals", right="exact normals")
+    for roughness in ("0.05", "0.2", "0.6"):
+        laboratory.page.locator("[data-see=roughness]").fill(roughness)
+        laboratory.settle()
+        floor = laboratory.picture()[-200:, :, 1]
+        steep.append(float((np.diff(floor, axis=1) ** 2).mean()))
+    assert steep[0] > 2 * steep[1] > 4 * steep[2], steep
+
+
+def test_hands_move_the_camera(laboratory):
+    page = laboratory.page
+    box = page.locator("[data-live=canvas]").bounding_box()
+    x, y = box["x"] + box["width"] * 0.3, box["y"] + box["height"] * 0.5
+
+    def moved(act) -> list[float]:
+        before = page.evaluate(CAMERA)
+        act()
+        laboratory.settle()
+        return [round(after - was, 3) for was, after in zip(before, page.evaluate(CAMERA), strict=True)]
+
+    def drag():
+        page.mouse.move(x, y)
+        page.mouse.down()
+        page.mouse.move(x + 60, y + 30, steps=4)
+        page.mouse.up()
+
+    def wheel():
+        page.mouse.wheel(0, 200)
+        page.wait_for_timeout(100)
+
+    around, over, away = moved(drag)
+    assert around < -10 and over > 5 and away == 0
+    assert moved(wheel)[2] > 0.3 and page.evaluate("scrollY") == pytest.approx(page.evaluate("scrollY"))
+    assert moved(lambda: laboratory.press(".live-stage", "ArrowRight")) == [-3, 0, 0]
+    assert moved(lambda: laboratory.press(".live-stage", "ArrowUp")) == [0, 3, 0]
+    assert moved(lambda: laboratory.press(".live-stage", "+"))[2] < -0.1
+    assert moved(lambda: laboratory.press(".live-stage", "-"))[2] > 0.1
+    assert moved(lambda: laboratory.press(".live-stage", "Shift+ArrowLeft")) == [0, 0, 0], "it moves the point"
+    pinch = """([x, y]) => {
+      const to = (type, id, by) => live.device.canvas.dispatchEvent(new PointerEvent(type, {
+        pointerId: id, pointerType: "touch", clientX: x + by, clientY: y, bubbles: true }));
+      live.device.canvas.setPointerCapture = () => {};
+      to("pointerdown", 5, -20);
+      to("pointerdown", 6, 20);
+      for (let by = 30; by <= 80; by += 10) to("pointermove", 6, by);
+      to("pointerup", 5, -20);
+      to("pointerup", 6, 80);
+      delete live.device.canvas.setPointerCapture;
+    }"""
+    around, over, away = moved(lambda: page.evaluate(pinch, [x, y]))
+    assert (around, over) == (0, 0) and away < -0.5
+
+
+def test_it_wobbles_once_where_little_motion_is_wanted(laboratory):
+    """The page is opened with reduced motion."""
+    page = laboratory.page
+    before = laboratory.picture()
+    page.locator("[data-see=wobble]").click()
+    page.wait_for_timeout(700)
+    assert page.locator("[data-see=wobble]").get_attribute("aria-pressed") == "true"
+    assert laboratory.picture().shape != before.shape or (laboratory.picture() != before).any()
+    page.evaluate("() => { live.see.wobbled = 0.999; }")
+    page.wait_for_selector("[data-see=wobble][aria-pressed=false]")
+    laboratory.settle()
+    assert (laboratory.picture() == before).all(), "it comes back to where it was"
+
+
+def test_a_normal_map_is_seen_through_the_codecs(laboratory):
+    n = bumps()
+    data = pixel_files.png(np.rint((n * 0.5 + 0.5) * 255).astype(np.uint8))
+    assert opened_file(laboratory, "wall.png", data) == "wall.png as normals, as colours"
+    assert laboratory.page.locator("[data-see=subject]").input_value() == "dropped"
+    found = shown_normals(laboratory)
+    assert abs(found[..., :3] - n).max() < 0.01 and (found[..., 3] == 1).all()
+    laboratory.page.locator("[data-drop=flipped]").check()
+    assert abs(shown_normals(laboratory)[..., :3] - n * (1, -1, 1)).max() < 0.01
+    laboratory.choose(left="octahedral rgba8", right="octahedral rgba8", shown="error")
+    assert len(np.unique(laboratory.picture().reshape(-1, 3), axis=0)) > 30
+    laboratory.page.locator("[data-drop=gone]").click()
+    assert laboratory.page.locator("[data-see=subject] option[value=dropped]").count() == 0
+
+
+def test_a_png_of_16_bits_is_read_to_its_last_bit(laboratory):
+    """With rows of each filter, in two parts; Pillow's 8 bits of the same file are off by 65 times as much."""
+    n = bumps()
+    data = pixel_files.png16(np.rint((n * 0.5 + 0.5) * 65535).astype(np.uint16))
+    with Image.open(io.BytesIO(data)) as image:
+        assert abs(np.asarray(image.convert("RGB")) / 127.5 - 1 - n).max() > 2e-3
+    assert opened_file(laboratory, "wall.png", data) == "wall.png as normals, as colours"
+    assert abs(shown_normals(laboratory)[..., :3] - n).max() < 3e-5
+
+
+@pytest.mark.parametrize(
+    ("packing", "kind"), [("none", np.float32), ("ZIPS", np.float16), ("ZIP", np.float32), ("ZIP", np.float16)]
+)
+def test_an_exr_of_normals_is_read_to_its_last_bit(laboratory, packing, kind):
+    n = bumps()
+    said = opened_file(laboratory, "n.exr", pixel_files.exr(n, packing, kind, names="XYZ"))
+    assert said == "n.exr as normals, as vectors"
+    kept = n.astype(kind).astype(np.float64)
+    expected = kept / np.linalg.norm(kept, axis=-1, keepdims=True)
+    assert abs(shown_normals(laboratory)[..., :3] - expected).max() < 2e-7
+
+
+@pytest.mark.parametrize("make", ["hdr", "plain hdr", "exr"])
+def test_surroundings_are_mirrored(laboratory, make):
+    radiance = sky()
+    data = pixel_files.exr(radiance) if make == "exr" else pixel_files.hdr(radiance, runs=make == "hdr")
+    before = laboratory.picture()
+    assert opened_file(laboratory, f"sky.{make[-3:]}", data) == f"sky.{make[-3:]} as surroundings"
+    found = np.array(laboratory.page.evaluate("Array.from(live.see.surroundings.pixels)")).reshape(32, 64, 4)
+    assert abs(found[..., :3] / radiance - 1).max() < 0.01
+    assert laboratory.page.locator("[data-see=shown]").input_value() == "studio"
+    picture = laboratory.picture()
+    assert (abs(picture - before).max(axis=-1) > 8).mean() > 0.3
+    assert (picture[..., 0] > picture[..., 2] + 25).mean() > 0.005, "the lamp is orange"
+
+
+DAMAGED = {
+    "no file": (b"GIF89a", "it is no PNG, Radiance HDR or EXR file"),
+    "half an EXR": (pixel_files.exr(bumps(), "none")[:4000], "the file ends too early"),
+    "a packed EXR": (pixel_files.exr(bumps(), "RLE"), "its compression is RLE; none, ZIPS and ZIP are read"),
+    "tiles": (pixel_files.exr(bumps(), flags=0x200), "an EXR with tiles is not read; scanlines of one part are"),
+    "a block": (pixel_files.exr(bumps(), "ZIP")[:-30] + b"\xff" * 30, "a block of it is damaged"),
+    "half an HDR": (pixel_files.hdr(sky())[:300], "the file ends too early"),
+    "a long run": (b"#?RADIANCE\n\n-Y 1 +X 9\n\2\2\0\11" + b"\xff\1" * 40, "a run of it is longer than its row"),
+    "a large one": (b"#?RADIANCE\n\n-Y 99999 +X 99999\n", "it has 99999 x 99999 pixels; at most 67108864 are read"),
+    "half of 16 bits": (pixel_files.png16(3e4 + 3e4 * bumps())[:300], "the file ends too early"),
+    "no rows of 16 bits": (pixel_files.png16(np.ones((9, 9, 3))).replace(b"IDAT", b"xDAT"), "its rows are damaged"),
+    "interlaced": (
+        pixel_files.png16(np.ones((9, 9, 3)), True),
+        "its rows of 16 bits are interlaced, which is not read",
+    ),
+    "half a PNG": (pixel_files.png(np.zeros((9, 9, 3), np.uint8))[:60], "the file ends too early"),
+    "no rows": (
+        pixel_files.png(np.zeros((9, 9, 3), np.uint8)).replace(b"IDAT", b"xDAT"),
+        "the browser cannot read this PNG",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", DAMAGED)
+def test_a_damaged_file_is_said_in_a_line_and_changes_nothing(laboratory, name):
+    data, reason = DAMAGED[name]
+    before = laboratory.page.evaluate(SMALL)
+    assert opened_file(laboratory, "a.bin", data) == f"a.bin is not shown: {reason}."
+    assert laboratory.page.evaluate(SMALL) == before and not laboratory.page.evaluate("live.see.surroundings")
+
+
+def test_a_file_is_dropped_on_the_picture(laboratory):
+    data = base64.b64encode(pixel_files.exr(bumps(), names="XYZ")).decode("ascii")
+    laboratory.page.evaluate(DROP, ["dropped.exr", data])
+    laboratory.says("[data-drop=said]", "dropped.exr as normals, as vectors")
+
+
+def test_an_address_gives_everything_back(reader_browser, report, laboratory):
+    page = laboratory.page
+    page.locator("[data-preset=face]").click()
+    laboratory.choose(left="spherical rgba8", right="octahedral rgba8", shown="zebra")
+    laboratory.press(".live-stage", *["ArrowLeft"] * 4, "+", "+")
+    text = page.locator("[data-own=text]")
+    text.fill(text.input_value().replace("// A unit", "// <b>Shared</b>: ä unit"))
+    laboratory.says("[data-own=said]", "16 bits in RGBA8")
+    laboratory.settle()
+    page.locator("[data-share=share]").click()
+    page.wait_for_selector("[data-share=link]:visible")
+    address, _, fragment = page.locator("[data-share=link]").input_value().partition("#")
+    assert address == report.as_uri() and len(fragment) < 2000
+    other = Laboratory(reader_browser, report, fragment=f"#{fragment}")
+    values = "live.share.values()"
+    assert other.page.evaluate(values) == page.evaluate(values)
+    page.locator("[data-share=link]").evaluate("link => { link.parentNode.hidden = true; }")
+    sizes = [one.evaluate("live.see.size") for one in (page, other.page)]
+    if sizes[0] != sizes[1]:
+        other.page.evaluate("size => { live.see.size = size; live.see.change(); }", sizes[0])
+        page.evaluate("size => { live.see.size = size; live.see.change(); }", sizes[0])
+    other.settle()
+    laboratory.settle()
+    apart = np.abs(np.subtract(other.page.evaluate(SMALL), page.evaluate(SMALL)))
+    # Two rasterisers do not agree on every pixel of an edge.
+    assert apart.max() == 0 if page.context.browser is reader_browser else (apart > 8).mean() < 0.02, apart.max()
+    assert other.asked == [report.as_uri()]
+    other.context.close()
+
+
+def test_the_address_follows_the_camera_and_goes_back_to_the_usual(laboratory):
+    plain = laboratory.page.evaluate("location.hash")
+    length = laboratory.page.evaluate("history.length")
+    laboratory.press(".live-stage", *["ArrowLeft"] * 10)
+    found = json.loads(laboratory.page.evaluate("inflated(state.live)"))
+    assert set(found) == {"around"}
+    assert laboratory.page.evaluate("history.length") == length, "Back takes no step of the camera's"
+    laboratory.press(".live-stage", *["ArrowRight"] * 10)
+    assert laboratory.page.evaluate("location.hash") == plain
+
+
+@pytest.mark.parametrize(
+    ("packed", "said"),
+    [
+        ("%%%", "The laboratory's part of the address is damaged"),
+        ("A" * 3000, "The laboratory's part of the address is damaged"),
+        ({"roughness": 7, "left": "no rgba8", "zoom": 2}, "The address names left no rgba8 and roughness 7 and zoom 2"),
+        ([1], "The laboratory's part of the address is damaged: it holds no controls."),
+    ],
+)
+def test_what_an_address_cannot_mean_is_said(laboratory, packed, said):
+    if not isinstance(packed, str):
+        packed = laboratory.page.evaluate("deflated", json.dumps(packed))
+    before = laboratory.page.evaluate("live.share.values()")
+    laboratory.page.evaluate("packed => { location.hash = `#v1/see?live=${packed}`; }", packed)
+    laboratory.says("#unknown", said)
+    laboratory.settle()
+    assert laboratory.page.evaluate("live.share.values()") == before
+
+
+@no_files
+def test_the_picture_is_saved_with_names_and_figures(laboratory):
+    canvas = laboratory.picture()
+    with laboratory.page.expect_download() as download:
+        laboratory.page.locator("[data-share=picture]").click()
+    assert download.value.suggested_filename == "normalbench.png"
+    with Image.open(io.BytesIO(Path(download.value.path()).read_bytes())) as image:
+        saved = np.asarray(image.convert("RGB")).astype(int)
+    height, width, _ = canvas.shape
+    assert saved.shape[1] == width and saved.shape[0] > height
+    middle = width // 2
+    assert (saved[:height, : middle - 2] == canvas[:, : middle - 2]).all()
+    bar = saved[height:]
+    assert (bar[:, :middle].max(axis=-1) > 200).any() and (bar[:, middle:].max(axis=-1) > 200).any(), "two texts"
+    lines = laboratory.page.evaluate("live.share.lines('right')")
+    assert lines[0] == "octahedral rgba8"
+    assert re.fullmatch(r"mean 0\.33\d°, largest 0\.9\d+°, PSNR 48\.\d+ dB, 16 bits", lines[1])
+
+
+def test_what_is_typed_survives_a_reload(laboratory):
+    page = laboratory.page
+    typed = page.locator("[data-own=text]").input_value().replace("// A unit", "// Mine: a unit")
+    page.locator("[data-own=text]").fill(typed)
+    laboratory.says("[data-own=said]", "16 bits in RGBA8")
+    laboratory.settle()
+    page.goto("about:blank")
+    page.goto(laboratory.address)
+    laboratory.open()
+    assert page.locator("[data-own=text]").input_value() == typed
+    laboratory.says("[data-own=said]", "16 bits in RGBA8")
+    laboratory.asked[:] = laboratory.asked[:1]
+
+
+def test_a_mistake_is_marked_at_its_line_and_leaves_no_old_map(laboratory):
+    page = laboratory.page
+    assert page.locator("[data-own=globe]").is_visible()
+    figures = [row.split("°")[0] for row in laboratory.texts("[data-own=figures] tr")]
+    assert [one[:12] for one in figures] == ["your encoder", "octahedral r"]
+    text = page.locator("[data-own=text]")
+    text.fill(text.input_value().replace("max(-z, 0.0)", "maxi(-z, 0.0)"))
+    page.wait_for_selector("[data-own=text][aria-invalid=true]")
+    assert laboratory.texts("[data-own=lines] mark") == ["9"]
+    assert page.locator("[data-own=globe]").is_hidden()
+    page.locator("[data-own=said] a").click()
+    chosen = "(({ value, selectionStart, selectionEnd }) => value.slice(selectionStart, selectionEnd))"
+    assert "maxi" in page.locator("[data-own=text]").evaluate(chosen)

@@ -1,0 +1,25 @@
+"""The website of a run: what is in it, that its links lead somewhere, and that it is read without scripts."""
+
+import test_site
+from html_faults import faults
+
+pages = test_site.pages
+run_folder = test_site.run_folder
+site = test_site.site
+
+
+FAULTS = {
+    "<p><div>a</div></p>": "unexpected-end-tag",
+    "<p id='a'><p id='a'>": "a: 2 elements have this id",
+    "<label for='b'>b</label>": "label: nothing has the id b",
+    "<p><style></style>": "style in the body",
+    "<table><tr><p>a</table>": "unexpected-start-tag-implies-table-voodoo",
+}
+
+
+def test_pages_keep_to_the_rules_of_html(site, pages, results):
+    for text, fault in FAULTS.items():
+        found = faults(f"<!doctype html><title>a</title>{text}")
+        assert any(fault in one for one in found), (text, found)
+    for path in (results[0] / "report.html", *(site / name for name in pages)):
+        assert faults(path.read_text(encoding="utf-8")) == [], path.name

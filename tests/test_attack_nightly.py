@@ -1,0 +1,13 @@
+"""A short form of `python -m tests.attack`: every kind that takes no process of its own, from the first seeds."""
+
+import pytest
+import test_attack_slow
+from test_attack_slow import COSTLY, FEW, of
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("kind, count", of((k for k in FEW if k.name in COSTLY), 1))
+def test_what_is_damaged_is_measured_or_refused_in_a_line_of_the_dearest_kinds(
+    kind, count, tmp_path, monkeypatch, opened
+):
+    test_attack_slow.test_what_is_damaged_is_measured_or_refused_in_a_line(kind, count, tmp_path, monkeypatch, opened)

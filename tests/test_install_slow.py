@@ -1,0 +1,74 @@
+"""`pip install .`, archives and the set-up: all files are there, the sizes are those said, and nothing is silent."""
+
+import shutil
+import subprocess
+import sys
+
+import pytest
+from manual import ROOT
+
+from normalbench.bench.door.python import stub
+
+ROOMS = ("bench", "encodings", "gbuffer", "reports")
+
+
+BESIDE = ("pyproject.toml", "setup.py", "README.md", "LICENSE")
+
+
+# What `import normalbench` gives lies elsewhere in a checkout.
+API = "bench/door/api/"
+
+
+# What type checkers and editors are told, which is made when the package is built.
+STUB = "__init__.pyi"
+
+
+def test_an_install_is_whole_and_leaves_nothing_in_the_checkout(tmp_path):
+    pytest.importorskip("setuptools", minversion="77", reason="pyproject.toml asks for it")
+    checkout, site = copied(tmp_path / "checkout"), tmp_path / "site"
+    before = files_in(checkout)
+    words = ("install", "--quiet", "--no-deps", "--no-build-isolation", "--no-compile", "--target", str(site))
+    done = subprocess.run([sys.executable, "-m", "pip", *words, str(checkout)], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert files_in(checkout) == before and {path.name for path in checkout.iterdir()} == {*ROOMS, *BESIDE}
+    packaged = {name.removeprefix(API) for name in before if name not in BESIDE}
+    assert files_in(site / "normalbench") == packaged | {STUB}
+    assert (site / "normalbench" / STUB).read_text() == stub.stub()
+
+
+def copied(checkout, *more):
+    """The rooms of the package in a folder, and what pip reads; more files and folders of the checkout, where asked."""
+    checkout.mkdir()
+    for path in [ROOT / name for name in (*ROOMS, *BESIDE, *more)]:
+        if path.is_dir():
+            made = shutil.ignore_patterns("__pycache__", ".pytest_cache", STUB)
+            shutil.copytree(path, checkout / path.name, ignore=made)
+        else:
+            shutil.copy(path, checkout)
+    return checkout
+
+
+def files_in(folder):
+    """The files below a folder, by their paths."""
+    return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
+
+
+# What a source archive has beside the package.
+FOR_TESTS = ("tests", "docs", ".ci", "Makefile", "Dockerfile", "MANIFEST.in", "CHANGELOG.md", "CITATION.cff")
+
+
+OTHERS = ("CONTRIBUTING.md", ".dockerignore", ".gitignore", ".pre-commit-hooks.yaml")
+
+
+def test_a_source_archive_has_all_that_the_tests_need(tmp_path):
+    """Every file; tests that read the manual, the scripts and other tests pass in it."""
+    pytest.importorskip("setuptools", minversion="77", reason="pyproject.toml asks for it")
+    checkout = copied(tmp_path / "checkout", *FOR_TESTS, *OTHERS)
+    before = files_in(checkout)
+    subprocess.run([sys.executable, "setup.py", "-q", "sdist", "-d", str(tmp_path)], cwd=checkout, check=True)
+    shutil.unpack_archive(next(tmp_path.glob("*.tar.gz")), tmp_path / "unpacked")
+    (unpacked,) = (tmp_path / "unpacked").iterdir()
+    assert before <= files_in(unpacked), sorted(before - files_in(unpacked))
+    words = ("-q", "-p", "no:cacheprovider", "tests/test_ci_scripts.py", "tests/test_container.py")
+    done = subprocess.run([sys.executable, "-m", "pytest", *words], cwd=unpacked, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout

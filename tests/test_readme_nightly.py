@@ -1,0 +1,13 @@
+"""What README.md and every page of docs/ say is so: commands run, examples pass."""
+
+import pytest
+import test_readme
+import test_readme_slow
+from test_readme import LONG_COMMANDS
+
+readers_folder = test_readme.readers_folder
+
+
+@pytest.mark.parametrize("command", LONG_COMMANDS)
+def test_every_command_runs_as_written_however_long_it_takes(command, readers_folder, monkeypatch, capsys, request):
+    test_readme_slow.test_every_command_runs_as_written(command, readers_folder, monkeypatch, capsys, request)

@@ -1,0 +1,98 @@
+"""The program on Python of Windows, in Wine: its figures are Linux's, by JAX, OpenGL and Vulkan."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+import wine
+from other_systems import START, write_examples
+from screens import screen
+
+
+@pytest.fixture(scope="module")
+def windows(once):
+    """What a command does there."""
+    if why := wine.why_not():
+        pytest.skip(why)
+    try:
+        once("windows", wine.prepare)
+    except subprocess.CalledProcessError as error:
+        pytest.skip(f"no packages for Windows: {error}")
+    with screen() as display:
+        yield wine.Windows(display)
+
+
+def well(done):
+    assert done.returncode == 0 and "Traceback" not in done.stderr, done.stdout + done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize("backend", ["jax", "glsl", "wgsl"])
+def test_figures_are_those_of_linux(windows, tmp_path, backend):
+    words = ["quality", "--encoding", "octahedral,xyz", "--storage", "rg8,rgb10a2,rg16f", "--backend", backend]
+    words += ["--format", "json"]
+    here = subprocess.run([sys.executable, "-c", START, *words], capture_output=True, text=True, check=True).stdout
+    there = well(windows.command(tmp_path, *words))
+    figures = [
+        [{name: value for name, value in row.items() if isinstance(value, int | float)} for row in json.loads(text)]
+        for text in (here, there)
+    ]
+    assert figures[0] == [pytest.approx(row, rel=1e-6, abs=1e-12) for row in figures[1]]
+
+
+def test_a_users_encoder_is_measured_and_one_that_does_not_end_is_ended(windows, tmp_path):
+    write_examples(tmp_path)
+    words = [
+        "quality",
+        "--encoding",
+        rf"Z:{tmp_path}\mine.glsl".replace("/", "\\"),
+        "--storage",
+        "rg8",
+        "--format",
+        "json",
+    ]
+    by = {row["backend"]: row["angle_mean_deg"] for row in json.loads(well(windows.command(tmp_path, *words)))}
+    assert by["glsl"] == pytest.approx(by["jax"], rel=1e-3)
+    (tmp_path / "mine.py").write_text("while True:\n    pass\n")
+    done = windows.command(tmp_path, *words)
+    figures = {row["backend"]: row["angle_mean_deg"] for row in json.loads(well(done))}
+    assert figures["glsl"] is not None and figures["jax"] is None
+    assert "its Python twin did not end" in done.stderr, done.stderr
+
+
+def test_commands_end_well(windows, tmp_path):
+    """And write what they write on Linux."""
+    write_examples(tmp_path)
+    assert "apt-get" not in well(windows.command(tmp_path, "doctor"))
+    assert "pass" in well(windows.command(tmp_path, "check", "gates.toml"))
+    quality = ["quality", "--encoding", "xyz", "--storage", "rgb10a2", "--backend", "jax"]
+    well(windows.command(tmp_path, *quality, "-o", "rows.csv", "--report", "page.html"))
+    assert {path.name for path in tmp_path.iterdir()} >= {"rows.csv", "page.html"} and not [*tmp_path.glob(".*.rows")]
+    well(windows.command(tmp_path, "code", "octahedral", "--storage", "rg8", "--to", "hlsl", "-o", "code"))
+    assert (tmp_path / "code" / "octahedral_rg8.hlsl").is_file()
+    answer = well(windows.command(tmp_path, "pick", "--bytes", "2", "--scene", "studio"))
+    assert answer.startswith("2 bytes, on sphere: take octahedral in rg8.") and "recorded with Mesa" in answer
+
+
+def test_a_run_is_whole_and_another_system_reads_it(windows, tmp_path):
+    well(windows.command(tmp_path, "run", "--encoding", "octahedral,xy", "--storage", "rg8", "-o", "kept"))
+    # It goes on where it was.
+    well(windows.command(tmp_path, "run", "--encoding", "octahedral,xy", "--storage", "rg8", "-o", "kept"))
+    ends = [path.name for path in (tmp_path / "kept").iterdir() if path.is_file() and b"\r\n" in path.read_bytes()]
+    assert ends == []
+    done = subprocess.run(
+        [sys.executable, "-c", START, "report", "kept", "--markdown"], capture_output=True, text=True, cwd=tmp_path
+    )
+    assert done.returncode == 0 and "take octahedral" in done.stdout, done.stderr
+
+
+def test_the_pytest_plugin_measures(windows, tmp_path):
+    write_examples(tmp_path)
+    (tmp_path / "test_mine.py").write_text(
+        "def test_it(normalbench):\n"
+        "    row = normalbench.quality(encoding='mine.glsl', backend='jax', normals='hemisphere')\n"
+        "    row.assert_that(psnr_db='at least 30')\n"
+    )
+    done = windows.python(tmp_path, "-m", "pytest", "-q", "test_mine.py")
+    assert done.returncode == 0 and "1 passed" in done.stdout, done.stdout + done.stderr
