@@ -146,12 +146,14 @@ class HlslWriter(Writer):
             is_unclear = is_less(value.condition) and ">" in text
             return f"({condition}){text.removeprefix(condition)}" if is_unclear else text, level
         whole = value.condition, value.chosen, value.other
-        parts = [tuple(self._component(one, field) for one in whole) for field in FIELDS[:size]]
-        text = ", ".join(map("{0[0]} ? {0[1]} : {0[2]}".format, parts))
-        if len(text) <= self.most_letters:
-            return f"{self._kind(value.kind)}({text})", PRIMARY
-        name = self._choice_of(value.kind, value.condition.kind, size)
-        return f"{name}({', '.join(map(self._text, whole))})", PRIMARY
+        texts = [*map(self._text, whole)]
+        # Components of what is long are too: they are not written, as choices in choices would be ever more often.
+        if sum(map(len, texts)) <= 2 * self.most_letters:
+            parts = ([self._component(part, field) for part in whole] for field in FIELDS[:size])
+            text = ", ".join(map("{0[0]} ? {0[1]} : {0[2]}".format, parts))
+            if len(text) <= self.most_letters:
+                return f"{self._kind(value.kind)}({text})", PRIMARY
+        return f"{self._choice_of(value.kind, value.condition.kind, size)}({', '.join(texts)})", PRIMARY
 
     def _component(self, value: Expression, field: str) -> str:
         """A component of a vector; of a comparison, and of numbers, without the whole."""
