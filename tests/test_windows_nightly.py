@@ -31,7 +31,7 @@ def well(done):
 @pytest.mark.parametrize("backend", ["jax", "glsl", "wgsl"])
 def test_figures_are_those_of_linux(windows, tmp_path, backend):
     words = ["quality", "--encoding", "octahedral,xyz", "--storage", "rg8,rgb10a2,rg16f", "--backend", backend]
-    words += ["--format", "json"]
+    words += ["--count", "65536", "--format", "json"]
     here = subprocess.run([sys.executable, "-c", START, *words], capture_output=True, text=True, check=True).stdout
     there = well(windows.command(tmp_path, *words))
     figures = [

@@ -16,7 +16,7 @@ from speed.scheduled import Scheduled, scheduled
 PART = "quality,mix,frames,vectors"
 
 
-WORKER_KILLS, SCHEDULER_KILLS = 20, 2
+WORKER_KILLS, SCHEDULER_KILLS = 12, 2
 
 
 # Steps that are measured between two kills, not seconds, because machines differ in how long a step takes; and how many

@@ -10,7 +10,9 @@ from normalbench.encodings.storages.storage import STORAGES
 
 
 @pytest.mark.parametrize("encoding", ENCODINGS)
-def test_c_of_every_codec_is_defined_for_every_float(encoding, tmp_path):
+def test_c_of_every_encoding_and_storage_is_defined_for_every_float(encoding, tmp_path):
+    """Of every third storage that an encoding fits, beginning with another one each, so that every storage is there."""
     require_runner("c")
-    said = [ran(codec, tmp_path) for codec in codecs_named(encoding, ",".join(STORAGES), "nearest") if codec.fits]
+    codecs = [codec for codec in codecs_named(encoding, ",".join(STORAGES), "nearest") if codec.fits]
+    said = [ran(codec, tmp_path) for codec in codecs[list(ENCODINGS).index(encoding) % 3 :: 3]]
     assert not any(said), said
