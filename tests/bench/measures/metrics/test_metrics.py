@@ -9,7 +9,6 @@ import pytest
 from directions import random_directions
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from skimage.metrics import peak_signal_noise_ratio
 from speed.numpy_baseline import whole_row
 
 from normalbench.bench.ground.angles import angles_deg
@@ -138,6 +137,9 @@ def test_both_back_ends_name_the_worst_normal():
 
 
 def test_psnr_is_scikit_images():
+    # It takes a second to import, of whoever collects these tests.
+    from skimage.metrics import peak_signal_noise_ratio
+
     rng = np.random.default_rng(0)
     a, b = rng.uniform(-1, 1, (2, 64, 64, 3))
     assert psnr_db(float(np.mean((a - b) ** 2))) == pytest.approx(peak_signal_noise_ratio(a, b, data_range=1))
