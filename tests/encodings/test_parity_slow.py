@@ -19,15 +19,16 @@ def test_after_storage_more_codes_are_the_same(gl, kind, codec):
 def is_unseen(gl, monkeypatch, kind, encoding, file, text) -> bool:
     """Whether the languages agree although two arguments are exchanged in one."""
     original, parity = shader.read_shader, PARITY[kind]
-    monkeypatch.setattr(shader, "read_shader", lambda path: text if path == file else original(path))
-    # What is read once is read anew.
-    monkeypatch.setattr(shader, "_lines", shader._lines.__wrapped__)
-    monkeypatch.setattr(shader, "_expanded_of_own", shader._expanded)
-    try:
-        found = parity.compared(gl, parity.cases(encoding)[0])
-    except ShaderError:
-        return False  # the types disagree: nobody can ship that
-    return all(one.agrees for one in found)
+    with monkeypatch.context() as patch:
+        patch.setattr(shader, "read_shader", lambda path: text if path == file else original(path))
+        # What is read once is read anew.
+        patch.setattr(shader, "_lines", shader._lines.__wrapped__)
+        patch.setattr(shader, "_expanded_of_own", shader._expanded)
+        try:
+            found = parity.compared(gl, parity.cases(encoding)[0])
+        except ShaderError:
+            return False  # the types disagree: nobody can ship that
+        return all(comparison.agrees for comparison in found)
 
 
 @pytest.mark.parametrize("kind, encoding", EVERY)
