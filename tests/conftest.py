@@ -25,6 +25,7 @@ import kept_runs
 import pytest
 import seconds
 import shared_rows
+from tiers import TIERS, is_in, tier_of
 
 from normalbench.bench.door.cli import app as cli
 from normalbench.bench.ground.compilers import tools as compilers
@@ -51,15 +52,6 @@ jax.config.update("jax_numpy_rank_promotion", "raise")
 jax.config.update("jax_numpy_dtype_promotion", "strict")
 
 
-# A file's name ends in its tier; one whose name does not is quick. Each is run with those before it.
-TIERS = ("quick", "slow", "nightly")
-
-
-def tier_of(path: Path) -> str:
-    """The tier of a test file."""
-    return next((tier for tier in TIERS if path.stem.endswith(f"_{tier}")), TIERS[0])
-
-
 def pytest_addoption(parser):
     parser.addoption("--tier", choices=TIERS, default=TIERS[0], help="which tests: quick ones, slow ones too, or all")
     parser.addoption("--firefox", action="store_true", help="open pages in Firefox: pytest tests/reports --firefox")
@@ -75,9 +67,10 @@ def pytest_configure(config):
 
 def pytest_ignore_collect(collection_path, config):
     """What is not asked for is not imported; a file is asked for by its name, too."""
-    is_later = TIERS.index(tier_of(collection_path)) > TIERS.index(config.option.tier)
+    if is_in(collection_path, config.option.tier):
+        return None
     named = {Path(word.partition("::")[0]).absolute() for word in config.args}
-    return True if is_later and collection_path not in named else None
+    return None if collection_path in named else True
 
 
 # What takes seconds to begin with.

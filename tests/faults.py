@@ -27,8 +27,8 @@ from typing import Any, NamedTuple, NoReturn
 
 from fault_list import FAULTS, Fault
 from fault_list_blind import FAULTS_B
+from tiers import TIERS, files_of, is_in
 
-TIERS = ("quick", "slow", "nightly")
 ROOMS = ("encodings", "gbuffer", "bench", "reports")
 # No selection of tests takes so long: what does hangs, and is noticed by that.
 LIMIT_S = 900
@@ -62,9 +62,8 @@ class Tree:
         elsewhere."""
         if not names:
             return ["tests"]
-        ends = ["", *(f"_{tier}" for tier in TIERS[1 : TIERS.index(self.tier) + 1])]
-        files = [f"{Path(name).stem}{end}.py" for name in names.split() for end in ends]
-        return [str(path.relative_to(self.root)) for name in files for path in (self.root / "tests").rglob(name)]
+        files = (path for name in names.split() for path in files_of(self.root / "tests", Path(name).stem))
+        return [str(path.relative_to(self.root)) for path in files if is_in(path, self.tier)]
 
 
 @dataclass(frozen=True)
@@ -108,6 +107,7 @@ def environment() -> Iterator[dict[str, str]]:
     home = Path("~/.cache").expanduser()
     # What these keep is known by its content, and takes long to make again.
     shared = {"MESA_SHADER_CACHE_DIR": str(home), "MPLCONFIGDIR": str(home / "matplotlib")}
+    shared["JAX_COMPILATION_CACHE_DIR"] = str(home / "normalbench-tests" / "jax")
     with tempfile.TemporaryDirectory(prefix="faults-", ignore_cleanup_errors=True) as cache:
         yield shared | os.environ | {"XDG_CACHE_HOME": cache, "PYTHONDONTWRITEBYTECODE": "1"}
 

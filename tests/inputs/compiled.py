@@ -1,6 +1,5 @@
 """Where what compilers make is kept for all tests, their processes, the next run and other checkouts."""
 
-import os
-from pathlib import Path
+from normalbench.bench.ground.output.cache import folder
 
-COMPILED = Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "normalbench-tests"
+COMPILED = folder().with_name("normalbench-tests")

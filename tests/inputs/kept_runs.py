@@ -5,7 +5,6 @@ says follows from the program's file, its options and its input: these are the k
 """
 
 import base64
-import hashlib
 import json
 import os
 import shutil
@@ -14,8 +13,10 @@ import tempfile
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from normalbench.bench.ground.output.cache import key_of
+from normalbench.bench.run.measuring import file_digest
 
 Run = Callable[..., subprocess.CompletedProcess[bytes]]
 
@@ -34,7 +35,8 @@ def kept(run: Run, folder: Path) -> Run:
             done = run(command, given, *files)
             written = os.pread(files[0], os.fstat(files[0]).st_size, 0) if files else b""
             if done.returncode == 0:
-                _write(path, {"out": done.stdout, "err": done.stderr, "written": written})
+                parts = {"out": done.stdout, "err": done.stderr, "written": written}
+                write_json(path, {name: base64.b64encode(data).decode() for name, data in parts.items()})
             return done
         if files:
             os.pwrite(files[0], said["written"], 0)
@@ -51,12 +53,12 @@ def _key(tool: str, words: list[str], given: bytes, files: tuple[int, ...]) -> s
 @cache
 def _fingerprint(tool: str) -> str:
     """A program's name and what its file holds. One that is replaced meanwhile is seen by the next process."""
-    return f"{Path(tool).name} {hashlib.sha256(Path(tool).read_bytes()).hexdigest()}"
+    return f"{Path(tool).name} {file_digest(Path(tool)).hex()}"
 
 
-def _write(path: Path, said: dict[str, bytes]) -> None:
+def write_json(path: Path, value: Any) -> None:
+    """Write a value as JSON, whole or not at all: threads and processes may write the same at once."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    # Threads may write the same at once.
-    with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False) as file:
-        json.dump({name: base64.b64encode(data).decode() for name, data in said.items()}, file)
+    with tempfile.NamedTemporaryFile("w", dir=path.parent, encoding="utf-8", delete=False) as file:
+        json.dump(value, file)
     Path(file.name).replace(path)

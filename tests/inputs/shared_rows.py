@@ -5,9 +5,10 @@ Steps that read a clock, and tables that leave more behind than rows, are measur
 """
 
 import json
-import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
+
+from kept_runs import write_json
 
 from normalbench.bench.ground.output.cache import key_of
 from normalbench.bench.keep.plain import key_text, plain
@@ -35,7 +36,7 @@ def shared(measure: Measure, folder: Path) -> Measure:
             if rows is None:
                 rows = next(measured)[1]
                 if id(step) in known:
-                    _write(folder / _key(ask, step), rows)
+                    write_json(folder / _key(ask, step), plain(rows))
             yield step, rows
 
     return shared_measure
@@ -50,11 +51,3 @@ def _read(path: Path) -> list[Row] | None:
         return json.loads(path.read_text(encoding="utf-8"))
     except OSError:
         return None
-
-
-def _write(path: Path, rows: Sequence[Row]) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    # Processes may write the same at once.
-    with tempfile.NamedTemporaryFile("w", dir=path.parent, encoding="utf-8", delete=False) as file:
-        json.dump(plain(rows), file)
-    Path(file.name).replace(path)

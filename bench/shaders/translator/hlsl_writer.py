@@ -147,7 +147,7 @@ class HlslWriter(Writer):
             return f"({condition}){text.removeprefix(condition)}" if is_unclear else text, level
         whole = value.condition, value.chosen, value.other
         texts = [*map(self._text, whole)]
-        # Components of what is long are too: they are not written, as choices in choices would be ever more often.
+        # What is long is so by components too; to write them all the same would triple the work at each inner choice.
         if sum(map(len, texts)) <= 2 * self.most_letters:
             parts = ([self._component(part, field) for part in whole] for field in FIELDS[:size])
             text = ", ".join(map("{0[0]} ? {0[1]} : {0[2]}".format, parts))

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tiers import files_of
 
 from normalbench.bench.door.gates.limits import limit
 from normalbench.bench.ground.options.counts import checked_numbers
@@ -103,8 +104,8 @@ ANSWERS = {
 
 
 def _tests_in(name: str) -> set[str]:
-    tree = ast.parse(next(TESTS.rglob(f"{name}.py")).read_text())
-    return {node.name for node in tree.body if isinstance(node, ast.FunctionDef)}
+    trees = [ast.parse(path.read_text()) for path in files_of(TESTS, name)]
+    return {node.name for tree in trees for node in tree.body if isinstance(node, ast.FunctionDef)}
 
 
 @pytest.mark.parametrize("what", ANSWERS)

@@ -137,7 +137,7 @@ def test_both_back_ends_name_the_worst_normal():
 
 
 def test_psnr_is_scikit_images():
-    # It takes a second to import, of whoever collects these tests.
+    # Its import takes a second, which collecting these tests does without.
     from skimage.metrics import peak_signal_noise_ratio
 
     rng = np.random.default_rng(0)

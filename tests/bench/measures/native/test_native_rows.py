@@ -66,9 +66,8 @@ def codecs_of(name: str) -> list[Codec]:
     return [*kinds.values()]
 
 
-@pytest.mark.parametrize("at", [0])
 @pytest.mark.parametrize("name", sorted(set(ENCODINGS) - BY_XLA))
-def test_rows_are_those_of_xla(name, at):
+def test_rows_are_those_of_xla(name, at=0):
     """Every codec of the catalogue, in a format of each kind."""
     normals = sphere(CHUNK)
     for codec in codecs_of(name)[1:] if at else codecs_of(name)[:1]:

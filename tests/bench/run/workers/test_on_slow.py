@@ -105,8 +105,7 @@ def rows_alone(tmp_path_factory):
     return (folder / "rows.json").read_bytes()
 
 
-@pytest.mark.parametrize("number", [signal.SIGKILL])
-def test_an_interruption_leaves_rows_and_no_process(tmp_path, rows_alone, number):
+def test_an_interruption_leaves_rows_and_no_process(tmp_path, rows_alone, number=signal.SIGKILL):
     """What is kept stays, the workers end, nothing of them is left, and the same command ends with the rows of one that
     nobody disturbed."""
     process = begun(tmp_path, "--on", "local:2")

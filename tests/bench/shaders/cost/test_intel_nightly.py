@@ -1,9 +1,7 @@
 """Instructions by Intel's compilers: what listings hold, which kernels compare, and the device that is not there."""
 
-import pytest
 import test_intel_slow
 
 
-@pytest.mark.parametrize("is_every", [True], ids=["every"])
-def test_known_counts_of_intels_compilers_of_every_encoding(vendor_rows, is_every):
-    test_intel_slow.test_known_counts_of_intels_compilers(vendor_rows, is_every)
+def test_known_counts_of_intels_compilers_of_every_encoding(vendor_rows):
+    test_intel_slow.test_known_counts_of_intels_compilers(vendor_rows, is_every=True)

@@ -111,8 +111,7 @@ def test_doctor_says_what_intels_counts_lack(monkeypatch):
 OCTAHEDRAL = {"hsw": 11, "bdw": 11, "skl": 11, "tgl": 12, "adl": 12, "dg2": 11}
 
 
-@pytest.mark.parametrize("is_every", [False], ids=["some"])
-def test_known_counts_of_intels_compilers(vendor_rows, is_every):
+def test_known_counts_of_intels_compilers(vendor_rows, is_every=False):
     rows = vendor_rows(INTEL, is_every)
     assert {row["transcendental"] for row in rows if row["encoding"] == "octahedral"} == {1}
     if {row["driver"] for row in rows} != {"Mesa 22.3.6"}:

@@ -89,8 +89,7 @@ def test_an_architecture_that_nvrtc_does_not_know_is_one_line(run, monkeypatch):
 OCTAHEDRAL = {"sm_75": 15, "sm_86": 15, "sm_89": 15, "sm_90": 15, "sm_100": 14, "sm_120": 14}
 
 
-@pytest.mark.parametrize("is_every", [False], ids=["some"])
-def test_known_counts_of_nvidias_compiler(vendor_rows, is_every):
+def test_known_counts_of_nvidias_compiler(vendor_rows, is_every=False):
     """The order of cheap encodings is a Radeon's."""
     rows = vendor_rows(NVIDIA, is_every)
     if {row["driver"] for row in rows} != {VERSIONS}:
@@ -104,8 +103,7 @@ def test_known_counts_of_nvidias_compiler(vendor_rows, is_every):
         assert order == [0, 8, 10], name
 
 
-@pytest.mark.parametrize("is_every", [False], ids=["some"])
-def test_an_instruction_of_nvidias_is_16_bytes_and_none_spills(vendor_rows, is_every):
+def test_an_instruction_of_nvidias_is_16_bytes_and_none_spills(vendor_rows, is_every=False):
     for row in vendor_rows(NVIDIA, is_every):
         assert (row["code_bytes"], row["spills"]) == (16 * row["instructions"], 0), row
         if row["encoding"] == "octahedral":

@@ -16,8 +16,7 @@ named = pytest.mark.parametrize("vendor", VENDORS, ids=lambda vendor: vendor.nam
 
 
 @named
-@pytest.mark.parametrize("is_every", [False], ids=["some"])
-def test_doing_nothing_costs_nothing(vendor_rows, vendor, is_every):
+def test_doing_nothing_costs_nothing(vendor_rows, vendor, is_every=False):
     rows = [row for row in vendor_rows(vendor, is_every) if row["encoding"] == "xyz"]
     assert len(rows) == 2 * len(vendor.stages) * len(vendor.families(is_every))
     for row in rows:
@@ -25,8 +24,7 @@ def test_doing_nothing_costs_nothing(vendor_rows, vendor, is_every):
 
 
 @named
-@pytest.mark.parametrize("is_every", [False], ids=["some"])
-def test_the_kinds_of_every_encoding_and_packing_add_up_to_the_compilers_own_count(vendor_rows, vendor, is_every):
+def test_the_kinds_of_every_encoding_and_packing_add_up_to_the_compilers_own_count(vendor_rows, vendor, is_every=False):
     rows = vendor_rows(vendor, is_every)
     shaders = sum(map(len, vendor.shaders(is_every)))
     assert len(rows) == 2 * shaders * len(vendor.stages) * len(vendor.families(is_every))
