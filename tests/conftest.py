@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 from compiled import COMPILED
@@ -25,6 +26,7 @@ import kept_runs
 import pytest
 import seconds
 import shared_rows
+import typer.main
 from tiers import TIERS, is_in, tier_of
 
 from normalbench.bench.door.cli import app as cli
@@ -145,9 +147,14 @@ def rows_are_shared(monkeypatch, shared_folder):
     monkeypatch.setattr(measuring.Here, "measure", shared_rows.shared(measuring.Here.measure, shared_folder / "rows"))
 
 
+# Typer makes all commands anew at each call, which takes longer than most refusals; a process of its own does it once.
+parser_of = cache(typer.main.get_command)
+
+
 @pytest.fixture
 def run(monkeypatch, capsys):
     """The command line in this process: arguments to its status, output and errors."""
+    monkeypatch.setattr(typer.main, "get_command", parser_of)
 
     def command(*arguments: str) -> tuple[int, str, str]:
         monkeypatch.setattr(sys, "argv", ["normalbench", *arguments])
