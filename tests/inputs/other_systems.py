@@ -25,6 +25,19 @@ def decode(e, view):
 """
 GATE = '[[gate]]\ntable = "quality"\nencoding = "octahedral"\nstorage = "rg8"\nangle_max_deg = "at most 1"\n'
 START = "from normalbench.bench.door.cli.start import program; program()"
+# The program as `start` begins it, but that it does all commands.
+ONE_AFTER_THE_OTHER = """
+import json, sys
+from normalbench.bench.door.cli import app, start
+
+def each():
+    for words in json.loads(sys.argv.pop()):
+        sys.argv = ["normalbench", *words]
+        print(f"{words[0]} ended with {app.main()}", file=sys.stderr, flush=True)
+
+app.program = each
+start.program()
+"""
 
 
 @cache
@@ -33,12 +46,14 @@ def _stubs():
     return Path(importlib.util.find_spec("basedpyright").origin).parent / "dist" / "typeshed-fallback" / "stdlib"
 
 
+@cache
 def lacking(module, system):
     """The names of a module of the standard library that Linux has and another system lacks."""
     body = _body(module)
-    return set(_names(body, "linux")) - set(_names(body, system))
+    return frozenset(_names(body, "linux")) - frozenset(_names(body, system))
 
 
+@cache
 def is_gone(module, system):
     """Whether a system lacks all that a module defines."""
     body = _body(module)
@@ -81,11 +96,13 @@ def _holds(test, system):
     return eval(text, {"sys": type("sys", (), {"platform": system, "version_info": sys.version_info})})
 
 
-def on(system, folder, words, **variables):
+def on(system, folder, *commands, before=""):
     """What the command line, and every process that it starts, does on a system that lacks what another one lacks.
 
     Args:
         folder: an empty one, for what Python loads at its start.
+        commands: the words of one; of several one process does one after the other, and says how each ended.
+        before: what the process does before anything else.
     """
     names = [name for name in sys.stdlib_module_names if not name.startswith("_")]
     gone = [name for name in names if is_gone(name, system)]
@@ -95,11 +112,12 @@ def on(system, folder, words, **variables):
     (folder / "lacking.json").write_text(json.dumps(told))
     (folder / "sitecustomize.py").write_text(Path(__file__).with_name("hiding.py").read_text())
     ours = {"PYTHONPATH": str(folder), "PYTHONWARNDEFAULTENCODING": "1", "PYTHONIOENCODING": "cp1252:strict"}
+    words = commands[0] if len(commands) == 1 else [json.dumps(commands)]
     return subprocess.run(
-        [sys.executable, "-c", START, *words],
+        [sys.executable, "-c", before + (START if len(commands) == 1 else ONE_AFTER_THE_OTHER), *words],
         capture_output=True,
         encoding="cp1252",
-        env=os.environ | ours | ITS_OWN.get(system, {}) | variables,
+        env=os.environ | ours | ITS_OWN.get(system, {}),
         cwd=folder,
         timeout=300,
     )
