@@ -9,6 +9,8 @@ from normalbench.bench.shaders.languages.items import functions_in, items, witho
 from normalbench.bench.shaders.languages.source import Source
 from normalbench.bench.shaders.languages.translated import translated
 
+pytestmark = pytest.mark.usefixtures("in_this_process")
+
 
 @pytest.mark.usefixtures("slang")
 def test_a_function_for_want_of_what_is_not_there_is_named(tmp_path):

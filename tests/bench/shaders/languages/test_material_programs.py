@@ -7,6 +7,8 @@ from normalbench.bench.shaders.languages.blocks import programs_of
 from normalbench.bench.shaders.languages.source import Source
 from normalbench.bench.shaders.languages.translated import translated
 
+pytestmark = pytest.mark.usefixtures("in_this_process")
+
 COMMON = "HLSLINCLUDE\n#define SCALE 1.0\nENDHLSL\n"
 OTHER = "HLSLPROGRAM\n#define SCALED(x) gone(x)\nfloat4 frag() : SV_Target { return SCALED(2.0); }\nENDHLSL\n"
 PAIR = """HLSLPROGRAM

@@ -14,6 +14,8 @@ from normalbench.bench.tables.quality.table import QualityOptions
 from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.codecs.variants import settings_in
 
+pytestmark = pytest.mark.usefixtures("in_this_process")
+
 PAIR = """float2 PackDir(float3 n) { return n.xy * SCALE; }
 float3 UnpackDir(float2 e) { return float3(e, sqrt(saturate(1.0 - dot(e, e)))); }
 """

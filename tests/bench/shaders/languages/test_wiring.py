@@ -8,6 +8,8 @@ from normalbench.bench.shaders.languages.pairs import NoPairError
 from normalbench.bench.shaders.languages.translated import translated
 from normalbench.bench.shaders.languages.wiring import Wiring, wiring_of
 
+pytestmark = pytest.mark.usefixtures("in_this_process")
+
 FORMS = ROOT / "tests" / "inputs" / "encoders"
 
 

@@ -1,0 +1,23 @@
+"""Translations of users' files in this process."""
+
+import json
+from pathlib import Path
+from subprocess import CompletedProcess
+from types import SimpleNamespace
+
+import pytest
+
+from normalbench.bench.shaders.languages import child, translated
+
+
+@pytest.fixture
+def in_this_process(monkeypatch):
+    """Files are translated here: a process takes far longer to begin than to translate. test_translated.py and
+    test_wall.py hold the process, what limits it, and its wall."""
+
+    def finished(command, _):
+        folder, word, by, kind = command
+        return CompletedProcess(command, 0, json.dumps(child.answer(word, Path(folder), by, kind)), "")
+
+    children = SimpleNamespace(python=lambda _, *words: words, finished=finished)
+    monkeypatch.setattr(translated, "children", children)
