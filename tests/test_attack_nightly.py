@@ -2,7 +2,7 @@
 
 import pytest
 import test_attack_slow
-from test_attack_slow import COSTLY, FEW, of
+from test_attack_slow import BY_DAY, COSTLY, FEW, of
 
 
 @pytest.mark.usefixtures("gl")
@@ -11,3 +11,10 @@ def test_what_is_damaged_is_measured_or_refused_in_a_line_of_the_dearest_kinds(
     kind, count, tmp_path, monkeypatch, opened
 ):
     test_attack_slow.test_what_is_damaged_is_measured_or_refused_in_a_line(kind, count, tmp_path, monkeypatch, opened)
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("seed", [seed for seed in range(12) if seed not in BY_DAY])
+def test_more_programs_mean_the_same_in_every_language(seed, tmp_path, monkeypatch):
+    """With those of every day three of each language that is read."""
+    test_attack_slow.test_programs_mean_the_same_in_every_language(seed, tmp_path, monkeypatch)

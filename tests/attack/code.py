@@ -114,6 +114,6 @@ def both(folder: Path) -> Attack:
 
 
 KINDS = (
-    Kind("shader", shaders, 1320, 60, seconds=15.0, chunk=250),
+    Kind("shader", shaders, 1320, 40, seconds=15.0, chunk=250),
     Kind("shader and twin", both, 80, 0, seconds=120.0, chunk=20),
 )
