@@ -1,36 +1,21 @@
 """A translation is measured once a second compiler has given the same."""
 
-import re
-from contextlib import nullcontext
-
 import numpy as np
 import pytest
-from attack.translations import translated_here
-from everyday import WGSL
-from languages import require_runner
 
 from normalbench.bench.ground.angles import angles_deg
 from normalbench.bench.ground.directions import directions
 from normalbench.bench.ground.output import cache as kept
-from normalbench.bench.shaders.languages import second
-from normalbench.bench.shaders.languages.translated import translated
-from normalbench.bench.shaders.translator.wgsl_parser import WgslParser
 from normalbench.bench.subjects.codecs import second_look
 from normalbench.bench.subjects.codecs.first_look import first_look
 from normalbench.bench.subjects.codecs.user_encodings import read_encoding
 from normalbench.gbuffer.codecs.codec_passes import exact_values
 from normalbench.gbuffer.gl.device import device
 
-pytestmark = pytest.mark.usefixtures("gl")
+pytestmark = pytest.mark.usefixtures("gl", "in_this_process")
 
 DECODE = "float3 MineDecode(float2 e) { return normalize(float3(e, 1.0 - abs(e.x) - abs(e.y))); }"
 SUM = "n /= abs(n.x) + abs(n.y) + abs(n.z);"
-# HLSL that glslang reads otherwise than HLSL defines, beside the same written out.
-MISREAD = {
-    "fmod": ("return fmod(n.xy * 1.5, 1.0);", "return n.xy * 1.5 - trunc(n.xy * 1.5);"),
-    "remainder": ("return (n.xy * 1.5) % 1.0;", "return n.xy * 1.5 - trunc(n.xy * 1.5);"),
-    "product of matrices": ("return mul(A * B, n.xy);", "return mul(float2x2(1, 0, 0, 0.5), n.xy);"),
-}
 MATRICES = "static const float2x2 A = { 1, 5, 5, 1 };\nstatic const float2x2 B = { 1, 0, 0, 0.5 };\n"
 
 
@@ -51,60 +36,6 @@ def hlsl_of(folder, name, body):
     return path
 
 
-@pytest.mark.usefixtures("hlsl", "slang")
-@pytest.mark.parametrize("name", MISREAD)
-def test_hlsl_that_glslang_misreads_is_measured_as_hlsl_defines_it(name, tmp_path):
-    """A line names the function, the normal and the two codes; the codes are those of the same written out."""
-    misread, plain = (hlsl_of(tmp_path, f"f{at}", body) for at, body in enumerate(MISREAD[name]))
-    (said,) = first_look(misread)["notes"]
-    assert said.startswith("MineEncode of [") and " by Slang and [" in said and "by glslang; the former" in said
-    assert "notes" not in first_look(plain)
-    assert np.allclose(codes(misread), codes(plain), atol=2e-6)
-    assert not np.allclose(codes(misread, "glslang"), codes(plain), atol=0.1)
-
-
-def test_a_translation_that_naga_contradicts_is_refused(tmp_path, monkeypatch):
-    """With a fault put into the translator: the remainder of a negative number has the divisor's sign."""
-    require_runner("wgsl")
-    path = tmp_path / "mine.wgsl"
-    path.write_text(WGSL["remainder of floats"])
-    assert "error" not in first_look(path)
-    path.write_text(WGSL["remainder of floats"] + "\n")
-    own = WgslParser._modulus
-    monkeypatch.setattr(WgslParser, "_modulus", lambda self, _, x, y: own(self, "floor", x, y))
-    monkeypatch.setattr("normalbench.bench.shaders.languages.translated._by_child", translated_here)
-    said = first_look(path)["error"]
-    assert "two compilers disagree: mine_encode of [" in said and " by this program and [" in said and "by naga" in said
-
-
-@pytest.mark.usefixtures("hlsl", "slang")
-def test_the_second_way_is_gone_once(tmp_path, monkeypatch):
-    """What it found is kept by the text; another text is looked at again."""
-    path, ways = hlsl_of(tmp_path, "mine", "return n.xy;"), []
-    own = second.second_way
-    monkeypatch.setattr(second_look, "second_way", lambda *given: ways.append(given) or own(*given))
-    for count in (1, 1):
-        first_look(path)
-        assert len(ways) == count
-    hlsl_of(tmp_path, "mine", "return n.yx;")
-    first_look(path)
-    assert len(ways) == 2
-
-
-@pytest.mark.usefixtures("hlsl", "slang")
-def test_without_a_second_compiler_a_line_says_so(tmp_path, monkeypatch):
-    """It is measured as it was, and asked again the next time; glslang is a second compiler as well."""
-    path = hlsl_of(tmp_path, "mine", "return n.xy;")
-    with monkeypatch.context() as patched:
-        patched.setenv("MESA_EXTENSION_OVERRIDE", "-GL_ARB_gl_spirv")
-        assert "notes" not in first_look(path)
-        kept.folder().rename(tmp_path / "gone")
-        patched.setattr(second_look, "_by_glslang", lambda *_: None)
-        (said,) = first_look(path)["notes"]
-    assert said == "no second compiler has checked its translation: the OpenGL driver has no GL_ARB_gl_spirv"
-    assert "notes" not in first_look(path)
-
-
 def test_codes_on_the_two_sides_of_a_seam_are_no_difference():
     """-0 and 0, and normals that rounding moves across a seam, are on either side of it; a changed constant is not."""
     n = directions()
@@ -119,79 +50,10 @@ def test_codes_on_the_two_sides_of_a_seam_are_no_difference():
     assert at is not None and angles_deg(n[at : at + 1], n[at : at + 1])[0] == 0
 
 
-@pytest.mark.usefixtures("hlsl", "slang")
-@pytest.mark.parametrize("used, body", [("fmod", "fmod(p, 0.7)"), ("float2x2", "mul((float2x2)1, p)")])
-def test_what_glslang_is_known_to_misread_is_not_measured_by_it_alone(tmp_path, used, body):
-    """Slang refuses the silent truncation of a float3; without fmod a line says that glslang alone has read it."""
-    plain = hlsl_of(tmp_path, "plain", "float2 p = n; return p;").name
-    path = tmp_path / plain
-    path.write_text(path.read_text().replace(MATRICES, ""))
-    assert "notes" not in first_look(path) and "error" not in first_look(path)
-    assert "it is read by glslang alone, as Slang's compiler does not read it" in translated(path).notes
-    path.write_text(path.read_text().replace("return p;", f"return {body};"))
-    said = first_look(path)["error"]
-    assert f"it uses {used}, which glslang reads otherwise than HLSL defines it" in said and "slangc does not" in said
-
-
-@pytest.mark.usefixtures("hlsl", "slang")
-def test_what_neither_compiler_reads_is_said_by_slang(tmp_path):
-    """select() of HLSL 2021, as Unreal has it, is read by Slang alone."""
-    path = hlsl_of(tmp_path, "mine", "return select(n.z >= 0.0, n.xy, n.yx);")
-    assert "error" not in first_look(path)
-    wrong = hlsl_of(tmp_path, "wrong", "return select(nothing, n.xy, n.yx);")
-    assert re.search(r"wrong\.hlsl:3:\d+: undefined identifier 'nothing'", first_look(wrong)["error"])
-
-
 UNDEFINED = "it divides a whole number by 0, of some normal; its language does not define that"
-# Divisions of whole numbers, and whether they are undefined: k is 0 and m is -1, which compilers do not know.
-DIVISIONS = {
-    "of a number": ("(7 / k)", True),
-    "of a vector": ("(int3(7, 8, 9) / int3(1, k + 1, k)).x", True),
-    "without a sign": ("(uint2(7u, 8u) / uint2(1u, uint(k))).y", True),
-    "a remainder": ("(7 % k)", True),
-    "a remainder without a sign": ("(7u % uint(k))", True),
-    # llvmpipe ends the process at it, but does not divide what is multiplied by 0.
-    "of the lowest number": ("((-2147483647 + m) / m * 0)", True),
-    "in a branch that is not taken": ("(k != 0 ? 7 / k : 0)", False),
-    "of large numbers without a sign": ("(2147483648u / uint(m))", False),
-    "of what is not 0": ("(7 / (k + m) + (int2(7, 8) % int2(m, k + 3)).y)", False),
-}
 
 
 @pytest.mark.usefixtures("hlsl", "slang")
 def test_a_whole_number_divided_by_zero_is_refused_in_a_line(tmp_path):
     said = first_look(hlsl_of(tmp_path, "mine", "int k = int(n.x * 0.0); return n.xy + (7 / k) * 1e-12;"))["error"]
     assert said.endswith(UNDEFINED)
-
-
-@pytest.mark.usefixtures("slang")
-@pytest.mark.parametrize("name", DIVISIONS)
-def test_divisions_of_whole_numbers_are_noted(name, tmp_path):
-    """By the second way, whatever the driver gives for them."""
-    division, is_undefined = DIVISIONS[name]
-    path = tmp_path / "mine.slang"
-    body = f"{SUM} int k = int(n.x * 0.0); int m = k - 1; return n.xy + float({division}) * 1e-12;"
-    path.write_text(f"float2 MineEncode(float3 n) {{ {body} }}\n{DECODE}\n")
-    way = second.second_way(path, translated(path), tmp_path)
-    given = directions()
-    with pytest.raises(second.UndefinedError) if is_undefined else nullcontext():
-        made, _ = way(given, np.zeros_like(given), np.zeros(3, np.float32))
-        sums = np.abs(given).sum(axis=1, keepdims=True)
-        assert np.allclose(made[:, :2], given[:, :2] / sums, atol=1e-6)
-
-
-@pytest.mark.usefixtures("slang")
-@pytest.mark.parametrize(
-    "body",
-    [
-        "return n.xy + float2(uint2(n.xy * 1000.0) & 255u) * 1e-3;",
-        "return float2(int(n.x * 1e12) * 1e-10, n.y);",
-        "float s; if (n.x > 0.0) s = n.y; return float2(n.x, s);",
-        "int2 k = int2(n.xy * 1000.0); return n.xy + float2(k % 7) * 1e-3;",
-    ],
-    ids=["negative as unsigned", "beyond whole numbers", "not set", "negative remainder"],
-)
-def test_what_drivers_give_as_they_like_is_refused(body, tmp_path):
-    """Slang's GLSL and its SPIR-V differ, though one driver runs both."""
-    said = first_look(hlsl_of(tmp_path, "mine", body))["error"]
-    assert "two compilers disagree: MineEncode of [" in said and "by its SPIR-V" in said

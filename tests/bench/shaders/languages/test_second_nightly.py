@@ -1,0 +1,40 @@
+"""A translation is measured once a second compiler has given the same."""
+
+import pytest
+import test_second
+import test_second_slow
+from test_second_slow import DIVISIONS, FEW
+
+pytestmark = test_second.pytestmark
+empty_cache = test_second.empty_cache
+
+
+@pytest.mark.usefixtures("hlsl", "slang")
+def test_a_remainder_that_glslang_misreads_is_measured_as_hlsl_defines_it(tmp_path):
+    test_second_slow.test_hlsl_that_glslang_misreads_is_measured_as_hlsl_defines_it("remainder", tmp_path)
+
+
+@pytest.mark.usefixtures("hlsl", "slang")
+def test_a_matrix_that_glslang_is_known_to_misread_is_not_measured_by_it_alone(tmp_path):
+    test_second_slow.test_what_glslang_is_known_to_misread_is_not_measured_by_it_alone(
+        tmp_path, "float2x2", "mul((float2x2)1, p)"
+    )
+
+
+@pytest.mark.usefixtures("slang")
+@pytest.mark.parametrize("name", [name for name in DIVISIONS if name not in FEW])
+def test_all_divisions_of_whole_numbers_are_noted(name, tmp_path):
+    test_second_slow.test_divisions_of_whole_numbers_are_noted(name, tmp_path)
+
+
+@pytest.mark.usefixtures("slang")
+@pytest.mark.parametrize(
+    "body",
+    [
+        "return float2(int(n.x * 1e12) * 1e-10, n.y);",
+        "int2 k = int2(n.xy * 1000.0); return n.xy + float2(k % 7) * 1e-3;",
+    ],
+    ids=["beyond whole numbers", "negative remainder"],
+)
+def test_what_else_drivers_give_as_they_like_is_refused(body, tmp_path):
+    test_second_slow.test_what_drivers_give_as_they_like_is_refused(body, tmp_path)

@@ -1,0 +1,17 @@
+"""How users' files are read: macros, preludes, folders of includes and languages, as a part of their names."""
+
+import json
+
+import pytest
+import test_source_options
+from test_source_options_slow import rows_by_macros
+
+mine = test_source_options.mine
+
+
+@pytest.mark.usefixtures("gl", "slang")
+def test_rows_of_workers_say_what_they_were_read_with(run, mine, tmp_path):
+    asked, mean = rows_by_macros(run, mine, tmp_path)
+    status, out, err = run(*asked, "-DHALF=1.0", "--on", "local:1")
+    assert status == 0, err
+    assert json.loads(out)[0]["angle_mean_deg"] == mean
