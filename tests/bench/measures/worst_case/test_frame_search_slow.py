@@ -43,7 +43,12 @@ def test_the_frame_that_is_named_is_turned_so_far():
     assert math.degrees(2 * math.asin(math.sqrt(moved / 8))) == pytest.approx(found.angle_deg, rel=2e-3)
 
 
-@pytest.mark.parametrize("name", [f"{e.name}/{e.storages[0]}" for e in FRAME_ENCODINGS.values()])
+CODECS = [f"{e.name}/{e.storages[0]}" for e in FRAME_ENCODINGS.values()]
+# Three ways to keep a frame: the smaller components, all four, and a normal with an angle.
+WAYS = [name for name in CODECS if name.startswith(("smallest_three/", "qtangent/", "octahedral_angle/"))]
+
+
+@pytest.mark.parametrize("name", WAYS)
 def test_no_sample_is_above_the_supremum(name):
     """2^18 rotations by Haar's measure come near, and only float32 can carry one beyond."""
     codec = codec_of(*name.split("/"))

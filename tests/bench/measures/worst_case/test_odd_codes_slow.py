@@ -26,7 +26,8 @@ def test_a_storages_numbers_are_what_it_gives_back(storage):
 
     from normalbench.encodings.storages.rounding import store_number
 
-    for channel in range(storage.channels):
+    # The first channel of each size: of another one as large the numbers are the same.
+    for channel in [storage.bits.index(bits) for bits in dict.fromkeys(storage.bits)]:
         if storage.bits[channel] == 32:
             continue
         numbers = storage.numbers(channel)

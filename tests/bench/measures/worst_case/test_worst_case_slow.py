@@ -57,7 +57,7 @@ def sphere_and_grid(scale: int) -> float:
     return largest
 
 
-@pytest.mark.parametrize("bits", [5, 8])
+@pytest.mark.parametrize("bits", [5])
 def test_three_numbers_are_worst_where_the_sphere_meets_an_edge(bits):
     """Climbing, which knows nothing of it, finds the exact geometry's worst."""
     codec = Codec(ENCODINGS["xyz_renormalised"], storage("snorm", bits, bits, bits))
@@ -66,27 +66,27 @@ def test_three_numbers_are_worst_where_the_sphere_meets_an_edge(bits):
     assert worst.found_by == "climbing" and worst.moved_deg < 1e-9
 
 
-def test_a_lattices_worst_is_its_covering_radius():
+@pytest.mark.parametrize("bits", [3])
+def test_a_lattices_worst_is_its_covering_radius(bits):
     """Of points that are looked up, the largest circle between them (by SciPy's Voronoi diagram of the sphere)."""
     from scipy.spatial import SphericalVoronoi
 
-    points = fibonacci(256)
+    points = fibonacci(4**bits)
     cells = SphericalVoronoi(points)
     cosines = [(cells.vertices[region] @ point).min() for region, point in zip(cells.regions, points, strict=True)]
-    worst = worst_case(Codec(nearest_of(points, 16), storage("unorm", 4, 4)))
+    worst = worst_case(Codec(nearest_of(points, 2**bits), storage("unorm", bits, bits)))
     assert worst.angle_deg == pytest.approx(np.degrees(np.arccos(min(cosines))), rel=1e-6)
     assert worst.found_by == "nearest codes"
 
 
-@pytest.mark.parametrize(
-    ("encoding", "where", "sup"),
-    [
-        ("octahedral_precise", "rg8", 0.6354766834),
-        ("octahedral_precise", "rg8_snorm", 0.6379930671),
-        ("equal_area_octahedral_precise", "rg8", 0.6355206575),
-        ("equal_area_octahedral_precise", "rg8_snorm", 0.5839288567),
-    ],
-)
+# Each map and each kind of number once; the other two at night.
+SUPREMA = [
+    ("octahedral_precise", "rg8_snorm", 0.6379930671),
+    ("equal_area_octahedral_precise", "rg8", 0.6355206575),
+]
+
+
+@pytest.mark.parametrize(("encoding", "where", "sup"), SUPREMA)
 def test_precise_rounding_is_worst_where_another_search_finds_it(encoding, where, sup):
     """By climbing from 6 million directions in NumPy's float64, written by somebody else."""
     assert worst_case(codec_of(encoding, where)).angle_deg == pytest.approx(sup, rel=1e-6)
@@ -105,14 +105,6 @@ def test_precise_codes_are_searched_as_the_codec_rounds_them(where):
     assert ExactCodec(codec, False).chords(n) == pytest.approx(expected, rel=1e-9)
 
 
-def test_two_forms_of_one_map_have_one_supremum():
-    """At the opposite pole the one computes 8 n.z + 8, of which a rounding of n.z alone is all there: 60 degrees were
-    found 1e-6 from it."""
-    published, classic = (worst_case(codec_of(name, "rg16")) for name in ("spheremap", "spheremap_classic"))
-    assert published.angle_deg == pytest.approx(classic.angle_deg, rel=1e-8)
-    assert published.normal == pytest.approx(classic.normal, abs=1e-9)
-
-
 def test_a_hemisphere_is_searched_for_its_code_and_the_sphere_where_z_has_its_sign():
     """The sign of z makes the sphere two hemispheres: the same worst case."""
     half, whole = worst_case(codec_of("xy", "rg8"), True), worst_case(codec_of("xy_sign", "rg8"))
@@ -120,24 +112,17 @@ def test_a_hemisphere_is_searched_for_its_code_and_the_sphere_where_z_has_its_si
     assert worst_case(codec_of("xy", "rg8")).angle_deg > 179
 
 
+# Corners, tables, nearest codes, floats, and a table of the lengths of three numbers.
 SEARCHED = [
     codec_of("octahedral", "rg8"),
     codec_of("spherical_lut", "rg8"),
     codec_of("octahedral_precise", "rg8"),
-]
-
-
-SEARCHED_LONG = [
-    *(codec_of(name, "rg8") for name in ("spherical", "spheremap_classic", "cryengine3")),
     codec_of("octahedral", "rg16f", "truncate"),
-    codec_of("spherical", "rg8_snorm", "truncate"),
-    codec_of("octahedral", "rg16"),
     codec_of("best_fit", "rgba8"),
-    codec_of("equal_area_octahedral_precise", "rg8_snorm"),
 ]
 
 
-@pytest.mark.parametrize("codec", [*SEARCHED, *SEARCHED_LONG], ids=lambda codec: codec.name)
+@pytest.mark.parametrize("codec", SEARCHED, ids=lambda codec: codec.name)
 def test_no_sample_is_worse(codec):
     """Of two million random directions; 10^8 have been tried by hand, on these and fifty others."""
     exact, worst = ExactCodec(codec, False), worst_case(codec)
