@@ -32,7 +32,6 @@ from normalbench.gbuffer.scenes.metal_rough import Map, MetalRough
 from normalbench.gbuffer.scenes.scene import Light, Part, Scene, View, placed
 from normalbench.gbuffer.scenes.setting import Setting
 
-ROUGHNESSES = (0.1, 0.25, 0.5, 0.75, 1.0)
 EYE = View((0.0, 0.0, 6.0), (0.0, 0.0, 0.0), 40.0, 1.0, 20.0)
 # In view space, as the formulas have them.
 LAMPS = (
@@ -60,8 +59,8 @@ def slanted() -> Map:
     return Map(np.round((normal * 0.5 + 0.5) * 65535).astype(np.uint16)[None, None])
 
 
-@pytest.mark.parametrize("metalness", [0.0, 1.0], ids=["dielectric", "metal"])
-@pytest.mark.parametrize("roughness", ROUGHNESSES)
+# Of a metal the sharpest light, of a dielectric the dullest: roughness and metalness are numbers of one formula.
+@pytest.mark.parametrize("roughness, metalness", [(0.1, 1.0), (1.0, 0.0)])
 def test_lights_on_surfaces_are_those_of_the_formulas_in_float64(gl, roughness, metalness):
     """Point lights on a ball and on a normal-mapped plane, forward and hybrid: each pixel within 1e-3 in software."""
     plain = MetalRough((0.8, 0.5, 0.2), metalness, roughness)
