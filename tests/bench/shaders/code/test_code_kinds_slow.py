@@ -5,6 +5,9 @@ from languages import RUN, require_runner
 from slowly import a_tenth
 from test_code_kinds import agreement_of, codec_of
 
+from normalbench.bench.subjects.codecs.kinds.codecs import NAMED
+from normalbench.encodings.catalogue import BY_KIND
+
 # Of each kind, codes and storages that are made otherwise: shares, polynomials, powers, floats, and integers.
 CODECS = (
     ("motion", "cube_root", "rg16_snorm"),
@@ -41,3 +44,12 @@ def test_the_code_of_a_kind_gives_the_catalogues_texels(kind, name, storage, lan
     require_runner(language)
     found = agreement_of(codec_of(kind, name, storage), language, tmp_path)
     assert found.holds, found.says
+
+
+@pytest.mark.parametrize("kind", ["motion", "curve", "light", "depth"])
+def test_the_code_of_every_encoding_of_a_kind_is_written(kind, tmp_path):
+    """In the first storage where each usually lies, in C."""
+    require_runner("c")
+    for name in BY_KIND[NAMED[kind]]:
+        found = agreement_of(codec_of(kind, name, ""), "c", tmp_path)
+        assert found.holds, f"{name}: {found.says}"

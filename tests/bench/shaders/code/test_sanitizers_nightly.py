@@ -2,7 +2,7 @@
 
 import pytest
 from languages import require_runner
-from test_sanitizers_slow import ran
+from test_sanitizers_slow import codec_of, ran
 
 from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.encodings.catalogue import ENCODINGS
@@ -16,3 +16,10 @@ def test_c_of_every_encoding_and_storage_is_defined_for_every_float(encoding, tm
     codecs = [codec for codec in codecs_named(encoding, ",".join(STORAGES), "nearest") if codec.fits]
     said = [ran(codec, tmp_path) for codec in codecs[list(ENCODINGS).index(encoding) % 3 :: 3]]
     assert not any(said), said
+
+
+def test_c_that_reads_the_largest_table_is_defined_for_every_float(tmp_path):
+    """A header of a million numbers, which the storages above may leave out."""
+    require_runner("c")
+    complaint = ran(codec_of("best_fit/rgba8"), tmp_path)
+    assert not complaint, complaint

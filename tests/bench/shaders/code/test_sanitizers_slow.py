@@ -21,9 +21,8 @@ SANITIZERS = ("-g", "-fsanitize=address,undefined,float-cast-overflow", "-fno-sa
 COUNT = 3000
 
 
-# Those that compute with whole numbers, read tables or divide; the nightly has all.
+# Those that compute with whole numbers, read tables or divide; the nightly has all, and the largest table.
 FEW = (
-    "best_fit/rgba8",
     "spherical_fibonacci/rg8",
     "spherical_lut/rg8",
     "octahedral_precise/rgb10a2",

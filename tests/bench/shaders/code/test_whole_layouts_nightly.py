@@ -5,12 +5,33 @@ from itertools import product
 import pytest
 import test_whole_layouts
 import test_whole_layouts_slow
-from test_whole_layouts import FAST, TIES
+from languages import require_runner
+from test_whole_layouts import FAST, MANY, TIES
+from test_whole_layouts_slow import IN_TURN, KINDS, OTHERS, many_agree
+
+from normalbench.bench.shaders.code.emit import LANGUAGES
+from normalbench.gbuffer.layouts.presets import LAYOUTS
 
 pytestmark = pytest.mark.usefixtures("gl")
 layouts = test_whole_layouts.layouts
 
 
 @pytest.mark.parametrize("name, language", [*product(TIES, FAST)])
-def test_a_million_surfaces_are_packed_as_the_renderer_packs_them_in_any_layout(name, language, layouts):
-    test_whole_layouts_slow.test_a_million_surfaces_are_packed_as_the_renderer_packs_them(name, language, layouts)
+def test_a_million_surfaces_are_packed_as_the_renderer_packs_them(name, language, layouts):
+    require_runner(language)
+    many_agree(layouts[name], language, TIES[name], MANY)
+
+
+@pytest.mark.parametrize("name, language", [each for each in product(TIES, OTHERS) if each not in IN_TURN])
+def test_it_packs_and_unpacks_as_the_renderer_does_in_every_language(name, language, layouts):
+    test_whole_layouts.test_it_packs_and_unpacks_as_the_renderer_does(name, language, layouts)
+
+
+@pytest.mark.parametrize("name", [name for name in LAYOUTS if name not in KINDS])
+def test_every_single_preset_is_written(name):
+    test_whole_layouts_slow.test_every_preset_is_written(name)
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_lines_and_names_of_every_layout_are_short(language, layouts):
+    test_whole_layouts.check_short(layouts.values(), language)
