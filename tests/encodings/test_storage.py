@@ -10,6 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from neighbours import around
+from slowly import a_tenth
 
 from normalbench.encodings.storages.rounding import (
     fixed,
@@ -33,7 +34,8 @@ CHANNELS = [(name, STORAGES[name].bits.index(bits)) for name in INTEGERS for bit
 PACKED = [s for s in STORAGES.values() if s.is_packed]
 BY_RULE = [by_rule(kind, (bits, bits)) for kind in ("unorm", "snorm", "snorm_full") for bits in range(2, 17)]
 # Four numbers of more than 32 bits together lie across channels of 16.
-BY_RULE += [by_rule("unorm", bits) for bits in ((20, 20, 20), (12, 12, 12, 12), (1, 20, 17, 19))]
+OF_16 = [by_rule("unorm", bits) for bits in ((20, 20, 20), (12, 12, 12, 12), (1, 20, 17, 19))]
+BY_RULE += OF_16
 FORMS_SAID = [by_rule(*said) for said in (("float", (2, 1)), ("float", (3, 4)), ("float", (4, 3)), ("float", (5, 2)))]
 FORMS_SAID += [by_rule(*said) for said in (("float", (6, 9)), ("float", (8, 7)), ("float", (7, 13)))]
 FORMS_SAID += [by_rule(*said) for said in (("ufloat", (4, 4)), ("ufloat", (5, 6)), ("ufloat", (8, 12)))]
@@ -166,15 +168,17 @@ def test_the_shader_rounds_as_the_emulation_does(gl, name, rounding):
     assert_same_texels(gl, values, emulated(values, storage, rounding), got.copy(), steps_of(storage), what)
 
 
-@pytest.mark.parametrize(
-    "storage, rounding",
-    [
-        pytest.param(storage, rounding, id=f"{storage.name} {rounding}")
-        for storages, roundings in ((PACKED, ROUNDINGS), ([s for s in BY_RULE if s.is_packed], ROUNDINGS[:1]))
-        for storage in storages
-        for rounding in roundings
-    ],
-)
+def params(pairs) -> list:
+    return [pytest.param(storage, rounding, id=f"{storage.name} {rounding}") for storage, rounding in pairs]
+
+
+# Every way that numbers lie across channels, of 8 and of 16 bits; the other roundings and lengths are drawn.
+NEAREST = [(storage, ROUNDINGS[0]) for storage in (*PACKED, *OF_16)]
+DRAWN = [*itertools.product(PACKED, ROUNDINGS[1:])]
+DRAWN += [(storage, ROUNDINGS[0]) for storage in BY_RULE if storage.is_packed and storage not in OF_16]
+
+
+@pytest.mark.parametrize("storage, rounding", params([*NEAREST, *a_tenth(DRAWN)]))
 def test_numbers_across_channels_come_back_as_the_emulation_says(gl, storage, rounding):
     """Every code of every number and every tie, by the integer's own bits; the other numbers have the same one."""
     values = integer_inputs(storage)

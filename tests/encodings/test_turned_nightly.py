@@ -1,0 +1,10 @@
+"""Encodings with another axis or sign: the same code of other axes, in both languages."""
+
+import pytest
+import test_turned_slow
+from test_turned_slow import EACH
+
+
+@pytest.mark.parametrize("name, values", EACH, ids=str)
+def test_both_languages_turn_each_alike(gl, name, values):
+    test_turned_slow.test_both_languages_turn_alike(gl, name, values)
