@@ -5,9 +5,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-from other_systems import START
-
 NOBODY = """
 import os, pwd, sys
 os.environ.pop("HOME", None), os.environ.pop("XDG_CACHE_HOME", None)
@@ -22,17 +19,6 @@ def as_nobody(code: str, folder: Path) -> subprocess.CompletedProcess[str]:
     ours = {name: value for name, value in os.environ.items() if not name.startswith("JAX_")}
     variables = ours | {"TMPDIR": str(folder)}
     return subprocess.run([sys.executable, "-c", NOBODY + code], capture_output=True, text=True, env=variables)
-
-
-@pytest.mark.parametrize(
-    "words", [["doctor"], ["quality", "--encoding", "xy", "--normals", "axes", "--backend", "jax"]]
-)
-def test_a_user_without_a_home_is_served(tmp_path, words):
-    """Nothing is said, and what is kept lies in a folder that is this user's alone."""
-    done = as_nobody(f"sys.argv = ['normalbench', *{words}]\n{START}", tmp_path)
-    assert done.returncode == 0 and done.stderr == "", done.stderr
-    (home,) = [path for path in tmp_path.iterdir() if "home" in path.name]
-    assert home.stat().st_mode & 0o777 == 0o700 and (home / ".cache/normalbench").is_dir()
 
 
 def test_a_home_that_somebody_else_made_is_not_used(tmp_path):

@@ -152,7 +152,7 @@ def test_the_other_ones_fold_is_named(tmp_path):
 ROUNDED = ("floor(({}) * STEPS.0 + 0.5) / STEPS.0", "round(({}) * STEPS.0) / STEPS.0")
 
 
-@pytest.mark.parametrize("bits", [8, 10, 12, 16])
+@pytest.mark.parametrize("bits", [8, 12])
 @pytest.mark.parametrize("rounds", ROUNDED)
 def test_an_encoder_that_rounds_rightly_raises_nothing(tmp_path, rounds, bits):
     unit = rounds.format("c * 0.5 + 0.5").replace("STEPS", str(2**bits - 1))

@@ -27,7 +27,7 @@ QUICK = [(text, mistake, 8) for text in list(TEXTS)[:1] for mistake in MISTAKES]
 QUICK += [("divided in place", "abs missing in the sum", 8), ("divided in place", "normalise missing", 8)]
 
 
-QUICK += [(text, "wrong range", 10) for text in TEXTS] + [(text, "cut off", 16) for text in TEXTS]
+QUICK += [("by mix and step", "wrong range", 10), ("by mix and step", "cut off", 16)]
 
 
 # What two mistakes share: a fold and an unfold, and two ways to the same error.

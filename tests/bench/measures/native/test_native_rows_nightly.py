@@ -1,0 +1,12 @@
+"""Rows that the C compiler's code measures: those of XLA's code, whatever the set and the decodes are like."""
+
+import pytest
+import test_native_rows_slow
+from test_native_rows_slow import NATIVE
+
+pytestmark = test_native_rows_slow.pytestmark
+
+
+@pytest.mark.parametrize("name", NATIVE)
+def test_all_rows_are_those_of_xla_in_a_second_format(name):
+    test_native_rows_slow.test_rows_are_those_of_xla_in_a_second_format(name)
