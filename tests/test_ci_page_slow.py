@@ -112,20 +112,10 @@ def run_all(steps: list[Step], folder: Path, system: str) -> int:
 
 
 @pytest.mark.usefixtures("gl", "radv")
-@pytest.mark.parametrize(
-    "system",
-    ["github"],
-)
+@pytest.mark.parametrize("system", ["github"])
 def test_a_workflow_ends_in_what_it_promises(system, checkout):
-    """On a push everything is well; a request that makes the encoder worse fails, and is told by how much."""
+    """A request that makes the encoder worse fails, and is told by how much. At night a push, where all is well."""
     steps = SYSTEMS[system]()
-    assert run_all([step for step in steps if step.is_of_pushes], checkout, system) == 0
-    kept = {path.name for path in (checkout / "history/0123abcd").iterdir()}
-    assert kept == {"run.json", "rows.jsonl"}
-    assert (checkout / "history.md").read_text().startswith("1 run, from ")
-    assert "pass" in (checkout / "gates.md").read_text()
-    for name in ("run", "before"):
-        subprocess.run(["rm", "-rf", name], cwd=checkout, check=True)
     (checkout / "mine.glsl").write_text(MINE[1].replace("normalize(", "normalize(vec3(0.02, 0.0, 0.0) + "))
     git(checkout, "commit", "-q", "-a", "-m", "Lean")
     assert run_all([step for step in steps if step.is_of_requests], checkout, system) == 1

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from manual import NAMED, PAGES, README, ROOT
-from test_install_slow import copied
+from test_install_slow import archived, copied
 
 PYTHONS = ("3.11", "3.12", "3.13", "3.14")
 
@@ -65,3 +65,11 @@ def row_by(program):
     done = subprocess.run([*program, *ROW, "--format", "json"], capture_output=True, text=True, env=clean)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
+
+
+def test_tests_pass_in_a_source_archive(tmp_path):
+    """Those that read the manual, the scripts and other tests."""
+    words = ("-q", "-p", "no:cacheprovider", "tests/test_ci_scripts.py", "tests/test_container.py")
+    unpacked = archived(tmp_path)
+    done = subprocess.run([sys.executable, "-m", "pytest", *words], cwd=unpacked, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout

@@ -139,7 +139,15 @@ def test_steps_that_a_clock_is_read_for_are_measured_one_at_a_time():
 
 
 def test_a_record_keeps_what_else_it_holds(tmp_path, monkeypatch):
-    path = tmp_path / "record.json"
+    """Of a table of a few steps; at night of all."""
+    few = TABLES["vectors"].options(encoding="linear", storage="rg8")
+    own = simulate.asked
+    monkeypatch.setattr(simulate, "asked", lambda table, _, outputs: own(table, few, outputs))
+    check_record(tmp_path / "record.json", monkeypatch, few)
+
+
+def check_record(path, monkeypatch, options) -> None:
+    """A record of `vectors` is put beside what there is: the seconds of each step that the options ask for."""
     path.write_text(json.dumps({"scenes": 1, "seconds": {"render": [5]}, "bytes": {"render": 7}}))
     monkeypatch.setattr(simulate, "measured_costs", lambda: FREE)
     simulate.record(["vectors"], path)
@@ -147,4 +155,4 @@ def test_a_record_keeps_what_else_it_holds(tmp_path, monkeypatch):
     times = made["seconds"].pop("vectors")
     assert times and all(time >= 0 for time in times) and made["bytes"].pop("vectors") == 0
     assert made == {"scenes": 1, "seconds": {"render": [5]}, "bytes": {"render": 7}, "costs": vars(FREE)}
-    assert len(times) == len(TABLES["vectors"].work.steps(TABLES["vectors"].options(), TABLES["vectors"].outputs()))
+    assert len(times) == len(TABLES["vectors"].work.steps(options, TABLES["vectors"].outputs()))

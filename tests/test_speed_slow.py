@@ -23,8 +23,5 @@ def test_the_c_program_measures_what_the_table_measures(name):
 
 
 def test_the_record_that_is_kept_makes_a_table(capsys):
-    """What a task costs is measured anew by two worker processes."""
     rows = printed(capsys, "simulate")
     assert {row["workers"] for row in rows} == set(simulate.WORKERS)
-    costs = simulate.measured_costs()
-    assert 0 < costs.task < 1 and 0 < costs.byte < 1e-5 and 0 < costs.row < 1

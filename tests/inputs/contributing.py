@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 import subprocess
 import sys
 from dataclasses import dataclass
@@ -50,11 +51,9 @@ def a_copy_of_the_rooms(folder: Path) -> Path:
     """The package as a plain folder that Python finds from `folder` before the installed one."""
     package = folder / "normalbench"
     for room in ("encodings", "gbuffer", "bench", "reports"):
-        for source in (ROOT / room).rglob("*"):
-            if source.is_file() and "__pycache__" not in source.parts:
-                target = package / source.relative_to(ROOT)
-                target.parent.mkdir(parents=True, exist_ok=True)
-                target.write_bytes(source.read_bytes())
+        # With what Python compiled, which is as old as its source: of a copy it compiles what a test changes alone.
+        # Another process may be writing some: those have names of their own until they are whole.
+        shutil.copytree(ROOT / room, package / room, ignore=shutil.ignore_patterns("*.pyc.*"))
     return package
 
 
