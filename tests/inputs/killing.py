@@ -19,6 +19,8 @@ from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
+# No thread of OpenBLAS, nor of the allocator that pandas brings with it.
+os.environ |= {"OPENBLAS_NUM_THREADS": "1", "JE_ARROW_MALLOC_CONF": "background_thread:false"}
 import both_ways
 import devices
 import matplotlib
@@ -206,8 +208,23 @@ def fresh(folder: Path) -> Path:
     return folder
 
 
+def import_what_it_takes(write: Callable[[Path], None], prepare: Callable[[Path], None] | None, folder: Path) -> None:
+    """Run a writer once in this process: what it imports and reads for the first time takes most of its time, which
+    each fork would take anew. Raises AssertionError where a thread comes of it, which no fork would have."""
+    fresh(folder)
+    with Path(os.devnull).open("w") as nowhere, redirect_stdout(nowhere), redirect_stderr(nowhere):
+        if prepare:
+            prepare(folder)
+        write(folder)
+    threads = [path.read_text().strip() for path in Path("/proc/self").glob("task/*/comm")]
+    assert len(threads) <= 1, f"threads that no fork would have: {threads}"
+
+
 def main(name: str, folder: Path) -> None:
     write, prepare, check = WRITERS[name]
+    # A site computes by JAX, whose threads no fork would have: each one starts it anew.
+    if name != "site":
+        import_what_it_takes(write, prepare, folder / "first")
     undisturbed, killed = folder / "undisturbed", folder / "killed"
     fresh(undisturbed)
     if prepare:
