@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from browsing import Opened
+from browsing import Opened, scale_of
 from PIL import Image
 from test_pictures import pick_row
 from test_report import a_run
@@ -87,7 +87,7 @@ def page_path(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def chosen(gl_browser, page_path):
-    page = Opened(gl_browser, page_path)
+    page = Opened(gl_browser, page_path, scale=scale_of(gl_browser))
     page.page.wait_for_selector(".proof button:nth-child(4)")
     assert page.page.locator(".proof canvas[data-live]").count() == 0, "stills at first"
     page.page.locator(".proof button").first.focus()

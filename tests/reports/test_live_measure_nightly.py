@@ -3,7 +3,13 @@
 import subprocess
 import sys
 
+import pytest
+import test_live_measure_slow
+from browsing import no_swiftshader
 from test_live_measure_slow import LEAST_SHARE, Measured
+
+open_laboratory = test_live_measure_slow.open_laboratory
+laboratory = test_live_measure_slow.laboratory
 
 
 def test_every_encoding_gives_the_runs_codes_in_every_format(gl_browser, tmp_path):
@@ -31,3 +37,76 @@ def test_every_encoding_gives_the_runs_codes_in_every_format(gl_browser, tmp_pat
         is_fine = "f" in row["storage"]
         least = 0.99 if is_fine else LEAST_SHARE
         assert row["equal"] >= least * row["normals"] and not row["further"], (row["encoding"], row["difference"])
+
+
+WITHOUT_FLOATS = """{
+  const own = WebGL2RenderingContext.prototype.getExtension;
+  WebGL2RenderingContext.prototype.getExtension = function (name) {
+    return name.includes("color_buffer") ? null : own.call(this, name);
+  };
+}"""
+
+
+@no_swiftshader
+def test_a_device_that_renders_to_no_floats_is_measured(gl_browser, report):
+    """Angles come back as bits of integers, which every device renders to."""
+    opened = Measured(gl_browser, report, before=WITHOUT_FLOATS)
+    opened.only("octahedral")
+    opened.start()
+    (row,) = opened.finish()
+    facts = opened.ask("live.measuring.facts")
+    opened.context.close()
+    assert row["equal"] == row["normals"] and row["mean_deg"] == pytest.approx(row["run_mean_deg"], abs=1e-9)
+    assert facts["renders RGBA16F"] == facts["renders RGBA32F"] == "no" and facts["renders RGBA8"] == "yes"
+    assert facts["subnormal halves"] == "RGBA16F cannot be rendered to"
+
+
+CANCEL_AT_TWO = """() => new MutationObserver((_, observer) => {
+  if (!document.querySelector("[data-results] tbody tr:nth-child(2)")) return;
+  observer.disconnect();
+  document.querySelector("[data-cancel]").click();
+}).observe(document.body, { childList: true, subtree: true })"""
+
+
+def test_measuring_is_cancelled_and_keeps_what_it_has(laboratory):
+    laboratory.start()
+    # By the page itself: the others may be measured before a click from outside arrives.
+    laboratory.page.evaluate(CANCEL_AT_TWO)
+    rows = laboratory.finish()
+    assert 2 <= len(rows) < laboratory.ask("live.data.codecs.length")
+    assert laboratory.status == f"Cancelled. {len(rows)} codecs that were measured before are kept."
+    assert laboratory.page.locator("[data-save]").is_visible()
+
+
+def test_times_are_measured_without_timer_queries(laboratory):
+    laboratory.only("octahedral")
+    laboratory.page.locator("#measure-times").check()
+    laboratory.ask(
+        """() => {
+          const { gl } = live.device, own = gl.getExtension.bind(gl);
+          gl.getExtension = (name) => (name.startsWith("EXT_disjoint") ? null : own(name));
+        }"""
+    )
+    laboratory.start()
+    (row,) = laboratory.finish()
+    assert row["timer"].startswith("wall clock") and (row["encode_ms"] is None or row["encode_ms"] > 0), (
+        laboratory.status
+    )
+
+
+def test_other_normals_than_the_runs_are_not_measured(laboratory):
+    laboratory.ask("() => { live.data.checks.sums.sphere[0] ^= 1; }")
+    laboratory.start()
+    assert not laboratory.finish()
+    assert laboratory.status == "Not finished: this browser makes other normals of the sphere than the run has."
+
+
+@pytest.mark.parametrize(("storage", "rounding"), [("rg16_snorm", "nearest"), ("rgb8_12_12", "nearest")])
+def test_more_codes_of_a_gpu_with_inexact_arithmetic_are_told_by_their_ties(laboratory, storage, rounding):
+    test_live_measure_slow.test_codes_of_a_gpu_with_inexact_arithmetic_are_told_by_their_ties(
+        laboratory, storage, rounding
+    )
+
+
+def test_what_was_measured_is_read_by_everybody_in_the_light(gl_browser, report):
+    test_live_measure_slow.test_what_was_measured_is_read_by_everybody(gl_browser, report, "light")

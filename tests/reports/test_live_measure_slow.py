@@ -147,28 +147,6 @@ def test_a_device_is_known_by_what_it_does(laboratory):
     assert "RGBA16F stores NaN" in facts["NaN"] and facts["subnormal halves"] == "kept"
 
 
-WITHOUT_FLOATS = """{
-  const own = WebGL2RenderingContext.prototype.getExtension;
-  WebGL2RenderingContext.prototype.getExtension = function (name) {
-    return name.includes("color_buffer") ? null : own.call(this, name);
-  };
-}"""
-
-
-@no_swiftshader
-def test_a_device_that_renders_to_no_floats_is_measured(gl_browser, report):
-    """Angles come back as bits of integers, which every device renders to."""
-    opened = Measured(gl_browser, report, before=WITHOUT_FLOATS)
-    opened.only("octahedral")
-    opened.start()
-    (row,) = opened.finish()
-    facts = opened.ask("live.measuring.facts")
-    opened.context.close()
-    assert row["equal"] == row["normals"] and row["mean_deg"] == pytest.approx(row["run_mean_deg"], abs=1e-9)
-    assert facts["renders RGBA16F"] == facts["renders RGBA32F"] == "no" and facts["renders RGBA8"] == "yes"
-    assert facts["subnormal halves"] == "RGBA16F cannot be rendered to"
-
-
 def test_an_altered_constant_is_found_and_named(laboratory):
     """Twice 0.5 in the fold of one codec: its row names the numbers and a normal, and no other codec differs."""
     laboratory.only("octahedral", "stereographic", "xyz")
@@ -191,23 +169,6 @@ def test_an_altered_constant_is_found_and_named(laboratory):
     )
     (name,) = laboratory.texts("[data-results] tr.differs th")
     assert name == "octahedral rgba8"
-
-
-CANCEL_AT_TWO = """() => new MutationObserver((_, observer) => {
-  if (!document.querySelector("[data-results] tbody tr:nth-child(2)")) return;
-  observer.disconnect();
-  document.querySelector("[data-cancel]").click();
-}).observe(document.body, { childList: true, subtree: true })"""
-
-
-def test_measuring_is_cancelled_and_keeps_what_it_has(laboratory):
-    laboratory.start()
-    # By the page itself: the others may be measured before a click from outside arrives.
-    laboratory.page.evaluate(CANCEL_AT_TWO)
-    rows = laboratory.finish()
-    assert 2 <= len(rows) < laboratory.ask("live.data.codecs.length")
-    assert laboratory.status == f"Cancelled. {len(rows)} codecs that were measured before are kept."
-    assert laboratory.page.locator("[data-save]").is_visible()
 
 
 @no_swiftshader
@@ -238,29 +199,6 @@ def test_times_wait_for_a_page_that_is_seen(laboratory):
     assert row["timer"] == "EXT_disjoint_timer_query_webgl2"
     times = [row[name] for name in ("encode_ms", "decode_ms")]
     assert all(time is None or 0 < time < 10000 for time in times), times
-
-
-def test_times_are_measured_without_timer_queries(laboratory):
-    laboratory.only("octahedral")
-    laboratory.page.locator("#measure-times").check()
-    laboratory.ask(
-        """() => {
-          const { gl } = live.device, own = gl.getExtension.bind(gl);
-          gl.getExtension = (name) => (name.startsWith("EXT_disjoint") ? null : own(name));
-        }"""
-    )
-    laboratory.start()
-    (row,) = laboratory.finish()
-    assert row["timer"].startswith("wall clock") and (row["encode_ms"] is None or row["encode_ms"] > 0), (
-        laboratory.status
-    )
-
-
-def test_other_normals_than_the_runs_are_not_measured(laboratory):
-    laboratory.ask("() => { live.data.checks.sums.sphere[0] ^= 1; }")
-    laboratory.start()
-    assert not laboratory.finish()
-    assert laboratory.status == "Not finished: this browser makes other normals of the sphere than the run has."
 
 
 def stepped(*changes):
@@ -331,13 +269,8 @@ def rounded(x, storage, whole):
     return whole((x * half + half) * np.float32(65535 if storage == "rg16" else 4095)).astype(np.int32)
 
 
-FINE = [
-    ("rg16", "nearest"),
-    ("rg16_snorm", "nearest"),
-    ("rg16_snorm", "truncate"),
-    ("rgb8_12_12", "nearest"),
-    ("rg16f", "nearest"),
-]
+# Fixed point, signed and cut off, and halves.
+FINE = [("rg16", "nearest"), ("rg16_snorm", "truncate"), ("rg16f", "nearest")]
 
 
 @pytest.mark.parametrize(("storage", "rounding"), FINE)
@@ -362,7 +295,7 @@ def test_codes_of_a_gpu_with_inexact_arithmetic_are_told_by_their_ties(laborator
     assert all(one["most"] <= 1 for one in found["numbers"])
 
 
-@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("theme", ["dark"])
 def test_what_was_measured_is_read_by_everybody(gl_browser, report, theme):
     """WCAG 2.1 A and AA, of the table and the facts."""
     from axe_playwright_python.base import AXE_FILE_PATH

@@ -47,11 +47,11 @@ def sky(width: int = 64) -> np.ndarray:
     return made
 
 
-def opened_file(laboratory, name: str, data: bytes) -> str:
+def opened_file(laboratory, name: str, data: bytes, said_of: str = "") -> str:
     """Chooses a file; what is said of it then."""
     said = laboratory.page.locator("[data-drop=said]")
     laboratory.page.locator("[data-drop=file]").set_input_files({"name": name, "mimeType": "", "buffer": data})
-    laboratory.says("[data-drop=said]", re.compile(r" as |is not shown"))
+    laboratory.says("[data-drop=said]", re.compile(rf"{said_of}.*( as |is not shown)"))
     laboratory.settle()
     return said.text_content()
 
@@ -98,7 +98,8 @@ def test_less_roughness_is_sharper(laboratory):
     for roughness in ("0.05", "0.2", "0.6"):
         laboratory.page.locator("[data-see=roughness]").fill(roughness)
         laboratory.settle()
-        floor = laboratory.picture()[-200:, :, 1]
+        picture = laboratory.picture()
+        floor = picture[-picture.shape[0] // 3 :, :, 1]
         steep.append(float((np.diff(floor, axis=1) ** 2).mean()))
     assert steep[0] > 2 * steep[1] > 4 * steep[2], steep
 
@@ -147,20 +148,6 @@ def test_hands_move_the_camera(laboratory):
     assert (around, over) == (0, 0) and away < -0.5
 
 
-def test_it_wobbles_once_where_little_motion_is_wanted(laboratory):
-    """The page is opened with reduced motion."""
-    page = laboratory.page
-    before = laboratory.picture()
-    page.locator("[data-see=wobble]").click()
-    page.wait_for_timeout(700)
-    assert page.locator("[data-see=wobble]").get_attribute("aria-pressed") == "true"
-    assert laboratory.picture().shape != before.shape or (laboratory.picture() != before).any()
-    page.evaluate("() => { live.see.wobbled = 0.999; }")
-    page.wait_for_selector("[data-see=wobble][aria-pressed=false]")
-    laboratory.settle()
-    assert (laboratory.picture() == before).all(), "it comes back to where it was"
-
-
 def test_a_normal_map_is_seen_through_the_codecs(laboratory):
     n = bumps()
     data = pixel_files.png(np.rint((n * 0.5 + 0.5) * 255).astype(np.uint8))
@@ -186,9 +173,7 @@ def test_a_png_of_16_bits_is_read_to_its_last_bit(laboratory):
     assert abs(shown_normals(laboratory)[..., :3] - n).max() < 3e-5
 
 
-@pytest.mark.parametrize(
-    ("packing", "kind"), [("none", np.float32), ("ZIPS", np.float16), ("ZIP", np.float32), ("ZIP", np.float16)]
-)
+@pytest.mark.parametrize(("packing", "kind"), [("none", np.float32), ("ZIP", np.float32)])
 def test_an_exr_of_normals_is_read_to_its_last_bit(laboratory, packing, kind):
     n = bumps()
     said = opened_file(laboratory, "n.exr", pixel_files.exr(n, packing, kind, names="XYZ"))
@@ -198,7 +183,7 @@ def test_an_exr_of_normals_is_read_to_its_last_bit(laboratory, packing, kind):
     assert abs(shown_normals(laboratory)[..., :3] - expected).max() < 2e-7
 
 
-@pytest.mark.parametrize("make", ["hdr", "plain hdr", "exr"])
+@pytest.mark.parametrize("make", ["hdr", "exr"])
 def test_surroundings_are_mirrored(laboratory, make):
     radiance = sky()
     data = pixel_files.exr(radiance) if make == "exr" else pixel_files.hdr(radiance, runs=make == "hdr")
@@ -235,12 +220,14 @@ DAMAGED = {
 }
 
 
-@pytest.mark.parametrize("name", DAMAGED)
-def test_a_damaged_file_is_said_in_a_line_and_changes_nothing(laboratory, name):
-    data, reason = DAMAGED[name]
+def test_a_damaged_file_is_said_in_a_line_and_changes_nothing(laboratory):
     before = laboratory.page.evaluate(SMALL)
-    assert opened_file(laboratory, "a.bin", data) == f"a.bin is not shown: {reason}."
-    assert laboratory.page.evaluate(SMALL) == before and not laboratory.page.evaluate("live.see.surroundings")
+    for name, (data, reason) in DAMAGED.items():
+        # Several of them have the same reason: each is another file, of which something is said anew.
+        file = f"{name}.bin"
+        assert opened_file(laboratory, file, data, said_of=file) == f"{file} is not shown: {reason}.", name
+        assert not laboratory.page.evaluate("live.see.surroundings"), name
+    assert laboratory.page.evaluate(SMALL) == before, "one of them changed the picture"
 
 
 def test_a_file_is_dropped_on_the_picture(laboratory):
@@ -256,13 +243,18 @@ def test_an_address_gives_everything_back(reader_browser, report, laboratory):
     laboratory.press(".live-stage", *["ArrowLeft"] * 4, "+", "+")
     text = page.locator("[data-own=text]")
     text.fill(text.input_value().replace("// A unit", "// <b>Shared</b>: ä unit"))
-    laboratory.says("[data-own=said]", "16 bits in RGBA8")
+    page.locator("[data-own=storage]").select_option("rgb10a2")
+    laboratory.says("[data-own=said]", "20 bits in RGB10 A2")
     laboratory.settle()
     page.locator("[data-share=share]").click()
     page.wait_for_selector("[data-share=link]:visible")
     address, _, fragment = page.locator("[data-share=link]").input_value().partition("#")
     assert address == report.as_uri() and len(fragment) < 2000
     other = Laboratory(reader_browser, report, fragment=f"#{fragment}")
+    # What somebody else wrote runs once the reader has read it.
+    assert other.texts("[data-own=said]") == ["This encoder came with the link. Read it, then run it."]
+    assert other.page.locator("[data-own=text]").input_value() == text.input_value()
+    assert other.page.locator("[data-see=right]").input_value() != "your encoder"
     values = "live.share.values()"
     assert other.page.evaluate(values) == page.evaluate(values)
     page.locator("[data-share=link]").evaluate("link => { link.parentNode.hidden = true; }")
@@ -275,7 +267,9 @@ def test_an_address_gives_everything_back(reader_browser, report, laboratory):
     apart = np.abs(np.subtract(other.page.evaluate(SMALL), page.evaluate(SMALL)))
     # Two rasterisers do not agree on every pixel of an edge.
     assert apart.max() == 0 if page.context.browser is reader_browser else (apart > 8).mean() < 0.02, apart.max()
-    assert other.asked == [report.as_uri()]
+    other.page.locator("[data-own=run]").click()
+    other.says("[data-own=said]", "20 bits in RGB10 A2")
+    assert other.asked == [report.as_uri()] and not other.said
     other.context.close()
 
 
@@ -290,23 +284,24 @@ def test_the_address_follows_the_camera_and_goes_back_to_the_usual(laboratory):
     assert laboratory.page.evaluate("location.hash") == plain
 
 
-@pytest.mark.parametrize(
-    ("packed", "said"),
-    [
-        ("%%%", "The laboratory's part of the address is damaged"),
-        ("A" * 3000, "The laboratory's part of the address is damaged"),
-        ({"roughness": 7, "left": "no rgba8", "zoom": 2}, "The address names left no rgba8 and roughness 7 and zoom 2"),
-        ([1], "The laboratory's part of the address is damaged: it holds no controls."),
-    ],
-)
-def test_what_an_address_cannot_mean_is_said(laboratory, packed, said):
-    if not isinstance(packed, str):
-        packed = laboratory.page.evaluate("deflated", json.dumps(packed))
+UNKNOWN = [
+    ("%%%", "The laboratory's part of the address is damaged"),
+    ("A" * 3000, "The laboratory's part of the address is damaged"),
+    ({"roughness": 7, "left": "no rgba8", "zoom": 2}, "The address names left no rgba8 and roughness 7 and zoom 2"),
+    ([1], "The laboratory's part of the address is damaged: it holds no controls."),
+]
+
+
+def test_what_an_address_cannot_mean_is_said(laboratory):
     before = laboratory.page.evaluate("live.share.values()")
-    laboratory.page.evaluate("packed => { location.hash = `#v1/see?live=${packed}`; }", packed)
-    laboratory.says("#unknown", said)
-    laboratory.settle()
-    assert laboratory.page.evaluate("live.share.values()") == before
+    for packed, said in UNKNOWN:
+        # Without it, the line of the last one would do.
+        laboratory.page.evaluate("() => { document.querySelector('#unknown').textContent = ''; }")
+        text = packed if isinstance(packed, str) else laboratory.page.evaluate("deflated", json.dumps(packed))
+        laboratory.page.evaluate("packed => { location.hash = `#v1/see?live=${packed}`; }", text)
+        laboratory.says("#unknown", said)
+        laboratory.settle()
+        assert laboratory.page.evaluate("live.share.values()") == before, said
 
 
 @no_files

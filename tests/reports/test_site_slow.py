@@ -2,7 +2,7 @@
 
 import pytest
 import test_site
-from browsing import AXE, DESKTOP, PHONE, Opened
+from browsing import AXE, DESKTOP, PHONE, Opened, scale_of
 
 from normalbench.bench.show.kept_code import read_code
 from normalbench.bench.show.site_command import site_command
@@ -36,7 +36,7 @@ def test_an_encoding_is_read_without_scripts(browser, site, run_folder):
 
 def test_the_first_page_begins_with_the_laboratory(gl_browser, results, tmp_path):
     assert site_command([results[0]], tmp_path / "site") == 0
-    page = Opened(gl_browser, tmp_path / "site/index.html")
+    page = Opened(gl_browser, tmp_path / "site/index.html", scale=scale_of(gl_browser))
     assert page.page.locator("#home").is_visible() and page.page.locator("#live").is_visible()
     page.page.wait_for_function("document.querySelectorAll('[data-see=left] option').length > 3")
     assert page.asked == [(tmp_path / "site/index.html").as_uri()]
@@ -49,10 +49,14 @@ def test_the_first_page_begins_with_the_laboratory(gl_browser, results, tmp_path
         one.context.close()
 
 
-@pytest.mark.parametrize("size, theme", [(DESKTOP, "light"), (PHONE, "dark")])
+# What is opened wide and in the light, and narrow and in the dark; at night the other way round.
+WIDE = ("index.html", "layouts.html", "codecs/octahedral.html")
+NARROW = ("choose.html", "codecs/index.html", "devices/index.html")
+
+
 @pytest.mark.parametrize(
-    "name",
-    ["index.html", "choose.html", "layouts.html", "codecs/index.html", "codecs/octahedral.html", "devices/index.html"],
+    ("name", "size", "theme"),
+    [(name, DESKTOP, "light") for name in WIDE] + [(name, PHONE, "dark") for name in NARROW],
 )
 def test_no_page_keeps_anybody_out(browser, site, name, size, theme):
     from axe_playwright_python.base import AXE_FILE_PATH

@@ -1,0 +1,28 @@
+"""The laboratory's window in a browser: presets, the camera by hand, files of the reader's, addresses and pictures."""
+
+import numpy as np
+import pytest
+import test_see_slow
+
+
+def test_it_wobbles_once_where_little_motion_is_wanted(laboratory):
+    """The page is opened with reduced motion."""
+    page = laboratory.page
+    before = laboratory.picture()
+    page.locator("[data-see=wobble]").click()
+    page.wait_for_timeout(700)
+    assert page.locator("[data-see=wobble]").get_attribute("aria-pressed") == "true"
+    assert laboratory.picture().shape != before.shape or (laboratory.picture() != before).any()
+    page.evaluate("() => { live.see.wobbled = 0.999; }")
+    page.wait_for_selector("[data-see=wobble][aria-pressed=false]")
+    laboratory.settle()
+    assert (laboratory.picture() == before).all(), "it comes back to where it was"
+
+
+@pytest.mark.parametrize(("packing", "kind"), [("ZIPS", np.float16), ("ZIP", np.float16)])
+def test_an_exr_of_normals_in_halves_is_read_to_its_last_bit(laboratory, packing, kind):
+    test_see_slow.test_an_exr_of_normals_is_read_to_its_last_bit(laboratory, packing, kind)
+
+
+def test_surroundings_without_runs_are_mirrored(laboratory):
+    test_see_slow.test_surroundings_are_mirrored(laboratory, "plain hdr")
