@@ -15,10 +15,21 @@ from test_report import HOSTILE, a_run, quality_row
 THEMES = ("light", "dark")
 
 
-@pytest.fixture(scope="module", params=[(size, theme) for size in (DESKTOP, PHONE) for theme in THEMES], ids=str)
+# Each width and each theme once; the other two at night.
+SEEN = [(DESKTOP, "light"), (PHONE, "dark")]
+
+
+@pytest.fixture(scope="module", params=SEEN, ids=str)
 def seen(request, browser, report):
-    """The page at each width in each theme; not to be changed."""
-    page = Opened(browser, report, *request.param)
+    """The page at a width in a theme; not to be changed."""
+    page = opened_to_see(browser, report, *request.param)
+    yield page
+    page.context.close()
+
+
+def opened_to_see(browser, report, size, theme) -> Opened:
+    """The page with its pictures and charts drawn."""
+    page = Opened(browser, report, size, theme)
     page.page.evaluate("Promise.all(Array.from(document.images, (image) => image.decode()))")
     page.come_to("#viewer", VIEWED)
     for figure in page.page.locator("figure[data-chart]").all():
@@ -27,8 +38,7 @@ def seen(request, browser, report):
         figure.locator(".plot svg").first.wait_for()
     page.page.evaluate("change({ view: DEFAULTS.view })")
     page.page.evaluate("scrollTo(0, 0)")
-    yield page
-    page.context.close()
+    return page
 
 
 def test_nothing_is_fetched_and_nothing_complains(seen, report):
@@ -76,7 +86,6 @@ def test_the_answer_is_what_is_seen_first(seen):
     assert np.ptp(seen.pixels(".lead")) > 150, "dark on light or light on dark"
 
 
-@pytest.mark.parametrize("seen", [(s, t) for s in ((1440, 900), (390, 844)) for t in THEMES], ids=str, indirect=True)
 def test_axe_finds_nothing_that_keeps_readers_out(seen):
     """WCAG 2.1 A and AA with contrast, landmarks, labels and the order of headings; details closed and open."""
     from axe_playwright_python.base import AXE_FILE_PATH
@@ -271,10 +280,12 @@ new PerformanceObserver((list) => shifts.push(...own(list).map((one) => one.valu
   .observe({ type: "layout-shift", buffered: true });"""
 
 
-@pytest.mark.parametrize("size", [(1440, 900), (390, 844)], ids=str)
-def test_nothing_moves_while_a_view_fills(browser, report, size):
+@pytest.mark.parametrize(
+    ("size", "views"), [((1440, 900), ("compare", "codecs")), ((390, 844), ("see", "data"))], ids=str
+)
+def test_nothing_moves_while_a_view_fills(browser, report, size, views):
     """https://web.dev/articles/cls: below 0.1 is good; here half of that."""
-    for view in ("compare", "see", "codecs", "data"):
+    for view in views:
         page = Opened(browser, report, size=size, fragment=f"#v1/{view}", before=SHIFTS)
         page.page.wait_for_timeout(1000)
         moved = page.page.evaluate("shifts.reduce((sum, one) => sum + one, 0)")
@@ -339,43 +350,3 @@ def test_printing_shows_every_row_on_white(opened):
     assert opened.page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
     assert not opened.page.locator("nav").is_visible() and not opened.page.locator("#viewer").is_visible()
     assert opened.page.locator(".sheet .scroll").first.evaluate("e => e.scrollHeight <= e.clientHeight + 1")
-
-
-DRAW_ALL = "ready().then(() => window.dispatchEvent(new Event('beforeprint')))"
-
-
-# What clips each panel is named for its chart and place there, whichever was drawn first.
-CLIPS = """Array.from(document.querySelectorAll("figure[data-chart]"), (figure) =>
-  Array.from(figure.querySelectorAll(".plot"), (plot, place) =>
-    [plot.querySelector("clipPath").id, figure.dataset.chart, place])).flat()"""
-
-
-FORMS = (
-    "Array.from(document.querySelectorAll('input, select, button'), (one) => [one.value, one.checked, one.textContent])"
-)
-
-
-@no_paper
-def test_a_page_that_was_loaded_anew_is_as_in_a_new_window(browser, report, opened):
-    """The tests here share a window: what one does to the page, the next one does not see."""
-    fresh = Opened(browser, report)
-    fresh.page.evaluate(DRAW_ALL)
-    expected = (
-        fresh.page.evaluate(FORMS),
-        fresh.page.evaluate("[document.documentElement.outerHTML, scrollY, innerWidth]"),
-    )
-    fresh.context.close()
-    opened.page.locator(f"{TABLE} >> [data-filter]").fill("octahedral")
-    opened.page.get_by_role("button", name=re.compile("Theme")).click()
-    opened.page.get_by_label("the largest").check()
-    opened.page.emulate_media(media="print", color_scheme="dark")
-    opened.load_anew()
-    opened.page.evaluate(DRAW_ALL)
-    found = (
-        opened.page.evaluate(FORMS),
-        opened.page.evaluate("[document.documentElement.outerHTML, scrollY, innerWidth]"),
-    )
-    assert found == expected and opened.asked == [report.as_uri()] and opened.said == []
-    names = opened.page.evaluate(CLIPS)
-    assert names and all(clip == f"{chart}-panel-{place}" for clip, chart, place in names), names
-    assert opened.page.evaluate("matchMedia('screen').matches && matchMedia('(prefers-color-scheme: light)').matches")
