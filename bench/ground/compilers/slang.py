@@ -11,7 +11,7 @@ import importlib.util
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cache
 from mmap import ACCESS_READ, mmap
 from pathlib import Path
@@ -71,12 +71,12 @@ class Api:
     def __init__(self) -> None:
         self._library = c.CDLL(str(path_of_library()))
         make = self.function("slang_createGlobalSession2", c.c_int, c.POINTER(_Description), c.POINTER(c.c_void_p))
-        described = _Description(c.sizeof(_Description), 0, LANGUAGE, True)
         self.session = c.c_void_p()
-        if make(c.byref(described), c.byref(self.session)):
+        if make(c.byref(_Description(c.sizeof(_Description), 0, LANGUAGE, True)), c.byref(self.session)):
             raise MissingError(f"{path_of_library()}: Slang's compiler does not start; install it anew")
         text, pointer, number = c.c_char_p, c.c_void_p, c.c_uint
         self.request = self.function("spCreateCompileRequest", pointer, pointer)
+        self.destroy = self.function("spDestroyCompileRequest", None, pointer)
         self.take = self.function("spProcessCommandLineArguments", c.c_int, pointer, c.POINTER(text), c.c_int)
         self.compile = self.function("spCompile", c.c_int, pointer)
         self.said = self.function("spGetDiagnosticOutput", text, pointer)
@@ -100,11 +100,9 @@ class Api:
         self.scalar = self.function("spReflectionType_GetScalarType", number, pointer)
         self.type_name = self.function("spReflectionType_GetName", text, pointer)
 
-    def function(self, name: str, result: type | None, *given: type) -> c._NamedFuncPointer:
+    def function(self, name: str, result: type | None, *given: type) -> Callable:
         """A function of the library with its types."""
-        found = self._library[name]
-        found.restype, found.argtypes = result, given
-        return found
+        return c.CFUNCTYPE(result, *given)((name, self._library))
 
 
 @cache
@@ -122,10 +120,10 @@ def knows(word: str) -> bool:
 
 
 class Compiled:
-    """What the compiler made of a text.
+    """What the compiler made of a text. Its memory, a MB and more, is given back with the object.
 
     Attributes:
-        request: for reflection: see `Api`.
+        request: for reflection: see `Api`; what that gives lives as long as the object.
         failed: whether it refused the text.
         said: its messages.
     """
@@ -135,6 +133,9 @@ class Compiled:
         given = (c.c_char_p * len(words))(*[word.encode() for word in words])
         self.failed = bool(api().take(self.request, given, len(words)) or api().compile(self.request))
         self.said = (api().said(self.request) or b"").decode(errors="replace")
+
+    def __del__(self) -> None:
+        api().destroy(self.request)
 
     @property
     def code(self) -> str:
