@@ -1,5 +1,10 @@
 """The view Codecs: a list of all, and everything about one codec in a card, as the run's rows have it."""
 
+import time
+from contextlib import closing
+from http.server import BaseHTTPRequestHandler, HTTPServer
+from threading import Thread
+
 import pytest
 import test_codecs
 from browsing import Opened, no_fingers, no_paper
@@ -126,6 +131,25 @@ def test_an_unknown_codec_is_said_and_the_card_of_ones_own_is_shown(browser, cod
     # A user's own encoding stands against the answer.
     assert page.page.evaluate("[known.a, known.b]") == ["mine rgba8", "octahedral rg8"]
     page.context.close()
+
+
+def test_an_address_is_kept_where_the_last_script_comes_late(browser, codecs_page):
+    """A page that comes slowly unpacks its choices before it reads its address."""
+    beginning, script, end = codecs_page.read_bytes().rpartition(b"<script>")
+
+    class Slowly(BaseHTTPRequestHandler):
+        def do_GET(self):
+            self.send_response(200)
+            self.end_headers()
+            self.wfile.write(beginning)
+            time.sleep(1)
+            self.wfile.write(script + end)
+
+    with HTTPServer(("127.0.0.1", 0), Slowly) as server, closing(browser.new_page()) as page:
+        Thread(target=server.serve_forever, daemon=True).start()
+        page.goto(f"http://127.0.0.1:{server.server_port}/#v1/codecs?a=octahedral%20rg8")
+        assert page.evaluate("[state.view, state.a]") == ["codecs", "octahedral rg8"]
+        server.shutdown()
 
 
 def test_the_list_is_filtered_and_sorted(shown):

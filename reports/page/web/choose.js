@@ -118,7 +118,8 @@ class Choose {
     shows.push((state, before) => this.show(state, before));
     answersTo = (state) => this.answersTo(state);
     this.show(state, null);
-    change({}, true);
+    // What a page comes with may be here before its last script, which reads the address.
+    if (isShown) change({}, true);
   }
 
   take(key, { type, checked, value, validity }) {
