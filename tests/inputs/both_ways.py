@@ -11,12 +11,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from matplotlib import pyplot
-from matplotlib.collections import FillBetweenPolyCollection, LineCollection, PathCollection
-from matplotlib.patches import Rectangle
 
 from normalbench.bench.tables.registry import TABLES
-from normalbench.reports.charts import draw, drawings, wire
+from normalbench.reports.charts import draw, drawings, plots, wire
 from normalbench.reports.charts.chart import Axis, Chart, Kind, Scale
 from normalbench.reports.page import page as report
 from normalbench.reports.page.page import WEB, template
@@ -41,10 +38,13 @@ def in_files(chart: Chart) -> list[Shown]:
     try:
         return [_in_axes(axes, part) for axes, (_, part) in zip(figure.axes, chart.still(), strict=False)]
     finally:
-        pyplot.close(figure)
+        plots.drawn_off_screen().close(figure)
 
 
 def _in_axes(axes, part: Chart) -> Shown:
+    from matplotlib.collections import FillBetweenPolyCollection, LineCollection, PathCollection
+    from matplotlib.patches import Rectangle
+
     points = [one for one in axes.collections if isinstance(one, PathCollection)]
     rules = [one for one in axes.collections if isinstance(one, LineCollection)]
     areas = [one for one in axes.collections if isinstance(one, FillBetweenPolyCollection)]

@@ -39,7 +39,7 @@ READ = {
     "rounding": (roundings_named, "Truncate-Half", ["truncate_half"]),
     "set of normals": (lambda word: names(normal_sets_named(word, 10, 0, Reading())), "SPHERE", ["sphere"]),
     "scene": (lambda word: names(scene_makers_named(word)), "Studio", ["studio"]),
-    "environment": (lambda word: environment_named(word).name, "Studio", environment_named("studio").name),
+    "environment": (lambda word: environment_named(word).name, "Studio", "studio"),
     "layout": (lambda word: names(layouts_named(word)), "Unreal-4", ["unreal4"]),
     "light buffer": (lambda word: names(light_buffers_named(word)), "RGBA-16F", names(light_buffers_named("rgba16f"))),
     "effect": (lambda word: [one.name for one in effects_named(word)], "GTAO", ["gtao"]),
