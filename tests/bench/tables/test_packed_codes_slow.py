@@ -12,6 +12,10 @@ pytestmark = pytest.mark.usefixtures("gl", "slang")
 FILE = str(ROOT / "tests" / "inputs" / "encoders" / "uint_only.hlsl")
 
 
+# An answer of few codes and normals, and of one scene.
+SMALL_ANSWER = ("--count", "4096", "--scene", "studio")
+
+
 INTEGER = "an integer cannot be filtered: decode the texels, then weigh the normals"
 
 
@@ -83,15 +87,17 @@ def test_motion_has_the_wobble_of_an_integer(run):
 
 def test_pick_ranks_it_among_codes_of_as_many_bytes(run):
     """It is answered with what the catalogue does in the same texel, and left out where its bytes are others."""
-    (row,), _ = rows(run, "pick", "--storage", "rgba8", "--against", FILE)
+    few = ("--encoding", "octahedral,xyz_largest", *SMALL_ANSWER)
+    (row,), _ = rows(run, "pick", "--storage", "rgba8", *few, "--against", FILE)
     assert (row["place"], row["bits"], row["free_bits"], row["slots_once"]) == ("against", 24, 8, 25)
-    (row,), err = rows(run, "pick", "--storage", "rg8,rgba8", "--encoding", f"{FILE},octahedral")
+    (row,), err = rows(run, "pick", "--storage", "rg8,rgba8", "--encoding", f"{FILE},octahedral", *SMALL_ANSWER)
     assert row["asked"] == "rgba8"
     assert "uint_only.hlsl is an integer of 4 bytes, not of those of rg8" in err
 
 
 def test_pick_leaves_an_integer_out_where_codes_are_filtered(run):
-    (row,), _ = rows(run, "pick", "--storage", "rgba8", "--encoding", f"{FILE},xyz_renormalised", "--needs", "filter")
+    words = ("--storage", "rgba8", "--encoding", f"{FILE},xyz_renormalised", "--needs", "filter")
+    (row,), _ = rows(run, "pick", *words, *SMALL_ANSWER)
     assert row["left_out"] == "cannot be filtered" and INTEGER in row["cannot_mix"]
 
 
