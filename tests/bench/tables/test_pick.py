@@ -7,6 +7,7 @@ import pytest
 from manual import ROOT
 
 from normalbench.bench.door.run import options_of
+from normalbench.bench.ground.output.errors import told
 from normalbench.bench.measures.metrics.images import squared_error
 from normalbench.bench.measures.metrics.totals import psnr_db
 from normalbench.bench.subjects.codecs.names import codecs_named
@@ -152,10 +153,18 @@ def test_a_run_measures_the_codes_that_the_default_answer_names():
         assert taken <= set(usual), name
 
 
-def test_an_answer_of_few_random_normals_is_warned_of(run):
-    """Of one normal any code may be the best; the axes are few and are all that there are."""
-    words = ("pick", "--encoding", "octahedral,spheremap", "--storage", "rg8", "--aim", "angle", "--format", "json")
-    said = "with fewer than 4096 random normals (sphere), another --seed may give another answer"
-    assert f"--count 1: {said}" in run(*words, "--count", "1")[2]
-    assert "another --seed" not in run(*words, "--count", "4096")[2]
-    assert "another --seed" not in run(*words, "--count", "1", "--normals", "axes")[2]
+def test_an_answer_of_few_random_normals_is_warned_of(capsys):
+    """Of one normal any code may be the best; the axes are few and are all that there are. It is said before anything
+    is measured."""
+    pick = TABLES["pick"]
+
+    def warning(**asked) -> str:
+        told.clear()
+        options = pick.options(encoding="octahedral,spheremap", storage="rg8", aim="angle", **asked)
+        assert pick.work.steps(options, pick.outputs())
+        return capsys.readouterr().err
+
+    line = "with fewer than 4096 random normals (sphere), another --seed may give another answer"
+    assert f"--count 1: {line}" in warning(count=1)
+    assert "another --seed" not in warning(count=4096)
+    assert "another --seed" not in warning(count=1, normals="axes")
