@@ -23,14 +23,6 @@ from normalbench.gbuffer.layouts.presets import LAYOUTS
 from normalbench.gbuffer.scenes.catalogue import SCENES
 from normalbench.gbuffer.scenes.setting import Setting
 
-CODES = "xy,xy_sign,spherical,spheremap,octahedral,octahedral_precise,latitude_longitude,hemi_octahedral,per_pixel_view"
-
-
-CODES += ",xyz,xyz_renormalised,cube"
-
-
-SMALL = ("pick", "--encoding", CODES, "--count", "4096", "--aim", "image")
-
 
 def test_a_run_asks_for_half_of_the_sphere_too_unless_normals_are_named():
     assert [one.domain for one in options_of(TABLES["pick"], {})] == [None, "hemisphere"]
@@ -68,18 +60,6 @@ def test_angles_of_an_answer_are_shares_of_normals_below_each():
     assert lines[1] == [(0.28125, 75.0), (0.3125, 75.0), (0.5625, 75.0), (2.25, 100.0)] and lines[2] == []
     area = spread.marks[0].rows
     assert [(row["low"], row["y"]) for row in area] == [(25.0, 75.0), (75.0, 75.0), (75.0, 100.0), (100.0, 100.0)]
-
-
-@pytest.fixture(scope="module")
-def rows(gl, radv, tmp_path_factory):  # noqa: ARG001 # they skip where this machine lacks them
-    """What the command measures of a dozen codes: with --aim image all that qualify have an image."""
-    from normalbench.bench.door.cli import app
-
-    output = tmp_path_factory.mktemp("pick") / "rows.json"
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("sys.argv", ["normalbench", *SMALL, "--format", "json", "-o", str(output)])
-        assert app.main() == 0
-    return json.loads(output.read_text())
 
 
 def test_where_nothing_qualifies_it_is_said_with_status_1(run):
