@@ -1,12 +1,8 @@
 """`normalbench motion`: the wobble of a code, of highlights and of images, animations, and bad input."""
 
-import numpy as np
 import pytest
 import test_motion
-from PIL import Image
-from test_motion import SMALL, wobble
-
-from normalbench.bench.tables.motion.table import MotionOptions
+from test_motion import wobble
 
 pictures = test_motion.pictures
 rows = test_motion.rows
@@ -27,28 +23,3 @@ def test_the_wobble_is_that_of_the_prototype(name):
     rows = [wobble(name, turn=turn, count=2**16) for turn in (0.01, 0.05, 0.25, 1.0)]
     assert rows[0]["static_rms_deg"] == pytest.approx(static, rel=0.03)
     assert [row["wobble_deg"] for row in rows] == pytest.approx(wobbles, rel=0.03)
-
-
-def test_a_page_holds_its_charts_and_its_animation(run, tmp_path, monkeypatch):
-    """And `compare` finds no difference between a run and itself."""
-    one = tmp_path / "one"
-    # `run` has no options for these.
-    for name, value in (("frames", 8), ("count", 2048), ("size", "96x72"), ("lights", 2)):
-        monkeypatch.setitem(MotionOptions.__init__.__kwdefaults__, name, value)
-    words = ("run", "--tables", "motion", "--encoding", "spheremap", "--turn", "0.25,1")
-    status, _, err = run(*words, "-o", str(one))
-    assert status == 0, err
-    page = (one / "report.html").read_text()
-    assert "What wobbles when the camera turns" in page and page.count("data:image/png;base64,") == 1
-    assert 'data-chart="motion"' in page and (one / "charts" / "motion.svg").exists()
-    assert "How much codes wobble" in page and "The highlight that moves the most, of spheremap rg8" in page
-    status, _, err = run("compare", str(one), str(one))
-    assert status == 0, err
-
-
-def test_a_plot_is_drawn(run, tmp_path):
-    plot = tmp_path / "plot.png"
-    words = ("motion", "--encoding", "octahedral,spheremap", "--axis", "yaw,roll", "--picture-turn", "none", *SMALL)
-    status, _, err = run(*words, "--space", "all", "--plot", str(plot))
-    assert status == 0, err
-    assert len(np.unique(np.asarray(Image.open(plot).convert("RGB")).reshape(-1, 3), axis=0)) > 50
