@@ -1,0 +1,21 @@
+"""What encodings cost where no compiler is: the answer is the same."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from other_systems import START
+
+
+def test_an_answer_without_compilers_is_the_answer_with_them():
+    """It says who counted."""
+    words = ["pick", "--bytes", "2", "--encoding", "octahedral,spheremap,xyz", "--scene", "studio"]
+    said = [pick(words, os.environ["PATH"]), pick(words, str(Path(sys.executable).parent))]
+    assert said[0].splitlines()[0] == said[1].splitlines()[0] == "2 bytes, on sphere: take octahedral in rg8."
+    assert "recorded with Mesa" in " ".join(said[1].split()) and "recorded with" not in said[0]
+
+
+def pick(words, path):
+    command = [sys.executable, "-c", START, *words]
+    return subprocess.run(command, capture_output=True, text=True, env=os.environ | {"PATH": path}, check=True).stdout
