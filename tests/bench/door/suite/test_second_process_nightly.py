@@ -1,0 +1,27 @@
+"""A run of two processes: charts that cannot be written, and programs that JAX is told not to keep."""
+
+import shutil
+
+import pytest
+import test_second_process
+from test_second_process_slow import CODE, SMALL, measured, programs
+
+cores = test_second_process.cores
+
+
+@pytest.mark.usefixtures("gl")
+def test_charts_that_cannot_be_written_are_one_line(run, tmp_path, cores):
+    """Where their folder is a file."""
+    cores(2)
+    folder = tmp_path / "run"
+    assert run("run", "--tables", "mix", *CODE, "-o", str(folder))[0] == 0
+    shutil.rmtree(folder / "charts")
+    (folder / "charts").touch()
+    status, _, err = run(*SMALL, "-o", str(folder))
+    lines = err.splitlines()
+    assert status == 2 and len(lines) == 2 and "goes on" in lines[0] and "charts" in lines[1], err
+
+
+def test_programs_are_not_kept_where_jax_is_told_so(tmp_path):
+    measured(tmp_path, JAX_ENABLE_COMPILATION_CACHE="0")
+    assert not programs(tmp_path)
