@@ -261,16 +261,6 @@ def test_decodes_that_are_no_number_are_counted_and_said(run, monkeypatch):
     assert err == "normalbench: xy rgba8 nearest axes jax: 64 results are NaN or infinite\n"
 
 
-@pytest.mark.parametrize(
-    "command",
-    [QUICK, ("run",)],
-    ids=lambda c: c[0],
-)
-def test_a_platform_jax_does_not_know_is_one_line(command):
-    done = in_a_process(*command, JAX_PLATFORMS="bogus")
-    assert done.returncode == 3 and done.stderr.count("\n") == 1 and "JAX_PLATFORMS" in done.stderr
-
-
 def test_what_does_not_fit_is_named_and_the_rest_measured(run):
     status, out, err = run(
         "quality", "--encoding", "xyz,xy", "--storage", "rg8", "--normals", "axes", "--backend", "jax"

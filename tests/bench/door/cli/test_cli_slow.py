@@ -3,10 +3,12 @@
 import csv
 import io
 import json
+import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
-import test_cli
 from PIL import Image
 from test_cli import NO_GL, QUICK, in_a_process
 
@@ -116,13 +118,22 @@ def test_a_cache_folder_that_cannot_be_made_goes_without_saying(tmp_path, monkey
     assert (done.returncode, done.stderr) == (0, "")
 
 
-@pytest.mark.parametrize(
-    "command",
-    [(name,) for name in ("lights", "depth", "frames", "render", "sweep")],
-    ids=lambda c: c[0],
-)
-def test_a_platform_jax_does_not_know_is_one_line_whatever_the_command(command):
-    test_cli.test_a_platform_jax_does_not_know_is_one_line(command)
+def test_a_platform_jax_does_not_know_is_one_line_whatever_the_command():
+    """One command after the other in one process: JAX asks for its platforms again each time."""
+    commands = (QUICK, *([name] for name in ("run", "lights", "depth", "frames", "render", "sweep")))
+    program = (
+        "import json, sys\n"
+        "from normalbench.bench.door.cli import app\n"
+        "for words in json.loads(sys.argv[1]):\n"
+        "    sys.argv = ['normalbench', *words]\n"
+        "    print(f'ends with {app.main()}', file=sys.stderr, flush=True)\n"
+    )
+    words = [sys.executable, "-c", program, json.dumps(commands)]
+    done = subprocess.run(words, capture_output=True, text=True, env=os.environ | {"JAX_PLATFORMS": "bogus"})
+    lines = done.stderr.splitlines()
+    assert done.returncode == 0 and done.stdout == "" and len(lines) == 2 * len(commands), done.stderr
+    for command, line, end in zip(commands, lines[::2], lines[1::2], strict=True):
+        assert "JAX_PLATFORMS" in line and end == "ends with 3", (command, line, end)
 
 
 def test_without_a_gl_driver_jax_measures_all_the_same():
