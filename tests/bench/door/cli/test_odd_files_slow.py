@@ -2,8 +2,6 @@
 
 import json
 import os
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -22,17 +20,3 @@ def test_a_name_that_is_no_utf_8_is_measured_and_written(run, tmp_path, monkeypa
     assert json.loads(Path("rows.json").read_text())[0]["normals"] == "n\\udcff.npy"
     status, _, err = run("run", "--tables", "quality", *QUICK[1:], "--normals", name, "-o", "results")
     assert status == 0 and Path("results", "report.html").exists(), err
-
-
-def test_without_standard_output_a_file_will_do(tmp_path):
-    script = (
-        "import os, sys; os.close(1); sys.stdout = None; "
-        "from normalbench.bench.door.cli.app import main; sys.exit(main())"
-    )
-    said = {}
-    for words in (["-o", "rows.csv"], []):
-        command = [sys.executable, "-c", script, *QUICK, "--normals", "axes", "--format", "csv", *words]
-        done = subprocess.run(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
-        said[bool(words)] = done.returncode, done.stderr
-    assert said[True] == (0, "") and (tmp_path / "rows.csv").read_text().count("\n") == 2
-    assert said[False] == (2, "normalbench: standard output is closed; name a file with -o\n")
