@@ -145,10 +145,18 @@ AGAIN = {
     "rows": (*ONE, "-o"),
     "gates": ("check", "gates.toml", "-o"),
 }
+ENDINGS = ("csv", "json", "md", "txt")
 
 
-@pytest.mark.parametrize("ending", ["csv", "json", "md", "txt"])
-@pytest.mark.parametrize("case", AGAIN)
+# By day: a list in every format, and every other command in some.
+BY_DAY = (
+    *(("list", ending) for ending in ENDINGS),
+    *(("columns", "csv"), ("machine", "csv"), ("findings", "txt"), ("findings", "md")),
+    *(("rows", "csv"), ("rows", "txt"), ("gates", "md")),
+)
+
+
+@pytest.mark.parametrize("case, ending", BY_DAY)
 def test_rows_replace_those_of_the_same_command(run, case, ending):
     for _ in range(2):
         status, _, err = run(*AGAIN[case], f"rows.{ending}")
@@ -160,13 +168,17 @@ def test_a_page_and_a_script_replace_themselves(run, words):
     assert [run(*words)[0] for _ in range(2)] == [0, 0]
 
 
+DEPTHS = ("depth", "--storage", "depth16", "--depth", "linear", "--backend", "jax", "--count", "100")
+
+
 @pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
 def test_a_picture_replaces_a_picture(run, ending):
-    words = ("doctor", "mine.glsl", "--plot", f"p.{ending}")
-    assert [run(*words)[0] for _ in range(2)] == [0, 0]
-    # And any command's.
-    words = ("depth", "--storage", "depth16", "--depth", "linear", "--backend", "jax", "--count", "100", *words[2:])
-    assert run(*words)[0] == 0
+    assert [run(*DEPTHS, "--plot", f"p.{ending}")[0] for _ in range(2)] == [0, 0]
+
+
+def test_a_picture_replaces_that_of_another_command(run):
+    doctor = ("doctor", "mine.glsl")
+    assert [run(*words, "--plot", "p.png")[0] for words in (DEPTHS, doctor, DEPTHS)] == [0, 0, 0]
 
 
 def test_pictures_name_the_program(run, folder):
