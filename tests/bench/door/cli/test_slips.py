@@ -87,7 +87,6 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
         "mine.hlsl:Encode: name both functions, such as",
     ),
     "functions of GLSL": ((*ROW, "--encoding", "short.glsl:s:t"), "no function is named s; there are: s_encode"),
-    "WGSL to doctor": (("doctor", "mine.wgsl"), "no encoder and decoder found; the two functions must be"),
     "a file without its ending": (
         (*ROW, "--encoding", "hlsl"),
         "unknown encoding 'hlsl'; did you mean the file hlsl.glsl?",
@@ -97,17 +96,18 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
         ("doctor", "octahedral"),
         "octahedral is in the catalogue; doctor examines a file of yours. `normalbench quality --encoding octahedral`",
     ),
+    # doctor asks whether a file is of another kind, in a process for each: once will do.
     "HLSL in a GLSL file": (
         ("doctor", "hlsl.glsl"),
         "float2 h_encode(float3 n, float3 v) must be vec2 (or vec3) h_encode(vec3 n, vec3 view); float2 is HLSL",
     ),
     "a code of four": (
-        ("doctor", "four.glsl"),
+        (*ROW, "--encoding", "four.glsl"),
         "vec4 f_encode(vec3 n, vec3 v) must be vec2 (or vec3) f_encode(vec3 n, vec3 view); a code has two or three",
     ),
-    "no decode": (("doctor", "short.glsl"), "no function vec3 s_decode(vec2 e, vec3 view)"),
+    "no decode": ((*ROW, "--encoding", "short.glsl"), "no function vec3 s_decode(vec2 e, vec3 view)"),
     "a decode of another code": (
-        ("doctor", "decode.glsl"),
+        (*ROW, "--encoding", "decode.glsl"),
         "vec3 d_decode(vec3 e) must be vec3 d_decode(vec2 e, vec3 view)",
     ),
     "a shader that is not there": ((*ROW, "--encoding", "missing.glsl"), "missing.glsl: there is no such file"),
