@@ -30,8 +30,8 @@ targets = [
 
 
 WORDS = {
-    "--encoding": "mine.glsl,octahedral,octahedral_precise",
-    "--storage": "rg8,rgb10a2",
+    "--encoding": "mine.glsl,octahedral",
+    "--storage": "rg8",
     "--normals": "frame.exr,sphere",
     "--scene": "scene.glb",
     "--layout": "mine.toml",
