@@ -1,0 +1,16 @@
+"""What workers measure is what one process measures, of further tables."""
+
+import pytest
+import test_same_rows_slow
+
+COMMANDS = {
+    "depth": "--depth linear,logarithmic --near 0.1 --count 512 --storage depth16,depth24",
+    "lights": "--experiment equal,banding --light-buffer linear,rgba16f --sum 1 --counts 4",
+    "motion": "--encoding octahedral --storage rg8 --turn 0.25,1 --frames 4 --count 256 --size 64x36",
+}
+
+
+@pytest.mark.parametrize("table", COMMANDS)
+def test_the_rows_and_pictures_of_further_tables_are_those_of_one_process(gl, run, tmp_path, table):  # noqa: ARG001
+    """Every figure to the last digit, in the same order; every picture to the last byte."""
+    test_same_rows_slow.compared(run, tmp_path, table, COMMANDS[table])
