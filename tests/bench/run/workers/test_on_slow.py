@@ -30,23 +30,15 @@ def test_an_address_where_nobody_answers_is_refused_in_seconds(run):
     assert time.monotonic() - began < 20
 
 
-def test_workers_of_this_machine_need_no_dask():
-    """In a process that cannot import it, twice, as a program may that uses the Python functions."""
-    said = {"encoding": "xyz,octahedral", "storage": "rgba8", "normals": "axes", "backend": "jax", "on": "local:1"}
+def test_workers_of_this_machine_need_no_dask_and_no_certificates_and_leave_nothing_behind(tmp_path):
+    """In a process that cannot import dask, twice, as a program may that uses the Python functions; workers could."""
+    options = {"encoding": "xyz,octahedral", "storage": "rgba8", "normals": "axes", "backend": "jax", "on": "local:1"}
     code = "import sys\nsys.modules['dask'] = sys.modules['distributed'] = None\nimport normalbench as nb\n"
-    code += f"for _ in range(2):\n    print(len(nb.quality(**{said})))"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
-    assert done.stdout.split() == ["2", "2"], done.stderr
-
-
-@pytest.mark.usefixtures("gl")
-def test_steps_by_glsl_go_to_no_worker_without_gl(run, tmp_path):
-    """One worker of two has no GL: rows by both back ends are those of one process, and none is measured here."""
-    assert run(*SMALL, "-o", str(tmp_path / "one.json"))[0] == 0
-    with scheduled({}, NO_GL) as there:
-        status, _, err = run(*SMALL, "-o", str(tmp_path / "two.json"), "--on", there.address)
-    assert status == 0 and not err
-    assert json.loads((tmp_path / "one.json").read_text()) == json.loads((tmp_path / "two.json").read_text())
+    code += f"for _ in range(2):\n    print(len(nb.quality(**{options})))"
+    variables = os.environ | {"DASK_DISTRIBUTED__COMM__REQUIRE_ENCRYPTION": "True", "TMPDIR": str(tmp_path)}
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=variables, timeout=120)
+    assert done.stdout.split() == ["2", "2"] and not done.stderr, done.stderr
+    assert not [*tmp_path.iterdir()], "something is left"
 
 
 def test_what_no_worker_can_measure_is_measured_here(gl, run, monkeypatch, tmp_path):  # noqa: ARG001
@@ -72,8 +64,13 @@ def is_there(pid: int) -> bool:
         return False
 
 
-# Rows of 65536 normals by JAX and GLSL, a few to each task of a worker.
-MANY = ("quality", "--encoding", "all", "--storage", "rgba8", "--normals", "sphere", "--count", "65536")
+# Rows by JAX and GLSL, a few to each task of a worker.
+MANY = ("quality", "--storage", "rgba8", "--normals", "sphere", "--count", "16384", "--encoding")
+MANY += (
+    "octahedral,octahedral_precise,equal_area_octahedral,equal_area_octahedral_precise,hemi_octahedral,signed_octahedral,"
+    "latitude_longitude,spherical,spheremap,spheremap_classic,cryengine3,stereographic,per_pixel_view,xy,xy_sign,"
+    "xyz,xyz_largest,xyz_renormalised,cube,warped_cube,tetrahedral,optimised_rings,spherical_fibonacci,best_fit",
+)
 
 
 def begun(folder: Path, *words: str) -> subprocess.Popen[str]:
@@ -105,27 +102,6 @@ def rows_alone(tmp_path_factory):
     return (folder / "rows.json").read_bytes()
 
 
-def test_an_interruption_leaves_rows_and_no_process(tmp_path, rows_alone, number=signal.SIGKILL):
-    """What is kept stays, the workers end, nothing of them is left, and the same command ends with the rows of one that
-    nobody disturbed."""
-    process = begun(tmp_path, "--on", "local:2")
-    wait_for(tmp_path, 3)
-    workers = children(process.pid)
-    assert len(workers) >= 2, "two workers"
-    process.send_signal(number)
-    _, err = process.communicate(timeout=30)
-    assert process.returncode in ({130, 143} if number != signal.SIGKILL else {-9}) and "Traceback" not in err
-    until = time.monotonic() + 10
-    while any(map(is_there, workers)) and time.monotonic() < until:
-        time.sleep(0.1)
-    assert not [pid for pid in workers if is_there(pid)], "a process is left"
-    assert not [*(tmp_path / "temporary").iterdir()], "a folder is left"
-    assert kept_in(tmp_path) > 3
-    again = begun(tmp_path, "--on", "local:2")
-    assert "steps were measured before" in again.communicate()[1] and again.returncode == 0
-    assert (tmp_path / "rows.json").read_bytes() == rows_alone
-
-
 def a_process_of(pid: int, module: str) -> int:
     """A process that runs a module, of those that a command started; it may be starting one anew."""
     until = time.monotonic() + 30
@@ -139,17 +115,34 @@ def a_process_of(pid: int, module: str) -> int:
     raise AssertionError(f"no process of {pid} runs {module}")
 
 
-def test_a_killed_worker_costs_no_row(tmp_path, rows_alone):
-    """Another one is started, and the folder of the one that was killed goes."""
+def test_an_interruption_leaves_rows_and_no_process_and_a_killed_worker_costs_no_row(
+    tmp_path, rows_alone, number=signal.SIGKILL
+):
+    """What is kept stays, the workers end, and nothing of them is left. The same command loses two workers, each of
+    which another takes the place of, and ends with the rows of a command that nobody disturbed."""
     process = begun(tmp_path, "--on", "local:2")
-    for steps in (3, 8):
-        wait_for(tmp_path, steps)
-        assert process.poll() is None, "it ended before anything was killed"
-        os.kill(a_process_of(process.pid, "bench.run.piped"), signal.SIGKILL)
-    _, err = process.communicate(timeout=300)
-    assert process.returncode == 0, err
-    assert (tmp_path / "rows.json").read_bytes() == rows_alone
+    wait_for(tmp_path, 3)
+    workers = children(process.pid)
+    assert len(workers) >= 2, "two workers"
+    process.send_signal(number)
+    _, err = process.communicate(timeout=30)
+    assert process.returncode in ({130, 143} if number != signal.SIGKILL else {-9}) and "Traceback" not in err
+    until = time.monotonic() + 10
+    while any(map(is_there, workers)) and time.monotonic() < until:
+        time.sleep(0.1)
+    assert not [pid for pid in workers if is_there(pid)], "a process is left"
     assert not [*(tmp_path / "temporary").iterdir()], "a folder is left"
+    kept = kept_in(tmp_path)
+    assert kept > 3
+    again = begun(tmp_path, "--on", "local:2")
+    for steps in (kept, kept + 5):
+        wait_for(tmp_path, steps)
+        assert again.poll() is None, f"it ended before a worker was killed, with {kept_in(tmp_path)} lines kept"
+        os.kill(a_process_of(again.pid, "bench.run.piped"), signal.SIGKILL)
+    _, err = again.communicate(timeout=300)
+    assert "steps were measured before" in err and again.returncode == 0, err
+    assert (tmp_path / "rows.json").read_bytes() == rows_alone, "a killed worker costs a row"
+    assert not [*(tmp_path / "temporary").iterdir()], "the folder of a killed worker is left"
 
 
 def test_a_killed_scheduler_and_its_killed_worker_cost_no_row(tmp_path, rows_alone):
