@@ -1,0 +1,9 @@
+"""A worker leaves no file behind by a further signal."""
+
+import signal
+
+import test_listening_slow
+
+
+def test_a_worker_that_is_interrupted_leaves_no_file(tmp_path):
+    test_listening_slow.test_a_worker_that_is_ended_leaves_no_file(tmp_path, signal.SIGINT)
