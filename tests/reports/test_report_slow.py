@@ -15,7 +15,7 @@ from normalbench.reports.page.markdown import LONGEST
 
 
 def test_markdown_calls_nobody_links_nowhere_and_fits_a_comment(run, tmp_path):
-    many = [quality_row(f"code_{n}", normals=f"set_{n % 40}") for n in range(4000)]
+    many = [quality_row(f"code_{n}", normals=f"set_{n % 40}") for n in range(1000)]
     first = quality_row("@everyone", psnr_db=60.0)
     folder = a_run(tmp_path / "run", {"quality": [first, quality_row(HOSTILE), *many]})
     status, out, _ = run("report", str(folder), "--markdown")
