@@ -18,6 +18,22 @@ def site(tmp_path_factory):
     return folder / "site"
 
 
+@pytest.fixture(scope="module")
+def index_once(browser, site):
+    page = Opened(browser, site / "index.html")
+    yield page
+    page.context.close()
+
+
+@pytest.fixture
+def index(index_once):
+    """The index of the site as it has just been opened: the tests use one window, which it is loaded into anew."""
+    index_once.load_anew()
+    # Firefox gives keys to the window in front alone.
+    index_once.page.bring_to_front()
+    return index_once
+
+
 @pytest.fixture
 def opener(browser):
     """Opens pages, and closes them in the end."""
@@ -100,42 +116,39 @@ def test_the_site_opens_from_the_disk_and_keeps_nobody_out(small_site, opener, s
     assert page.page.evaluate("document.documentElement.scrollWidth") == size[0]
 
 
-def test_the_index_is_searched_by_device_codec_and_storage(site, opener):
-    page = opener(site / "index.html")
-    field = page.page.get_by_label("Search by device, codec or storage")
-    assert len(shown(page, "Devices")) == 10 and len(shown(page, "Codecs")) == 35
+def test_the_index_is_searched_by_device_codec_and_storage(index):
+    field = index.page.get_by_label("Search by device, codec or storage")
+    assert len(shown(index, "Devices")) == 10 and len(shown(index, "Codecs")) == 35
     field.fill("MALI")
-    assert shown(page, "Devices") == ["Mali-G78, Chromium 156"] == shown(page, "What to take")
-    assert page.page.locator("#found").inner_text().startswith("Devices: 1 of 10; Codecs: 35 of 35")
+    assert shown(index, "Devices") == ["Mali-G78, Chromium 156"] == shown(index, "What to take")
+    assert index.page.locator("#found").inner_text().startswith("Devices: 1 of 10; Codecs: 35 of 35")
     field.fill("hemi_oct rg16f")
-    assert shown(page, "Codecs") == ["hemi_octahedral rg16f"] and len(shown(page, "Devices")) == 10
+    assert shown(index, "Codecs") == ["hemi_octahedral rg16f"] and len(shown(index, "Devices")) == 10
     field.fill("nothing of this name")
-    assert shown(page, "Devices") == shown(page, "Codecs") == []
+    assert shown(index, "Devices") == shown(index, "Codecs") == []
     field.fill("")
-    assert len(shown(page, "Devices")) == 10 and page.said == []
+    assert len(shown(index, "Devices")) == 10 and index.said == []
 
 
-def test_the_index_is_used_by_keyboard(site, opener):
+def test_the_index_is_used_by_keyboard(index):
     """From the search to a device's section."""
-    page = opener(site / "index.html")
     for _ in range(20):
-        page.page.keyboard.press("Tab")
-        if page.page.evaluate("document.activeElement.id") == "search":
+        index.page.keyboard.press("Tab")
+        if index.page.evaluate("document.activeElement.id") == "search":
             break
-    page.page.keyboard.type("adreno")
-    assert shown(page, "Devices") == ["Adreno 740, Chromium 156"]
+    index.page.keyboard.type("adreno")
+    assert shown(index, "Devices") == ["Adreno 740, Chromium 156"]
     for _ in range(40):
-        page.page.keyboard.press("Tab")
-        if page.page.evaluate("(document.activeElement.getAttribute('href') ?? '').startsWith('#device-')"):
+        index.page.keyboard.press("Tab")
+        if index.page.evaluate("(document.activeElement.getAttribute('href') ?? '').startsWith('#device-')"):
             break
-    page.page.keyboard.press("Enter")
-    page.page.wait_for_url("**/index.html#device-adreno-740-chromium-156")
-    assert page.page.locator("#device-adreno-740-chromium-156 h2").bounding_box()["y"] < DESKTOP[1]
-    assert page.said == []
+    index.page.keyboard.press("Enter")
+    index.page.wait_for_url("**/index.html#device-adreno-740-chromium-156")
+    assert index.page.locator("#device-adreno-740-chromium-156 h2").bounding_box()["y"] < DESKTOP[1]
+    assert index.said == []
 
 
-def test_a_table_of_the_index_is_sorted(site, opener):
-    page = opener(site / "index.html")
-    head = page.page.locator("[data-searched='Devices'] thead button", has_text="least same percent")
+def test_a_table_of_the_index_is_sorted(index):
+    head = index.page.locator("[data-searched='Devices'] thead button", has_text="least same percent")
     head.click()
-    assert shown(page, "Devices")[0] == "PowerVR Rogue GE8320, Chromium 156", "the worst first"
+    assert shown(index, "Devices")[0] == "PowerVR Rogue GE8320, Chromium 156", "the worst first"
