@@ -3,10 +3,13 @@
 import json
 
 import numpy as np
+import pytest
 from browsing import PHONE, Opened
 from test_pictures import answered_run, pick_row
 from test_report import a_run
 
+from normalbench.bench.keep.runs import read_run
+from normalbench.bench.show.report import write_report
 from normalbench.bench.tables.mix.table import USES
 from normalbench.bench.tables.pick.answer import answered
 from normalbench.bench.tables.pick.choices import CONSTANTS, extras
@@ -14,7 +17,7 @@ from normalbench.bench.tables.pick.sentences import told
 from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.catalogue import ENCODINGS
 
-SETS = 500
+SETS = 150
 
 
 ASK = """([questions, constants]) => questions.map(([question, asked]) => {
@@ -159,10 +162,16 @@ def _slots(row: dict, readers: int) -> float | None:
     return None if row["slots"] is None else row["encode_slots"] + readers * row["decode_slots"]
 
 
-def test_constraints_change_the_answer_the_count_and_the_address(browser, run, tmp_path):
+@pytest.fixture(scope="module")
+def answered_page(tmp_path_factory):
+    """The page of a run that answers a question."""
+    folder = answered_run(tmp_path_factory.mktemp("answered") / "run")
+    return write_report(folder, read_run(folder), folder / "report.html")
+
+
+def test_constraints_change_the_answer_the_count_and_the_address(browser, answered_page):
     """By the keyboard; what the run asked for itself is in no address, and a button brings it back."""
-    assert run("report", str(answered_run(tmp_path / "run")))[0] == 0
-    page = Opened(browser, tmp_path / "run/report.html")
+    page = Opened(browser, answered_page)
     page.says("[data-left]", "codes are left")
     left, codes = page.page.locator("[data-left]"), page.page.locator("[data-codes] tbody tr")
     assert left.text_content() == "2 of 2 codes are left" and codes.count() == 2
@@ -180,7 +189,7 @@ def test_constraints_change_the_answer_the_count_and_the_address(browser, run, t
     page.page.locator("[data-part=of]").select_option("rgb10a2")
     assert page.page.locator(".reply:visible .lead").all_text_contents() == ["rgb10a2, on sphere: take xy."]
     # A copied address shows the same.
-    other = Opened(browser, tmp_path / "run/report.html", fragment=page.page.evaluate("location.hash"))
+    other = Opened(browser, answered_page, fragment=page.page.evaluate("location.hash"))
     for one in (page, other):
         one.says("[data-left]", "1 of 2 codes are left")
         assert one.page.locator("[data-limit=most]").input_value() == "6"
@@ -200,10 +209,9 @@ def test_constraints_change_the_answer_the_count_and_the_address(browser, run, t
     page.context.close()
 
 
-def test_a_follows_the_answer_until_a_reader_chooses_it(browser, run, tmp_path):
+def test_a_follows_the_answer_until_a_reader_chooses_it(browser, answered_page):
     """So that the card, and the code to copy in it, are the answer's. What a reader chose stands in the address."""
-    assert run("report", str(answered_run(tmp_path / "run")))[0] == 0
-    page = Opened(browser, tmp_path / "run/report.html")
+    page = Opened(browser, answered_page)
     page.says("[data-left]", "codes are left")
     most, sides = page.page.locator("[data-limit=most]"), "[state.a, state.b]"
     assert page.page.evaluate(sides) == ["fine rg8", "xy rg8"]
@@ -218,7 +226,7 @@ def test_a_follows_the_answer_until_a_reader_chooses_it(browser, run, tmp_path):
     most.fill("6")
     assert page.page.evaluate(sides) == ["fine rg8", "xy rg8"] and page.said == []
     page.context.close()
-    copied = Opened(browser, tmp_path / "run/report.html", fragment=address)
+    copied = Opened(browser, answered_page, fragment=address)
     copied.says("[data-left]", "codes are left")
     assert copied.page.evaluate(sides) == ["fine rg8", "xy rg8"]
     copied.context.close()

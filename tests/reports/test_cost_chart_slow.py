@@ -4,7 +4,7 @@ points."""
 from itertools import combinations
 
 import pytest
-from browsing import DESKTOP, PHONE, Opened
+from browsing import PHONE, Opened
 from test_cost_chart import CODECS, FAMILIES, costs_of, points
 from test_report import a_run, quality_row, reported
 
@@ -30,8 +30,7 @@ def run_folder(tmp_path_factory):
     return a_run(tmp_path_factory.mktemp("costs") / "run", {"quality": quality, "cost": costs})
 
 
-@pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=str)
-def test_the_pages_switch_shows_another_gpu_and_no_names_overlap(run, run_folder, browser, size):
+def test_the_pages_switch_shows_another_gpu_and_no_names_overlap(run, run_folder, browser, size=PHONE):
     reported(run, run_folder)
     page = Opened(browser, run_folder / "report.html", size)
     try:

@@ -40,7 +40,7 @@ def test_the_first_page_begins_with_the_laboratory(gl_browser, results, tmp_path
     assert page.page.locator("#home").is_visible() and page.page.locator("#live").is_visible()
     page.page.wait_for_function("document.querySelectorAll('[data-see=left] option').length > 3")
     assert page.asked == [(tmp_path / "site/index.html").as_uri()]
-    device = Opened(gl_browser, tmp_path / "site/devices/index.html")
+    device = Opened(gl_browser, tmp_path / "site/devices/index.html", scale=scale_of(gl_browser))
     device.page.get_by_role("link", name="the laboratory").click()
     device.page.wait_for_url("**/index.html#**")
     device.page.locator("#live").wait_for(state="visible")
