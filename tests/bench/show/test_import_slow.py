@@ -1,6 +1,7 @@
 """`normalbench import` and the tables of devices: rows in a run, once each, all or none; and what its page shows."""
 
 import json
+import shutil
 
 import devices as made
 import test_import
@@ -39,27 +40,18 @@ def test_a_file_adds_to_a_run_once_and_a_newer_one_replaces_it(run, tmp_path, fo
 def test_a_run_goes_on_after_an_import(run, tmp_path, folder):
     """With another set: the devices stay, and the page of the run has them."""
     assert run("import", str(made.write(tmp_path / "a.json")), "-o", str(folder))[0] == 0
-    words = ("--encoding", "xy", "--storage", "rg8", "--normals", "hemisphere", "--backend", "jax", "--count", "1000")
+    words = ("--encoding", "xy", "--storage", "rg8", "--normals", "hemisphere", "--backend", "jax", "--count", "64")
     assert run("run", "--tables", "quality", *words, "-o", str(folder))[0] == 0
     done = read_run(folder)
     assert done.finished and set(done.tables) == {"quality", "devices"}
     assert '<section id="devices"' in (folder / "report.html").read_text()
 
 
-def test_a_test_holds_devices(pytester):
-    """By the marker, with a file beside the test."""
-    made.write(pytester.path / "a.json")
-    limits = 'further="at most 0", same_percent="at least 99.9"'
-    marked = f'@pytest.mark.normalbench(table="devices", devices="a.json", {limits})\ndef test_it(): pass\n'
-    pytester.makepyfile(test_it=f"import pytest\n{marked}")
-    pytester.runpytest_subprocess("-p", "no:cacheprovider", "-p", "no:hypothesispytest").assert_outcomes(passed=1)
-
-
-def test_compare_names_what_a_device_does_otherwise(run, tmp_path):
+def test_compare_names_what_a_device_does_otherwise(run, tmp_path, made_once):
     for name, truncated in (("before", ()), ("after", ("RG16F",))):
         path = made.write(tmp_path / f"{name}.json", truncated=truncated)
-        words = ("--tables", "devices", "--devices", str(path), "-o", str(tmp_path / name))
-        assert run("run", *words)[0] == 0
+        folder = shutil.copytree(made_once, tmp_path / name)
+        assert run("import", str(path), "-o", str(folder))[0] == 0
     status, out, _ = run("compare", str(tmp_path / "before"), str(tmp_path / "after"), "--format", "json")
     rows = json.loads(out)
     assert status == 0 and {row["column"] for row in rows} >= {"same_percent", "further", "mean_deg"}

@@ -4,6 +4,7 @@ import json
 import re
 from pathlib import Path
 
+import devices
 import pytest
 import test_plugin
 from test_plugin import BASELINE, BOTH, PLAIN, SMALL
@@ -33,6 +34,32 @@ def test_a_users_own_encoding_lies_beside_the_test(inside, pytester):
     inside().assert_outcomes(passed=1)
     (folder / "test_it.py").unlink()
     inside("--normalbench-encoding", "deep/mine.glsl", test_b=test.format("")).assert_outcomes(passed=1)
+
+
+HLSL = Path(__file__).parents[3] / "inputs/hlsl/octahedral.hlsl"
+
+
+@pytest.mark.usefixtures("gl", "hlsl")
+def test_a_users_file_in_hlsl_lies_beside_the_test(inside, pytester):
+    """With the names of its functions or without."""
+    (pytester.path / "mine.hlsl").write_text(HLSL.read_text())
+    result = inside(
+        test_a="""
+        def test_mine(normalbench):
+            for name in ("mine.hlsl", "mine.hlsl:EncodeNormal:DecodeNormal"):
+                row = normalbench.quality(encoding=name, storage="rg8", normals="sphere", count=4096)
+                row.assert_that(angle_mean_deg="at most 0.4")
+        """
+    )
+    result.assert_outcomes(passed=1)
+
+
+def test_a_test_holds_devices(inside, pytester):
+    """By the marker, with a file beside the test."""
+    devices.write(pytester.path / "a.json")
+    limits = 'further="at most 0", same_percent="at least 99.9"'
+    marked = f'@pytest.mark.normalbench(table="devices", devices="a.json", {limits})\ndef test_it(): pass\n'
+    inside(test_it=f"import pytest\n{marked}").assert_outcomes(passed=1)
 
 
 def test_without_a_gl_driver_rows_of_jax_are_held_and_the_others_skipped(pytester, monkeypatch):

@@ -73,21 +73,6 @@ def test_the_same_steps_cost_the_same_instructions(run, ending, tmp_path):
         assert own == glsl, f"{name} {operation} on {family}: {own} instructions, {glsl} in GLSL"
 
 
-@pytest.mark.usefixtures("hlsl")
-def test_a_test_of_the_users_names_it(pytester):
-    """It is looked for next to the test, with the names of its functions or without."""
-    written(pytester.path, MINE, "mine.hlsl")
-    pytester.makepyfile(
-        """
-        def test_mine(normalbench):
-            for name in ("mine.hlsl", "mine.hlsl:EncodeNormal:DecodeNormal"):
-                row = normalbench.quality(encoding=name, storage="rg8", normals="hemisphere", count=4096)
-                row.assert_that(angle_mean_deg="at most 0.3")
-        """
-    )
-    pytester.runpytest_subprocess("-p", "no:cacheprovider").assert_outcomes(passed=1)
-
-
 ENDLESS = "float s = n.x; while (s < 2.0) s *= 0.5; return n.xy * s;"
 
 
