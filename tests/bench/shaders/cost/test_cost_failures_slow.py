@@ -30,6 +30,16 @@ compiled_once = test_cost_failures.compiled_once
 first = test_cost_failures.first
 
 
+def test_instructions_from_the_cache_wait_for_no_import_of_jax_or_pandas(first):
+    """The table is there in two seconds, of which JAX would take one more."""
+    program = (
+        "import sys; from normalbench.bench.door.cli.app import main; main();"
+        "print({'jax', 'pandas', 'matplotlib'} & set(sys.modules) or 'light')"
+    )
+    done = subprocess.run([sys.executable, "-c", program, *SMALL], capture_output=True, text=True, check=True)
+    assert done.stdout == f"{first[1]}light\n", done.stdout[-200:]
+
+
 @pytest.mark.usefixtures("radv", "own_cache")
 def test_two_runs_give_identical_rows_from_the_cache_or_without(run, own_cache):
     first = run(*SMALL)
