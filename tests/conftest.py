@@ -27,8 +27,10 @@ import pytest
 import seconds
 import shared_rows
 import typer.main
+from languages import SHORT
 from tiers import TIERS, is_in, tier_of
 
+from normalbench.bench.door import run_code
 from normalbench.bench.door.cli import app as cli
 from normalbench.bench.ground.compilers import tools as compilers
 from normalbench.bench.ground.machine.memory import (
@@ -155,6 +157,7 @@ parser_of = cache(typer.main.get_command)
 def run(monkeypatch, capsys):
     """The command line in this process: arguments to its status, output and errors."""
     monkeypatch.setattr(typer.main, "get_command", parser_of)
+    monkeypatch.setattr(run_code, "LANGUAGES", SHORT)
 
     def command(*arguments: str) -> tuple[int, str, str]:
         monkeypatch.setattr(sys, "argv", ["normalbench", *arguments])

@@ -9,6 +9,8 @@ from normalbench.bench.shaders.code.emit import LANGUAGES
 from normalbench.bench.shaders.code.run import NEVER_RUN, runner
 from normalbench.gbuffer.gl.device import NoDeviceError
 
+# Those that code is written in for a page: others are written in the same way, and take seconds to be run.
+SHORT = {name: LANGUAGES[name] for name in ("c", "glsl")}
 RUN = [name for name in LANGUAGES if name not in NEVER_RUN]
 
 

@@ -3,12 +3,12 @@
 import json
 
 import pytest
+from languages import SHORT
 from test_pictures import pick_row
 from test_report import a_run, quality_row
 
 from normalbench.bench.door import run_code
 from normalbench.bench.keep.runs import read_run
-from normalbench.bench.shaders.code.emit import LANGUAGES
 from normalbench.bench.show.kept_code import FILE, read_code
 from normalbench.encodings.storages.rules import rule_of_first
 from normalbench.encodings.storages.storage import STORAGES
@@ -28,10 +28,6 @@ CODES = (("octahedral", 0.3355, 30), ("spheremap", 0.4918, 17), ("xy", 0.9, 9))
 
 
 ANSWER = [pick_row(*code) | {"rounding": "nearest"} for code in CODES]
-
-
-# Other languages are written in the same way; each takes seconds to be run.
-SHORT = {name: LANGUAGES[name] for name in ("c", "glsl")}
 
 
 @pytest.fixture(scope="module")

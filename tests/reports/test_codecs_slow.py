@@ -8,7 +8,8 @@ from threading import Thread
 import pytest
 import test_codecs
 from browsing import Opened, no_fingers, no_paper
-from test_codecs import QUALITY, SHORT
+from languages import SHORT
+from test_codecs import QUALITY
 
 from normalbench.bench.show.kept_code import read_code
 from normalbench.encodings.catalogue import ENCODINGS

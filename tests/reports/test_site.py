@@ -7,7 +7,8 @@ from urllib.parse import unquote
 
 import devices as made
 import pytest
-from test_codecs import ANSWER, QUALITY, SHORT
+from languages import SHORT
+from test_codecs import ANSWER, QUALITY
 from test_report import Read, a_run
 
 from normalbench.bench.door import run_code
