@@ -1,11 +1,9 @@
 """docs/ci.md: the steps of its workflows run, and end in the files that they promise."""
 
-import json
 import re
 
-import pytest
 import yaml
-from manual import PAGES, README, ROOT
+from manual import PAGES, ROOT
 
 from normalbench.bench.shaders.languages.words import ENDINGS
 
@@ -16,12 +14,6 @@ FILES = dict(re.findall(r"^<!-- file (\S+) -->\n```(?:yaml|groovy|toml)\n(.*?)^`
 
 
 WORKFLOW, PIPELINE, JENKINSFILE = (".github/workflows/normals.yml", ".gitlab-ci.yml", "Jenkinsfile")
-
-
-MINE = re.search(r"<!-- file mine.glsl -->\n```glsl\n(.*?)^```$", PAGES[README], re.S | re.M)
-
-
-GATES = FILES["normals.toml"]
 
 
 def test_actions_are_named_with_their_versions_and_install_what_the_manual_says():
@@ -50,24 +42,3 @@ def test_the_hook_is_asked_for_every_file_that_a_gate_may_read():
     assert not pattern.search("README.md") and not pattern.search("mine.glsl.orig")
     (asked,) = (one for repo in yaml.safe_load(FILES[".pre-commit-config.yaml"])["repos"] for one in repo["hooks"])
     assert asked["id"] == hook()["id"]
-
-
-@pytest.mark.usefixtures("gl")
-def test_the_hook_holds_the_gates_that_read_a_changed_file(run, tmp_path, monkeypatch):
-    """As pre-commit calls it: the words, the arguments, the names of the files."""
-    monkeypatch.chdir(tmp_path)
-    body = MINE[1].replace("mine_", "other_")
-    (tmp_path / "mine.glsl").write_text('#include "shared.glsl"\n' + MINE[1])
-    (tmp_path / "other.glsl").write_text(body)
-    (tmp_path / "shared.glsl").write_text("\n")
-    one, words = 'count = 4096\npsnr_db = "at least 51"\n', GATES.replace('psnr_db = "at least 51.5"\n', "")
-    gates = words + one + words.replace("mine.glsl", "other.glsl") + one.replace("51", "99")
-    (tmp_path / "gates.toml").write_text(gates)
-    program, *words = hook()["entry"].split()
-    assert program == "normalbench"
-    for name, status, count in (("shared.glsl", 0, 1), ("mine.glsl", 0, 1), ("other.glsl", 1, 1), ("gates.toml", 1, 2)):
-        found = run(*words, *hook()["args"], name, "--format", "json")
-        assert found[0] == status and len(json.loads(found[1])) == count, found
-    (tmp_path / "third.glsl").write_text(body)
-    status, out, err = run(*words, *hook()["args"], "third.glsl")
-    assert (status, out, err) == (0, "", "normalbench: no gate of gates.toml reads third.glsl\n")

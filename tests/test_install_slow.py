@@ -3,11 +3,41 @@
 import shutil
 import subprocess
 import sys
+from importlib.metadata import distributions
 
+import install_page
 import pytest
 from manual import ROOT
+from packaging.utils import canonicalize_name
 
 from normalbench.bench.door.python import stub
+
+
+def test_the_page_has_the_sizes_of_what_is_installed():
+    """Those of the pinned packages, to a tenth; of what is not installed here nothing is known."""
+    there = {canonicalize_name(one.metadata["Name"]): one for one in distributions()}
+    shown, seen = install_page.shown(), set()
+    assert set(shown) == {"", *install_page.EXTRAS} and set(install_page.EXTRAS) == set(install_page.PROJECT[OPTIONAL])
+    for extra, (_, disk) in shown.items():
+        try:
+            names = install_page.added(extra, there)
+        except KeyError:
+            continue
+        found = sum(size_of(there[name]) for name in names) / 1e6
+        assert found == pytest.approx(disk, rel=0.1, abs=2), f"{extra or 'normalbench'}: python -m tests.install_page"
+        seen.add(extra)
+    assert {"", "maps", "dev"} <= seen
+    assert shown[""][1] < 900
+
+
+OPTIONAL = "optional-dependencies"
+
+
+def size_of(package):
+    """What it has on disk, without what Python compiled."""
+    paths = (path.locate() for path in package.files or () if path.suffix != ".pyc")
+    return sum(path.stat().st_size for path in paths if path.is_file())
+
 
 ROOMS = ("bench", "encodings", "gbuffer", "reports")
 

@@ -19,38 +19,12 @@ needs_c = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
 FREE = Costs(start=0, task=0, row=0, byte=0)
 
 
-@pytest.fixture
-def briefly(monkeypatch):
-    """Three turns, however short."""
-    monkeypatch.setattr(timing, "LONG_ENOUGH_S", 0.0)
-
-
-def printed(capsys, *words):
-    """The rows that a program prints."""
-    program.main([*words])
-    return json.loads(capsys.readouterr().out)
-
-
 @needs_c
 def test_small_numbers_stay_what_they_are_beside_the_c_program():
     """A library that is linked with -ffast-math makes its process take them for 0."""
     data = throughput.normals(WHOLE)
     c_baseline.work("xyz", "reading", data.n, data.view)()
     assert np.float64(5e-324) * 1 > 0 and np.float32(1e-45) * np.float32(1) > 0
-
-
-@pytest.mark.usefixtures("briefly")
-def test_ratios_are_of_the_rates_of_one_run(capsys):
-    """What is not written in C says so. Counts are rounded down to whole blocks, and measured once."""
-    counts = f"{WHOLE + 5},{WHOLE}"
-    row, other = printed(capsys, "throughput", "--encoding", "octahedral,hemi_octahedral", "--counts", counts)
-    assert row["count"] == other["count"] == WHOLE
-    for name in ("numpy", "numpy_blocked", "c", "reading"):
-        assert (row[name] is None) == (row[f"times_{name}"] is None)
-        assert row[name] is None or row[f"times_{name}"] == pytest.approx(row["rate"] / row[name])
-    assert row["numpy"] and (row["c"] is None) == (row["reading"] is None) == bool(row["no_c"])
-    assert other["rate"] > 0 and other["c"] is None and other["numpy"] is None
-    assert other["no_c"] == "row.c has no hemi_octahedral"
 
 
 def test_the_exponent_is_the_slope_in_logarithms():

@@ -1,12 +1,41 @@
 """The programs of `python -m tests.speed`: that everybody measures the same, ratios, exponents, and the simulation."""
 
+import json
+
 import numpy as np
 import pytest
-from speed import c_baseline, simulate, throughput
+from speed import __main__ as program
+from speed import c_baseline, simulate, throughput, timing
 from speed.throughput import WHOLE
-from test_speed import needs_c, printed
+from test_speed import needs_c
 
 from normalbench.encodings.catalogue import ENCODINGS
+
+
+@pytest.fixture
+def briefly(monkeypatch):
+    """Three turns, however short."""
+    monkeypatch.setattr(timing, "LONG_ENOUGH_S", 0.0)
+
+
+def printed(capsys, *words):
+    """The rows that a program prints."""
+    program.main([*words])
+    return json.loads(capsys.readouterr().out)
+
+
+@pytest.mark.usefixtures("briefly")
+def test_ratios_are_of_the_rates_of_one_run(capsys):
+    """What is not written in C says so. Counts are rounded down to whole blocks, and measured once."""
+    counts = f"{WHOLE + 5},{WHOLE}"
+    row, other = printed(capsys, "throughput", "--encoding", "octahedral,hemi_octahedral", "--counts", counts)
+    assert row["count"] == other["count"] == WHOLE
+    for name in ("numpy", "numpy_blocked", "c", "reading"):
+        assert (row[name] is None) == (row[f"times_{name}"] is None)
+        assert row[name] is None or row[f"times_{name}"] == pytest.approx(row["rate"] / row[name])
+    assert row["numpy"] and (row["c"] is None) == (row["reading"] is None) == bool(row["no_c"])
+    assert other["rate"] > 0 and other["c"] is None and other["numpy"] is None
+    assert other["no_c"] == "row.c has no hemi_octahedral"
 
 
 @needs_c

@@ -7,14 +7,11 @@ import pytest
 from parity.comparison import ULP, rows
 from parity.frames import (
     CODECS,
-    LEAST,
     RANDOM,
     as_frame,
-    as_rows,
     decoded,
     gl_trip,
     hard_frames,
-    of_quaternions,
     padded,
     round_trip,
     trip,
@@ -23,7 +20,6 @@ from parity.frames import (
 from normalbench.encodings.catalogue import FRAME_ENCODINGS
 from normalbench.encodings.codecs.frame_codec import FrameCodec
 from normalbench.encodings.rotation import quaternion_of
-from normalbench.encodings.storages.rules import by_rule
 from normalbench.encodings.storages.storage import FRAME_STORAGES
 
 
@@ -108,23 +104,6 @@ def test_the_angles_ends_are_one_angle():
     ends = np.float32([[0.3, -0.2, angle, 1] for angle in (-1, 1)])
     one, other = decoded(encoding, ends)
     assert one == pytest.approx(other, abs=2 * ULP)
-
-
-def test_a_hand_at_an_end_of_its_range_is_kept():
-    """Where the third of three is at its lower end, and where w is 0: the number is a step, and not 0."""
-    third = of_quaternions(np.array([[1.0, 0.0, 0.0, 1e-6 - 1.0]]))
-    half_turn = of_quaternions(np.array([[0.6, 0.0, 0.8, 0.0]]))
-    for name, frames, number in (("smallest_three", third, 2), ("qtangent", half_turn, 3)):
-        codes = rows(FRAME_ENCODINGS[name].encode(as_frame(frames), LEAST))
-        assert codes[:, number] == pytest.approx([LEAST, -LEAST], rel=2e-3), name
-
-
-@pytest.mark.parametrize("name", ["qtangent", "smallest_three"])
-def test_a_hand_is_kept_in_floats_of_any_form(name):
-    """Its least number is the form's least normal float."""
-    codec = FrameCodec(FRAME_ENCODINGS[name], by_rule("float", (4, 3)))
-    frames = hard_frames()
-    assert codec.least == 2.0**-6 and np.array_equal(as_rows(codec.round_trip(as_frame(frames)))[:, 3], frames[:, 3])
 
 
 def test_a_number_of_many_values_is_laid_into_no_single_bit_that_nobody_said():

@@ -1,9 +1,40 @@
 """Tangent frame codes: no frame is far off, no hand is lost, and what was stored is stored again as it is."""
 
+import numpy as np
 import pytest
 import test_frame_encodings
-from parity.frames import CODECS
+from parity.comparison import rows
+from parity.frames import (
+    CODECS,
+    LEAST,
+    as_frame,
+    as_rows,
+    hard_frames,
+    of_quaternions,
+)
 from slowly import a_tenth
+
+from normalbench.encodings.catalogue import FRAME_ENCODINGS
+from normalbench.encodings.codecs.frame_codec import FrameCodec
+from normalbench.encodings.storages.rules import by_rule
+
+
+def test_a_hand_at_an_end_of_its_range_is_kept():
+    """Where the third of three is at its lower end, and where w is 0: the number is a step, and not 0."""
+    third = of_quaternions(np.array([[1.0, 0.0, 0.0, 1e-6 - 1.0]]))
+    half_turn = of_quaternions(np.array([[0.6, 0.0, 0.8, 0.0]]))
+    for name, frames, number in (("smallest_three", third, 2), ("qtangent", half_turn, 3)):
+        codes = rows(FRAME_ENCODINGS[name].encode(as_frame(frames), LEAST))
+        assert codes[:, number] == pytest.approx([LEAST, -LEAST], rel=2e-3), name
+
+
+@pytest.mark.parametrize("name", ["qtangent", "smallest_three"])
+def test_a_hand_is_kept_in_floats_of_any_form(name):
+    """Its least number is the form's least normal float."""
+    codec = FrameCodec(FRAME_ENCODINGS[name], by_rule("float", (4, 3)))
+    frames = hard_frames()
+    assert codec.least == 2.0**-6 and np.array_equal(as_rows(codec.round_trip(as_frame(frames)))[:, 3], frames[:, 3])
+
 
 MORE = CODECS[6:]
 

@@ -4,16 +4,14 @@ import numpy as np
 import pytest
 from directions import NOT_DIRECTIONS, hard_directions, view_positions
 from parity.comparison import planes
-from parity.normals import PACKED, codecs
+from parity.normals import codecs
 
-from normalbench.bench.subjects.normals.normal_sets import hemisphere, playground, sphere
+from normalbench.bench.subjects.normals.normal_sets import playground, sphere
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.encodings import vec
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
-
-WHOLE = [name for name, storage in STORAGES.items() if not storage.is_packed and name != "rgba32f"]
 
 
 def params(*given, **named) -> list:
@@ -34,25 +32,6 @@ def test_a_number_of_few_values_has_those_nearest_to_it(name, where):
         np.testing.assert_array_equal(codec.numbers(component), expected)
 
 
-@pytest.mark.usefixtures("gl")
-def test_the_stereographic_scale_is_one_field_for_both_languages():
-    """At scale 1 the disk is the hemisphere: better there than a scale for a wider view, and the same by both."""
-    psnr = {}
-    for scale in (1.0, 1.7777):
-        codec = Codec(ENCODINGS["stereographic"].with_parameters({"scale": scale}), STORAGES["rgba8"])
-        for backend in ("jax", "glsl"):
-            row = quality.measure(quality.Case(codec, hemisphere(2**18), backend))
-            psnr[scale, backend] = row["psnr_db"]
-        assert abs(psnr[scale, "jax"] - psnr[scale, "glsl"]) <= 0.02, psnr
-    assert psnr[1.0, "jax"] > psnr[1.7777, "jax"] + 3, psnr
-
-
-# Every storage with one encoding, and every rounding: what an encoding's codes are test_parity.py compares.
-BACK_ENDS = [
-    *params([*WHOLE, *PACKED], names=["octahedral"]),
-    *params(["rgba8", "rg16f"], ["truncate"], names=["octahedral", "spheremap"]),
-    *params(["rgba8"], ["truncate_half"], names=["octahedral", "spheremap"]),
-]
 # A storage of each kind, and a rounding other than the usual one; the rest at night.
 KINDS = [
     *params(["rgba8", "rg16f", "r11g11b10f", "rgb8_12_12"], names=["octahedral"]),

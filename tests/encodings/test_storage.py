@@ -10,7 +10,6 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from neighbours import around
-from slowly import a_tenth
 
 from normalbench.encodings.storages.rounding import (
     fixed,
@@ -29,17 +28,24 @@ from normalbench.gbuffer.defines.packings import StoragePacking
 from normalbench.gbuffer.gl.device import in_steps, read_pixels
 
 INTEGERS = [name for name, s in STORAGES.items() if s.kind != "float" and not s.is_packed]
+
+
 # Each with the first channel of every size that it has.
 CHANNELS = [(name, STORAGES[name].bits.index(bits)) for name in INTEGERS for bits in dict.fromkeys(STORAGES[name].bits)]
-PACKED = [s for s in STORAGES.values() if s.is_packed]
-BY_RULE = [by_rule(kind, (bits, bits)) for kind in ("unorm", "snorm", "snorm_full") for bits in range(2, 17)]
-# Four numbers of more than 32 bits together lie across channels of 16.
-OF_16 = [by_rule("unorm", bits) for bits in ((20, 20, 20), (12, 12, 12, 12), (1, 20, 17, 19))]
-BY_RULE += OF_16
+
+
 FORMS_SAID = [by_rule(*said) for said in (("float", (2, 1)), ("float", (3, 4)), ("float", (4, 3)), ("float", (5, 2)))]
+
+
 FORMS_SAID += [by_rule(*said) for said in (("float", (6, 9)), ("float", (8, 7)), ("float", (7, 13)))]
+
+
 FORMS_SAID += [by_rule(*said) for said in (("ufloat", (4, 4)), ("ufloat", (5, 6)), ("ufloat", (8, 12)))]
+
+
 FLOATS = [name for name, s in STORAGES.items() if s.kind == "float" and s.bits[0] < 32]
+
+
 FLOAT_ROUNDINGS = ROUNDINGS[:2]
 
 
@@ -166,30 +172,6 @@ def test_the_shader_rounds_as_the_emulation_does(gl, name, rounding):
     got = rounded_in_the_shader(gl, values, storage, rounding)[:, 0]
     what = f"{name} rounded in the shader, {rounding}"
     assert_same_texels(gl, values, emulated(values, storage, rounding), got.copy(), steps_of(storage), what)
-
-
-def params(pairs) -> list:
-    return [pytest.param(storage, rounding, id=f"{storage.name} {rounding}") for storage, rounding in pairs]
-
-
-# Every way that numbers lie across channels, of 8 and of 16 bits; the other roundings and lengths are drawn.
-NEAREST = [(storage, ROUNDINGS[0]) for storage in (*PACKED, *OF_16)]
-DRAWN = [*itertools.product(PACKED, ROUNDINGS[1:])]
-DRAWN += [(storage, ROUNDINGS[0]) for storage in BY_RULE if storage.is_packed and storage not in OF_16]
-
-
-@pytest.mark.parametrize("storage, rounding", params([*NEAREST, *a_tenth(DRAWN)]))
-def test_numbers_across_channels_come_back_as_the_emulation_says(gl, storage, rounding):
-    """Every code of every number and every tie, by the integer's own bits; the other numbers have the same one."""
-    values = integer_inputs(storage)
-    with np.errstate(over="ignore"):
-        values = values * 2 - 1 if storage.is_biased else values
-    got = rounded_in_the_shader(gl, values, storage, rounding)
-    for channel in range(storage.channels):
-        expected = np.asarray(store_number(jnp.asarray(values), storage, channel, rounding))
-        held = partial(words, storage=storage, channel=channel)
-        what = f"{storage.name}, number {channel}, {rounding}"
-        assert_same_texels(gl, values, expected, got[:, channel].copy(), held, what)
 
 
 def form_inputs(form) -> np.ndarray:

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import shutil
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -28,13 +24,13 @@ from normalbench.gbuffer.passes.screen import screen
 from normalbench.gbuffer.passes.shadow_map import shadow_map
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import bytes_per_pixel, rendering
-from normalbench.gbuffer.scenes.catalogue import SCENES
-from normalbench.gbuffer.scenes.scene import Scene
-from normalbench.gbuffer.scenes.setting import Setting
 
-ROOT = Path(__file__).parents[2]
 SIZE = (48, 36)
+
+
 PLAN = Plan(SIZE, 1, FP32, LIGHT_BUFFERS["rgba32f"], 2, False, 1.0)
+
+
 HEAD = '#version 430\n#include "frame.glsl"\n'
 
 
@@ -51,9 +47,9 @@ def rendered(gl, *stages: Pass, scene=None):
     return rendering(gl, piped(shadow_map(), forward(), *stages), scene or scene_of("room"), PLAN)
 
 
-# What a pipeline refuses
-
 HALF = Resource("half", "rgba16f", scale=0.5)
+
+
 WRITES, READS = Pass("first", (), (HALF,), nothing), Pass("second", (HALF,), (FINAL,), nothing)
 
 
@@ -145,9 +141,6 @@ def test_what_a_pass_does_not_declare_it_cannot_use(gl, tmp_path):
         pass
 
 
-# What follows from passes
-
-
 def test_what_a_pipeline_needs_and_holds_follows_from_its_passes():
     facts = {n: (p.light_targets, p.scaled, p.starts_light, "kind" in p.needs) for n, p in PIPELINES.items()}
     assert facts == {
@@ -175,9 +168,6 @@ def test_a_resource_counts_in_the_bytes_of_a_pixel():
     for resource, expected in sizes.items():
         made = piped(shadow_map(), forward(), Pass("mine", (), (resource,), nothing))
         assert bytes_per_pixel(made, PLAN) == plain + expected, resource
-
-
-# What a resource can be
 
 
 def test_a_volume_is_drawn_by_slices_and_read_as_one(gl, tmp_path):
@@ -266,32 +256,6 @@ def test_what_is_kept_is_there_in_the_next_frame(gl, tmp_path, copies):
             assert np.all(read == frame), f"frame {frame}, the pass before: {read.min()} to {read.max()}"
 
 
-def stepped_aside(scene: Scene, by: float) -> Scene:
-    """The scene from elsewhere, in more ambient light."""
-    x, y, z = scene.view.eye
-    return replace(scene, view=replace(scene.view, eye=(x + by, y, z)), ambient=(by, by, by))
-
-
-@pytest.mark.parametrize("pipeline", ["hybrid", "inferred", "forward_multipass"])
-def test_a_scene_may_move_between_frames(gl, pipeline):
-    """Moments drawn one after the other, the camera moving too, are those that are drawn alone, bit for bit; another
-    scene is refused."""
-    moments = [stepped_aside(SCENES["room"].make(Setting(lights=4, time=time)), time) for time in (0.0, 0.3, 0.6)]
-    plan, alone = replace(PLAN, shadows=True), []
-    for moment in moments:
-        with rendering(gl, PIPELINES[pipeline], moment, plan) as made:
-            made.draw()
-            alone.append(made.image())
-    with rendering(gl, PIPELINES[pipeline], moments[0], plan) as made:
-        for number, moment in enumerate(moments):
-            made.draw(moment)
-            differ = np.mean(made.image() != alone[number])
-            assert differ == 0, f"{differ:.1%} of moment {number} differs"
-        with pytest.raises(ValueError, match="only a scene of the same meshes"):
-            made.draw(scene_of("objects"))
-    assert np.mean(alone[0] != alone[1]) > 0.3, "the scene stands still"
-
-
 def test_a_pass_may_look_from_anywhere(gl, tmp_path):
     """From a view of its own a pass draws what it draws where the camera stands there: positions, bit for bit."""
     room = scene_of("room")
@@ -323,8 +287,6 @@ def test_a_pass_may_look_from_anywhere(gl, tmp_path):
     assert np.array_equal(images[0], images[1]), f"{np.abs(images[0] - images[1]).max():.3g} apart"
     assert np.mean(images[0] != images[2]) > 0.3, "the two views show the same"
 
-
-# What an effect can be told
 
 WORN = Effect(
     "worn",
@@ -367,113 +329,3 @@ def test_a_setting_that_cannot_be_is_refused_in_one_line(given, said):
     with pytest.raises(EffectError) as refused:
         chosen(WORN, given)
     assert str(refused.value) == said
-
-
-# How an effect is added
-
-EFFECT = '''"""The image, darker with distance, by a target of half the size."""
-
-from functools import partial
-
-from ..frame.canvas import Canvas
-from ..frame.contract import Pass, Run
-from ..frame.resource import Resource
-from ..frame.resources import FINAL, SURFACE
-from ..gl.device import MULTIPLY
-from .effect import Effect, Number
-
-NEARNESS = Resource("nearness", "r32f", scale=0.5)
-
-
-def _measure(canvas: Canvas) -> Run:
-    return canvas.over("dusk.frag", NEARNESS, TINTS=0)
-
-
-def _tint(strength: float, canvas: Canvas) -> Run:
-    return canvas.over("dusk.frag", FINAL, blend=MULTIPLY, TINTS=1, STRENGTH=strength)
-
-
-def _passes(strength: float) -> tuple[Pass, ...]:
-    return (
-        Pass("nearness", SURFACE, (NEARNESS,), _measure, after=("linear_depth",), tells={"HAS_NEARNESS": 1}),
-        Pass("dusk", (FINAL,), (FINAL,), partial(_tint, strength), after=("transparent",)),
-    )
-
-
-SETTINGS = {"strength": Number(1.0, 0.0, 4.0, "How much darker.")}
-EFFECT = Effect("dusk", "darker with distance", "a test", NEARNESS, _passes, SETTINGS)
-'''
-SHADER = """#version 430
-// How near each surface is, and the image times that.
-#include "gbuffer.glsl"
-
-#if TINTS
-layout(location = 0) out vec4 colour;
-#ifdef HAS_NEARNESS
-uniform sampler2D nearness;
-void main() { colour = vec4(pow(texelFetch(nearness, ivec2(gl_FragCoord.xy) / 2, 0).x, STRENGTH)); }
-#endif
-#else
-layout(location = 0) out float nearness;
-void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy / target_size.xy * size.xy);
-    nearness = 1.0 / (1.0 - read_gbuffer(pixel).position.z);
-}
-#endif
-"""
-RENDERS = """
-import sys
-import numpy as np
-from normalbench.encodings.catalogue import LIGHT_BUFFERS
-from normalbench.gbuffer.effects.catalogue import EFFECTS
-from normalbench.gbuffer.effects.effect import chosen
-from normalbench.gbuffer.frame.plan import Plan
-from normalbench.gbuffer.gl.device import device
-from normalbench.gbuffer.layouts.presets import LAYOUTS
-from normalbench.gbuffer.pipelines import PIPELINES
-from normalbench.gbuffer.render import rendering
-from normalbench.gbuffer.scenes.catalogue import SCENES
-from normalbench.gbuffer.scenes.scene import Scene
-from normalbench.gbuffer.scenes.setting import Setting
-
-plain, found = PIPELINES["deferred"], {}
-plan = Plan((48, 36), 1, LAYOUTS["hybrid"], LIGHT_BUFFERS["rgba16f"], 1, True, 1.0)
-dusk = chosen(EFFECTS["dusk"], {"strength": "2"})
-for name, pipeline in (("plain", plain), ("dusk", plain.with_effect(dusk.passes()))):
-    with rendering(device(), pipeline, SCENES["room"].make(Setting(lights=4)), plan) as made:
-        made.draw()
-        found |= {name: made.image(), f"{name}_depth": -made.gbuffer()[0][..., 2]}
-np.savez(sys.argv[1], **found)
-"""
-
-
-def copied_tree(folder: Path) -> Path:
-    """The rooms of the renderer in a package of their own."""
-    package = folder / "normalbench"
-    for room in ("encodings", "gbuffer"):
-        shutil.copytree(ROOT / room, package / room, ignore=shutil.ignore_patterns("__pycache__"))
-    (package / "__init__.py").touch()
-    return package
-
-
-@pytest.mark.usefixtures("gl")
-def test_an_effect_is_a_pair_of_files_and_one_line(tmp_path):
-    """In a copy of the tree: the image is what it was, times what the effect says of the depth and its setting."""
-    effects = copied_tree(tmp_path) / "gbuffer" / "effects"
-    (effects / "dusk.py").write_text(EFFECT)
-    (effects / "dusk.frag").write_text(SHADER)
-    registry = effects / "catalogue.py"
-    registry.write_text(
-        registry.read_text().replace("NAMES: tuple[str, ...] = (\n", 'NAMES: tuple[str, ...] = (\n    "dusk",\n')
-    )
-    command = [sys.executable, "-c", RENDERS, str(tmp_path / "found.npz")]
-    done = subprocess.run(command, capture_output=True, text=True, env=os.environ | {"PYTHONPATH": str(tmp_path)})
-    assert done.returncode == 0, done.stderr
-    found = np.load(tmp_path / "found.npz")
-    # Rows are counted from the top here, and from the bottom where the half-size target reads every odd one.
-    depth = found["plain_depth"][::-1][1::2, 1::2].repeat(2, axis=0).repeat(2, axis=1)[::-1]
-    expected = found["plain"] / (1 + depth[..., None]) ** 2
-    error = np.abs(found["dusk"] - expected).max() / expected.max()
-    assert error < 1e-6, f"{error:.2g} of the brightest pixel"
-    changed = np.mean(np.abs(found["dusk"] - found["plain"]).max(axis=2) > 0.01)
-    assert changed > 0.5, f"{changed:.0%} of the pixels changed"

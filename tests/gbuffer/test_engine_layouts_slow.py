@@ -6,11 +6,34 @@ from itertools import product
 import numpy as np
 import pytest
 from slowly import a_tenth
-from test_engine_layouts import ENGINES, GLOSS, STUDIO, plan
+from test_engine_layouts import ENGINES, FIGURES, GLOSS, STUDIO, plan
 
+from normalbench.bench.ground.angles import angles_deg
+from normalbench.bench.tables.quality.measure import round_trip
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.rules import storage_of
+from normalbench.encodings.storages.storage import STORAGES
 from normalbench.gbuffer.layouts.presets import LAYOUTS
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import check, rendering
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_a_presets_code_has_the_error_measured_outside(name):
+    """Within 1 % on uniform directions, or half of the last digit given; the largest one met within 3 %."""
+    encoding, storage, rounding, mean, rms, largest, _ = FIGURES[name]
+    preset = LAYOUTS[name]
+    assert (preset.encoding.name, preset.rounding if rounding != preset.packing else rounding) == (encoding, rounding)
+    codec = Codec(ENCODINGS[encoding], storage_of(storage) or STORAGES[storage], rounding)
+    n = np.random.default_rng(18).normal(size=(2**20, 3))
+    n = (n / np.linalg.norm(n, axis=1, keepdims=True)).astype(np.float32)
+    apart = angles_deg(n, round_trip(codec, n, n))
+    for figure, wanted, share in ((apart.mean(), mean, 0.01), (np.sqrt(np.mean(apart**2)), rms, 0.01)):
+        if wanted:
+            assert abs(figure - wanted) <= max(share * wanted, 0.5e-4), f"{figure:.5f}, {wanted} outside"
+    if largest:
+        assert abs(apart.max() - largest) <= max(0.03 * largest, 1e-4), f"{apart.max():.4f}, {largest} outside"
 
 
 @cache

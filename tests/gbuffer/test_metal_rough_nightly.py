@@ -1,11 +1,13 @@
 """Metal/rough surfaces: against their formulas in float64, in every pipeline, through what a layout keeps of them."""
 
+from __future__ import annotations
+
 import pytest
-import test_metal_rough
+import test_metal_rough_slow
 
 REST = [(0.1, 0.0), (0.25, 1.0), (0.5, 0.0), (0.5, 1.0), (0.75, 0.0), (1.0, 1.0)]
 
 
 @pytest.mark.parametrize("roughness, metalness", REST)
 def test_all_lights_on_surfaces_are_those_of_the_formulas_in_float64(gl, roughness, metalness):
-    test_metal_rough.test_lights_on_surfaces_are_those_of_the_formulas_in_float64(gl, roughness, metalness)
+    test_metal_rough_slow.test_lights_on_surfaces_are_those_of_the_formulas_in_float64(gl, roughness, metalness)

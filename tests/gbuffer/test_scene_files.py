@@ -1,18 +1,15 @@
 """Users' meshes as scenes: normals under every transform, the formats, cameras, and what bad files get."""
 
-import json
-import time
 from dataclasses import replace
 
 import numpy as np
 import pytest
 import trimesh
-from drawing import FP32, apart, draw, scene_of
-from PIL import Image
-from written import NORMALS, OBJ, POSITIONS, TRIANGLE, Document, as_document, chained, ply
+from drawing import draw
+from written import NORMALS, OBJ, POSITIONS, TRIANGLE, Document, chained, ply
 
 from normalbench.gbuffer.scenes.files.read import file_scene, file_view, read_mesh_file, seen
-from normalbench.gbuffer.scenes.mesh import box, joined, sphere, tangents, wound
+from normalbench.gbuffer.scenes.mesh import box, joined, sphere, tangents
 from normalbench.gbuffer.scenes.scene import Material
 from normalbench.gbuffer.scenes.setting import Setting
 
@@ -161,41 +158,10 @@ def test_a_negative_index_counts_from_the_line_that_it_is_in(tmp_path):
     assert sorted(mesh.positions[mesh.triangles][:, :, 2].tolist()) == [[0, 0, 0], [5, 5, 5]]
 
 
-def test_meshes_without_normals_get_smooth_ones_and_it_is_said(tmp_path, run):
-    """On a sphere: within 2 degrees of its own, also where a seam's vertices are doubled."""
-    ball = sphere(1.0, 40, 20)
-    lines = [f"v {x} {y} {z}" for x, y, z in ball.positions] + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in wound(ball)]
-    (tmp_path / "ball.obj").write_text("\n".join(lines))
-    mesh = read_mesh_file(tmp_path / "ball.obj").baked
-    own = mesh.positions / np.linalg.norm(mesh.positions, axis=1, keepdims=True)
-    assert np.degrees(np.arccos(np.sum(mesh.normals * own, axis=1).clip(-1, 1))).max() < 2
-    document = Document()
-    document.node(mesh=document.mesh(ball.positions, triangles=wound(ball)))
-    document.write(tmp_path / "ball.glb")
-    assert np.sum(read_mesh_file(tmp_path / "ball.glb").baked.normals * ball.normals, axis=1).min() > 0.999
-    arguments = ("--encoding", "xy", "--storage", "rg8", "--backend", "jax", "--size", "64x48", "--format", "json")
-    status, out, err = run("quality", "--normals", str(tmp_path / "ball.obj"), *arguments)
-    assert status == 0 and "smooth ones were made" in err and "no camera in it" in err, err
-    (row,) = json.loads(out)
-    assert row["normals"] == "ball.obj" and row["count"] + row["background"] == 64 * 48 and row["count"] > 1000
-
-
 def test_a_note_of_an_obj_is_said_once(tmp_path):
     (tmp_path / "a.obj").write_text(OBJ)
     (tmp_path / "colours.mtl").write_text("newmtl red\nmap_Kd a.png\nmap_Ks b.png\nnewmtl blue\nmap_Kd c.png\n")
     assert read_mesh_file(tmp_path / "a.obj").notes == ("textures are not read: colours alone",)
-
-
-def test_obj_takes_time_for_what_it_holds_and_no_more(tmp_path):
-    """Neither vertices for each of many materials nor the beginning of a line for each of its ends."""
-    square = [f"v {i % 200} {i // 200} 0" for i in range(40_000)]
-    faces = [f"usemtl {i}\nf {i + 1} {i + 2} {i + 202}" for i in range(300)]
-    long = "f " + " \\\n".join(map(str, range(1, 40_001)))
-    (tmp_path / "a.obj").write_text("\n".join([*square, *faces, long]))
-    start = time.process_time()
-    file = read_mesh_file(tmp_path / "a.obj")
-    assert time.process_time() - start < 3
-    assert len(file.pieces) == 300 and sum(len(piece.mesh.triangles) for piece in file.pieces) > 39_000
 
 
 @pytest.mark.parametrize("order", ["ascii", "binary_little_endian", "binary_big_endian"])
@@ -262,43 +228,3 @@ def test_the_files_own_camera_is_used_with_its_roll(tmp_path):
     rims = made.normals[[rows.min() + 1, rows.max() - 1], 40, 1]
     assert rims[0] > 0.3 and rims[1] < -0.3, f"the upper rim faces up in the picture, the lower one down: {rims}"
     assert made.normals[int(rows.mean()), 40, 2] > 0.8
-
-
-def test_a_procedural_scene_as_a_file_renders_like_it(tmp_path, gl):
-    """The room's meshes in their places, by its own camera, lights and materials, without shadows: more than 60 dB,
-    which is vertices rounded to float32 before they are moved."""
-    room = scene_of("room")
-    document = Document()
-    document.json["materials"] = [{} for _ in room.materials]
-    for part in room.parts:
-        mesh = part.mesh
-        for material in dict.fromkeys(part.materials.tolist()):
-            # A file's bitangents go against v.
-            arrays = {"TEXCOORD_0": mesh.uv, "TANGENT": tangents(mesh) * (1, 1, 1, -1)}
-            made = document.mesh(mesh.positions, mesh.normals, mesh.triangles, material=material, **arrays)
-            for model in part.models[part.materials == material]:
-                document.node(mesh=made, matrix=model.T.ravel().tolist())
-    scene = file_scene(read_mesh_file(document.write(tmp_path / "room.glb")), Setting())
-    scene = replace(scene, materials=(*room.materials, Material()), lights=room.lights, ambient=room.ambient)
-    scene = replace(scene, view=room.view, previous=room.previous)
-    for pipeline in ("deferred", "hybrid"):
-        images = [draw(gl, pipeline, one, FP32).image for one in (scene, room)]
-        assert images[1].mean() > 0.05
-        assert apart(*images) > 60, f"{pipeline}: {apart(*images):.1f} dB"
-
-
-@pytest.mark.usefixtures("gl")
-def test_render_takes_files_and_names_and_lights_them(tmp_path, run):
-    chained_file = tmp_path / "mine.glb"
-    document = as_document([sphere(1.0, 24, 12)])
-    document.write(chained_file)
-    arguments = ("--encoding", "octahedral", "--size", "96x72", "--lights", "8", "--repeats", "1", "--format", "json")
-    status, out, err = run("render", "--scene", f"gloss,{chained_file}", *arguments, "--images", str(tmp_path / "p"))
-    rows = json.loads(out)
-    assert status == 0 and [row["scene"] for row in rows] == ["gloss", "mine.glb"], err
-    assert 40 < rows[1]["psnr_db"] < 90 and rows[1]["invalid"] == 0
-    (name,) = (tmp_path / "p").glob("mine.glb-*final.png")
-    pixels = np.asarray(Image.open(name)).astype(int)
-    lit = pixels.max(axis=2) > 40
-    assert 0.2 < lit.mean() < 0.8, f"{lit.mean():.2f} of the picture is lit"
-    assert lit[36, 48] and not lit[0].any()

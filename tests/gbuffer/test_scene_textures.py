@@ -16,8 +16,14 @@ from normalbench.gbuffer.scenes.files.source import SceneFileError
 from normalbench.gbuffer.scenes.mesh import Mesh, laid_by, tangents
 
 UV = [(0, 0), (1, 0), (0, 1)]
+
+
 SQUARE = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
+
+
 QUAD = [(0, 1, 2), (0, 2, 3)]
+
+
 # Its uv as a picture lies upright on it: v grows downwards.
 UPRIGHT = [(0, 1), (1, 1), (1, 0), (0, 0)]
 
@@ -99,21 +105,6 @@ def uri(data: bytes) -> str:
     return "data:image/png;base64," + base64.b64encode(data).decode()
 
 
-def test_a_picture_that_many_materials_have_is_unpacked_once(tmp_path, monkeypatch):
-    """Two textures of one image, in 10 000 materials."""
-    document = Document()
-    document.texture(png_bytes(noise(4)))
-    document.json["textures"].append({"source": 0})
-    document.node(mesh=document.mesh(TRIANGLE, material=9999, TEXCOORD_0=UV))
-    for number in range(10_000):
-        document.material(normalTexture={"index": number % 2}, emissiveTexture={"index": 0})
-    unpacked = []
-    monkeypatch.setattr(gltf_materials, "texels", lambda data: unpacked.append(0) or texels.texels(data))
-    file = read(document, tmp_path)
-    assert len(unpacked) == 1 and len(file.materials) == 10_001
-    assert len({id(m.texels) for made in file.materials[:-1] for m in (made.normal_map, made.emission_map)}) == 1
-
-
 def test_a_map_lies_by_its_sampler_its_set_and_its_transform(tmp_path):
     """The corners of a picture that is turned by 90 degrees, twice as often along u, and moved: a positive rotation
     takes (1, 0) to (0, -1), up in the picture."""
@@ -188,9 +179,6 @@ def test_a_set_of_uv_that_is_not_there_is_said(tmp_path):
     ]
 
 
-# Tangents
-
-
 def frames_of(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
     """At each vertex, where a normal map's x and y go in space: x along u, y against v."""
     made = tangents(mesh)
@@ -253,9 +241,6 @@ def test_uv_without_an_area_have_some_tangent(tmp_path):
     assert np.array_equal(laid_by(mesh, mesh.uv).positions, mesh.positions)
 
 
-# Bad pictures
-
-
 def png_head(width: int, height: int) -> bytes:
     """A PNG file of a header alone."""
     head = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
@@ -263,7 +248,11 @@ def png_head(width: int, height: int) -> bytes:
 
 
 WHOLE = png_bytes(noise(3, height=40, width=50))
+
+
 DEEP = png_bytes(noise(3, np.uint16, height=40, width=50))
+
+
 BAD = {
     "missing": (None, ["images[0]", "missing.png", "no such file"]),
     "16k": (png_head(16384, 16384), ["images[0]", "at most 8192 pixels a side", "save it smaller"]),

@@ -5,7 +5,8 @@ import json
 import numpy as np
 import pytest
 from browsing import PHONE, Opened
-from test_pictures import answered_run, pick_row
+from test_pictures import pick_row
+from test_pictures_slow import answered_run
 from test_report import a_run
 
 from normalbench.bench.keep.runs import read_run

@@ -1,4 +1,4 @@
-"""A card of a further codec."""
+"""The view Codecs: a list of all, and everything about one codec in a card, as the run's rows have it."""
 
 import test_codecs_slow
 

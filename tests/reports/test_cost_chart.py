@@ -2,11 +2,8 @@
 points."""
 
 import math
-from itertools import pairwise
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from test_report import a_run, quality_row
 
 from normalbench.bench.keep.runs import read_run
@@ -32,14 +29,6 @@ FAMILIES = ("navi31", "dg2")
 
 def points(family: int = 0, operation: int = 0) -> list[Point]:
     return [Point(name, counts[family][operation], counts[2], 16) for name, counts in CODECS.items()]
-
-
-@given(st.lists(st.floats(10, 110), min_size=1, max_size=24, unique=True))
-def test_no_two_names_stand_on_one_line_and_they_keep_the_order_of_their_points(errors):
-    axis = Axis(title="PSNR, dB", domain=(0, 120))
-    places = dict(zip(errors, lines_apart(axis, errors, HEIGHT, wire.LABEL_LINE), strict=True))
-    pixels = [places[error] * HEIGHT for error in sorted(errors)]
-    assert all(b - a >= wire.LABEL_LINE - 1e-6 for a, b in pairwise(pixels))
 
 
 def test_names_far_apart_stand_beside_their_points():

@@ -1,4 +1,5 @@
-"""The interactive chart of cost against error in a wide window."""
+"""The interactive chart of cost against error: a switch between GPUs, names that can be read, no corner of crowded
+points."""
 
 import test_cost_chart_slow
 from browsing import DESKTOP

@@ -1,15 +1,27 @@
 """The interactive chart of cost against error: a switch between GPUs, names that can be read, no corner of crowded
 points."""
 
-from itertools import combinations
+from itertools import combinations, pairwise
 
 import pytest
 from browsing import PHONE, Opened
+from hypothesis import given
+from hypothesis import strategies as st
 from test_cost_chart import CODECS, FAMILIES, costs_of, points
 from test_report import a_run, quality_row, reported
 
-from normalbench.bench.tables.cost.charts import front_chart
+from normalbench.bench.tables.cost.charts import HEIGHT, front_chart
+from normalbench.reports.charts import wire
+from normalbench.reports.charts.chart import Axis, lines_apart
 from normalbench.reports.charts.pareto import Panel
+
+
+@given(st.lists(st.floats(10, 110), min_size=1, max_size=24, unique=True))
+def test_no_two_names_stand_on_one_line_and_they_keep_the_order_of_their_points(errors):
+    axis = Axis(title="PSNR, dB", domain=(0, 120))
+    places = dict(zip(errors, lines_apart(axis, errors, HEIGHT, wire.LABEL_LINE), strict=True))
+    pixels = [places[error] * HEIGHT for error in sorted(errors)]
+    assert all(b - a >= wire.LABEL_LINE - 1e-6 for a, b in pairwise(pixels))
 
 
 def test_a_file_and_the_page_show_the_same_of_the_usual_gpu(agree):

@@ -1,12 +1,40 @@
 """How large a page grows: its elements after each view was opened once, scrolled to its end and left."""
 
-import test_limits
+import pytest
+from browsing import Opened
 from packed import packed_text
+from test_report import Read, a_run, quality_row
+from test_site_slow import LAID_OUT
 
+from normalbench.bench.show.report import report_command
+from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.storages.storage import STORAGES
 
-folder = test_limits.folder
-large = test_limits.large
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A run of every encoding in every storage, by hand."""
+    names = [{"encoding": name, "storage": storage} for name in ENCODINGS for storage in STORAGES]
+    rows = [quality_row(psnr_db=40.0 + at / 7, **one) for at, one in enumerate(names)]
+    images = [TABLES["render"].empty() | LAID_OUT | one | {"psnr_db": 20.0 + at / 7} for at, one in enumerate(names)]
+    return a_run(tmp_path_factory.mktemp("large") / "run", {"quality": rows, "render": images})
+
+
+@pytest.fixture(scope="module")
+def large(browser, folder):
+    report_command(folder, as_markdown=False, pictures_beside=False, charts_beside=False, output=None)
+    page = Opened(browser, folder / "report.html", size=(1440, 900))
+    yield page
+    page.context.close()
+
+
+def test_a_site_has_long_tables_as_text(folder, run, tmp_path):
+    """Without scripts there is nothing that builds them."""
+    assert run("site", str(folder), "-o", str(tmp_path / "site"))[0] == 0
+    read = Read((tmp_path / "site/layouts.html").read_text(encoding="utf-8"))
+    assert len(read.all("tr")) > len(ENCODINGS) * len(STORAGES)
+    assert not [one for one in read.all("details") if "data-table" in one]
 
 
 MOST_ELEMENTS = 12_000

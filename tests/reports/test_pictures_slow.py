@@ -2,14 +2,43 @@
 
 import json
 import shutil
+from pathlib import Path
 
 import numpy as np
 from PIL import Image
-from test_pictures import codes_of, pixels
+from test_pictures import codes_of, pick_row, pixels
+from test_report import a_run
 
 from normalbench.bench.keep.runs import read_run
 from normalbench.bench.show import report as report_command
 from normalbench.reports.page import embedded
+
+
+def answered_run(folder: Path) -> Path:
+    """A run with an answer for two storages on two scenes, each with its images; in rg8 on gloss red is 2 steps off."""
+    (folder / "images").mkdir(parents=True)
+    of_room = {"scene": "gloss,room", "image_db_room_47": 50.0}
+    rows = [
+        row | of_room | {"storage": storage, "asked": storage}
+        for storage in ("rg8", "rgb10a2")
+        for row in (pick_row("fine", 0.2, 9), pick_row("xy", 0.3, 5) | {"bits": 15})
+    ]
+    for scene in ("gloss", "room"):
+        for storage in ("rg8", "rgb10a2"):
+            for name in ("fine", "xy"):
+                image = Image.new("RGB", (32, 24), (52 if (scene, storage) == ("gloss", "rg8") else 50, 60, 70))
+                image.save(folder / f"images/pick-{scene}-power47-{name}-{storage}-final.png")
+        Image.new("RGB", (32, 24), (50, 60, 70)).save(folder / f"images/pick-{scene}-power47-reference.png")
+    return a_run(folder, {"pick": rows}, request={"tables": "pick"})
+
+
+def test_an_answers_pictures_are_of_its_own_scene_the_best_first(tmp_path):
+    folder = answered_run(tmp_path / "run")
+    first, second = embedded.gallery(report_command.gathered(folder, read_run(folder)).subjects).subjects
+    assert [first["title"], second["title"]] == ["the answer on gloss at power 47", "the answer on room at power 47"]
+    assert [one["codec"] for one in first["codecs"]] == ["fine rg8", "xy rg8", "fine rgb10a2", "xy rgb10a2"]
+    assert pixels(first["codecs"][0]["apart"])[0, 0].tolist() == [2, 0, 0]
+    assert pixels(second["codecs"][0]["apart"]).max() == 0
 
 
 def test_pictures_in_the_page_are_those_of_the_run_pixel_by_pixel(results):

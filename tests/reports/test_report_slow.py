@@ -3,15 +3,71 @@
 import re
 import time
 
+import numpy as np
 import pytest
-from test_report import HOSTILE, Read, a_run, quality_row
+from PIL import Image
+from test_report import HOSTILE, Read, a_run, quality_row, reported
 
 from normalbench.bench.subjects.normals.normal_sets import hemisphere
 from normalbench.bench.tables.quality import measure as quality
+from normalbench.bench.tables.quality.charts import histogram_chart
+from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
+from normalbench.reports.charts import draw, plots
+from normalbench.reports.page import page
 from normalbench.reports.page.markdown import LONGEST
+
+FORBIDDEN = ("<script>alert", "<img src=x", "\u202e", "\x1b")
+
+
+def test_a_hostile_run_injects_nothing(run, tmp_path):
+    """Names come from users' files: in rows, columns, tables, facts and the names of pictures."""
+    rows = [quality_row(HOSTILE, skipped=HOSTILE), quality_row("octahedral", psnr_db=49.0) | {HOSTILE: HOSTILE}]
+    tables = {
+        "quality": rows,
+        "render": [{"encoding": HOSTILE, "storage": HOSTILE, "scene": HOSTILE, "psnr_db": 1.0, "normal_psnr_db": 2.0}],
+        "sweep": [{"pipeline": HOSTILE, "ms_frame": 1.0, "ms_lights": 0.5, "clock": HOSTILE}],
+        "cost": [{"family": "../../..", "encoding": HOSTILE, "stage": "fragment", "instructions": 3}],
+        HOSTILE: [{HOSTILE: HOSTILE}],
+    }
+    folder = a_run(tmp_path / "run", tables, machine={HOSTILE: HOSTILE}, command=[HOSTILE], time=HOSTILE)
+    text, read = reported(run, folder, "this version has no such table")
+    kinds = [attributes.get("type") for attributes in read.all("script")]
+    assert kinds.count(None) == len(page.SCRIPTS), "only the page's own"
+    assert set(kinds) <= {None, "application/json", "text/plain"}, "the others are data"
+    assert not any(name.startswith("on") for _, attributes in read.tags for name in attributes)
+    assert all(a.get("src", "").startswith("data:") for a in read.all("img"))
+    assert not any(part in text for part in FORBIDDEN)
+    assert "<script>alert(1)</script>" in read.text, "it is shown as it is"
+    run("report", str(folder), "--charts")
+    charts = list((folder / "charts").glob("*.svg"))
+    assert charts and not any("<script" in chart.read_text() for chart in charts)
+
+
+def test_a_run_of_one_table_says_what_is_not_there(run, tmp_path):
+    row = {"depth": "linear", "storage": "r32f", "rebuilt": "eye_ray", "backend": "jax", "near": 0.1, "far": 10.0}
+    rows = [TABLES["depth"].empty() | row | {"fov": 60.0, "distance": d, "error_max": d / 1e6} for d in (1.0, 10.0)]
+    request = {"tables": "depth", "count": 4096, "seed": 0}
+    _, read = reported(run, a_run(tmp_path / "run", {"depth": rows}, request=request))
+    assert "What this run measured" in read.text and "no rows" not in read.text
+    assert "What normals lose" not in read.text, "nobody asked for it"
+    assert "What depth loses" in read.text and "the worst position error, near 0.1, far 10" in read.text
+    assert not (tmp_path / "run/charts").exists()
+    assert run("report", str(tmp_path / "run"), "--charts")[0] == 0
+    assert {path.name for path in (tmp_path / "run/charts").iterdir()} == {"depth.png", "depth.svg"}
+
+
+def test_a_chart_is_drawn_once_for_each_file(tmp_path, monkeypatch):
+    """And laid out in the first one."""
+    figure = draw.figure([histogram_chart(0, [quality_row("xy")])])
+    drawn, painted = [], type(figure).draw
+    monkeypatch.setattr(type(figure), "draw", lambda self, renderer: drawn.append(self.dpi) or painted(self, renderer))
+    plots.save(figure, *((tmp_path / f"chart.{ending}", ending) for ending in ("svg", "png", "pdf")))
+    assert len(drawn) == 3 and drawn[1] == plots.DPI
+    with Image.open(tmp_path / "chart.png") as image:
+        assert image.size == tuple(np.rint(figure.get_size_inches() * plots.DPI).astype(int))
 
 
 def test_markdown_calls_nobody_links_nowhere_and_fits_a_comment(run, tmp_path):

@@ -1,15 +1,14 @@
 """The website of a run: what is in it, that its links lead somewhere, and that it is read without scripts."""
 
 import pytest
-import test_site
 import test_site_slow
 from browsing import DESKTOP, PHONE
 from html_faults import faults
 from test_site_slow import NARROW, WIDE
 
-pages = test_site.pages
-run_folder = test_site.run_folder
-site = test_site.site
+pages = test_site_slow.pages
+run_folder = test_site_slow.run_folder
+site = test_site_slow.site
 
 
 FAULTS = {

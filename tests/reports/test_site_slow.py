@@ -1,14 +1,152 @@
 """The website of a run: what is in it, that its links lead somewhere, and that it is read without scripts."""
 
-import pytest
-import test_site
-from browsing import AXE, DESKTOP, PHONE, Opened, scale_of
+import shutil
+from html.parser import HTMLParser
+from pathlib import Path
+from urllib.parse import unquote
 
+import devices as made
+import pytest
+from browsing import AXE, DESKTOP, PHONE, Opened, scale_of
+from languages import SHORT
+from test_codecs_slow import ANSWER, QUALITY
+from test_report import Read, a_run
+
+from normalbench.bench.door import run_code
+from normalbench.bench.keep.runs import read_run
 from normalbench.bench.show.kept_code import read_code
 from normalbench.bench.show.site_command import site_command
+from normalbench.bench.tables.registry import TABLES
 
-run_folder = test_site.run_folder
-site = test_site.site
+ENCODINGS = {"mine", "octahedral", "spheremap", "stereographic", "xy"}
+
+
+LAID_OUT = {"pipeline": "hybrid", "layout": "fp32", "encoding": "octahedral", "storage": "rg8", "rounding": "nearest"}
+
+
+LAID_OUT |= {"scene": "studio", "size": "640x480", "psnr_db": 24.8, "normal_psnr_db": 50.0, "exact": False}
+
+
+@pytest.fixture(scope="module")
+def run_folder(tmp_path_factory):
+    tables = {"pick": ANSWER, "quality": QUALITY, "render": [TABLES["render"].empty() | LAID_OUT]}
+    folder = a_run(tmp_path_factory.mktemp("site") / "run", tables)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(run_code, "LANGUAGES", SHORT)
+        run_code.keep_code(folder, read_run(folder))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def site(run_folder):
+    """Of the run and one device."""
+    made.write(run_folder.parent / "files" / "a.json")
+    assert site_command([run_folder, run_folder.parent / "files"], run_folder.parent / "site") == 0
+    return run_folder.parent / "site"
+
+
+@pytest.fixture(scope="module")
+def pages(site) -> dict[str, Read]:
+    found = sorted(site.rglob("*.html"))
+    return {str(path.relative_to(site)): Read(path.read_text(encoding="utf-8")) for path in found}
+
+
+def test_the_pages_are_those_of_the_run(pages):
+    top = {"index.html", "choose.html", "layouts.html", "codecs/index.html", "devices/index.html"}
+    assert set(pages) == top | {f"codecs/{name}.html" for name in ENCODINGS}
+
+
+def test_imported_devices_have_the_sections_that_their_files_have(run, run_folder, tmp_path):
+    """But for the browser, which a run knows by its short name."""
+    shutil.copytree(run_folder, tmp_path / "run")
+    file = made.write(tmp_path / "files" / "a.json")
+    assert run("import", str(file), "-o", str(tmp_path / "run"))[0] == 0
+    assert run("site", str(tmp_path / "run"), "-o", str(tmp_path / "site"))[0] == 0
+    assert run("site", str(tmp_path / "files"), "-o", str(tmp_path / "alone"))[0] == 0
+    texts = [
+        " ".join(Read((tmp_path / path).read_text(encoding="utf-8")).text.rpartition("agrees with the run")[2].split())
+        for path in ("site/devices/index.html", "alone/index.html")
+    ]
+    assert texts[0] and texts[0] == texts[1].replace(made.CHROMIUM, "Chromium 156")
+    status, out, err = run("site", str(tmp_path / "run"), str(tmp_path / "files"), "-o", str(tmp_path / "both"))
+    assert status == 0 and "1 device\n" in out and "is of the same device and browser, and not older" in err
+
+
+def test_every_link_leads_to_a_page_and_a_place_in_it(site, pages):
+    checked = 0
+    for name, read in pages.items():
+        for link in (one["href"] for one in read.all("a")):
+            file, _, place = link.partition("#")
+            to = str(((site / name).parent / file).resolve().relative_to(site.resolve())) if file else name
+            assert to in pages, f"{name}: {link}"
+            if place.startswith("v1/"):
+                view = place[3:].partition("?")[0]
+                assert any(one.get("data-view") == view for one in pages[to].all("div")), f"{name}: {link}"
+            # A laboratory is in a run that keeps codes for it.
+            elif place:
+                assert any(one.get("id") == unquote(place) for _, one in pages[to].tags), f"{name}: {link}"
+            checked += 1
+    assert checked > 50, checked
+
+
+def test_every_page_leads_to_the_others(site, pages):
+    for name, read in pages.items():
+        files = [one["href"].partition("#")[0] for one in read.all("a")]
+        linked = {str(((site / name).parent / file).resolve().relative_to(site.resolve())) for file in files if file}
+        assert linked >= {"choose.html", "layouts.html", "codecs/index.html", "devices/index.html"} - {name}, name
+    assert {f"codecs/{one}.html" for one in ENCODINGS} <= {
+        f"codecs/{one['href']}" for one in pages["codecs/index.html"].all("a")
+    }
+
+
+def test_titles_and_descriptions_are_a_pages_own(site, pages):
+    titles = {name: (site / name).read_text().split("<title>")[1].split("</title>")[0] for name in pages}
+    said = {
+        name: [one["content"] for one in read.all("meta") if one.get("name") == "description"]
+        for name, read in pages.items()
+    }
+    assert len(set(titles.values())) == len(titles), titles
+    assert all(len(one) == 1 and len(one[0]) > 30 for one in said.values()), said
+    assert len({one[0] for one in said.values()}) == len(said), said
+    assert "octahedral" in titles["codecs/octahedral.html"] and "mean error" in said["codecs/octahedral.html"][0]
+
+
+class Nested(HTMLParser):
+    """Elements that are closed in another order than they were opened in."""
+
+    EMPTY = frozenset(("meta", "link", "br", "img", "input"))
+
+    def __init__(self, text: str):
+        super().__init__()
+        self.open, self.wrong = [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):  # noqa: ARG002 - the name that HTMLParser gives it
+        if tag not in self.EMPTY:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        if not self.open or self.open.pop() != tag:
+            self.wrong.append((tag, self.getpos()))
+
+
+def test_elements_are_closed_and_their_ids_are_their_own(site, pages):
+    for name, read in pages.items():
+        nested = Nested((site / name).read_text(encoding="utf-8")) if name != "index.html" else None
+        assert not nested or (nested.wrong, nested.open) == ([], []), f"{name}: {nested.wrong} {nested.open}"
+        ids = [one["id"] for _, one in read.tags if "id" in one]
+        assert len(set(ids)) == len(ids), f"{name}: {[one for one in ids if ids.count(one) > 1]}"
+
+
+def test_the_large_page_is_there_once(site):
+    sizes = {path.name: path.stat().st_size for path in site.rglob("*.html") if path.name != "index.html"}
+    assert max(sizes.values()) < 2**19, sizes
+
+
+def test_two_runs_are_one_line(run, run_folder, tmp_path):
+    status, out, err = run("site", str(run_folder), str(run_folder), "-o", str(tmp_path / "site"))
+    assert (status, out, err.count("\n")) == (2, "", 1) and "a site is of one" in err
+    assert not Path(tmp_path / "site").exists()
 
 
 def test_an_encoding_is_read_without_scripts(browser, site, run_folder):
@@ -51,6 +189,8 @@ def test_the_first_page_begins_with_the_laboratory(gl_browser, results, tmp_path
 
 # What is opened wide and in the light, and narrow and in the dark; at night the other way round.
 WIDE = ("index.html", "layouts.html", "codecs/octahedral.html")
+
+
 NARROW = ("choose.html", "codecs/index.html", "devices/index.html")
 
 

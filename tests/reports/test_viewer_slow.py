@@ -4,7 +4,8 @@ import numpy as np
 from browsing import VIEWED, Opened
 from PIL import Image
 from test_page_slow import TABLE
-from test_pictures import answered_run, pixels, rendered_run
+from test_pictures import pixels, rendered_run
+from test_pictures_slow import answered_run
 
 
 def viewed(opened: Opened, **chosen: str) -> None:

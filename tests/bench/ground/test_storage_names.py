@@ -1,7 +1,5 @@
 """Storages by rule: the catalogue's where there is one, ranges, and what cannot be."""
 
-import json
-
 import pytest
 
 from normalbench.bench.door.python.codecs import codec_of
@@ -85,16 +83,6 @@ def test_every_storage_is_said_by_its_bits(storage):
 def test_what_cannot_be_is_a_line(said, message):
     with pytest.raises(UsageError, match=message):
         storages_named(said)
-
-
-def test_centred_numbers_are_measured_and_not_laid_out(run):
-    """In both languages: axes are exact, as in SNORM, and in a UNORM target. What cannot have them says so."""
-    words = ("--encoding", "octahedral", "--storage", "centred:8:8", "--format", "json")
-    status, out, err = run("quality", *words, "--normals", "axes")
-    assert status == 0 and {row["backend"] for row in json.loads(out)} == {"jax", "glsl"}, err
-    assert all(row["angle_max_deg"] < 1e-4 and row["storage"] == "rg8_centred" for row in json.loads(out))
-    status, _, err = run("render", "--scene", "gloss", *words)
-    assert status == 2 and err == "normalbench: layout fp32: RG8 centred: a layout does not keep centred numbers\n"
 
 
 def test_python_takes_one_codec_at_a_time():

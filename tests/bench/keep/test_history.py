@@ -9,7 +9,7 @@ from pathlib import Path
 import histories
 import numpy as np
 import pytest
-from histories import DAY, FIRST, FOLD, LONGER, NOISE, SHORTER, name_of
+from histories import DAY, FIRST, FOLD, LONGER, SHORTER, name_of
 from manual import PAGES, ROOT
 
 from normalbench.bench.keep.commit import commit_of
@@ -117,18 +117,6 @@ def test_times_of_two_machines_are_not_one_series(run, tmp_path):
         histories.write_run(tmp_path / str(at), at, steps, machine={"GL": "new" if at >= 16 else "old"})
     assert rows_of(run, tmp_path) == []
     assert run("history", str(tmp_path))[1].splitlines()[1] == "no figure got worse"
-
-
-@pytest.mark.parametrize("count", [30, 300])
-def test_times_that_waver_have_no_step(count):
-    """Also where they waver for days, as those of machines that others use do."""
-    rng, found = np.random.default_rng(2), 0
-    for _ in range(40):
-        off = rng.normal(0, 1, count)
-        for at in range(1, count):
-            off[at] = 0.5 * off[at - 1] + np.sqrt(0.75) * off[at]
-        found += bool(time_steps(list(10 * np.exp(NOISE * off)), 10 * count))
-    assert found == 0
 
 
 @pytest.mark.parametrize(("count", "begin", "end"), [(30, 15, 30), (40, 14, 28), (100, 92, 100), (300, 100, 120)])

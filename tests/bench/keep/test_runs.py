@@ -7,16 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from normalbench.bench.door import run as run_command
 from normalbench.bench.door.cli import app as cli
-from normalbench.bench.door.run_options import RunOptions
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.ground.output.sources import sources
 from normalbench.bench.keep import journal
 from normalbench.bench.keep.runs import ROWS, Run, opened, read_run, same_work, unfinished
 from normalbench.bench.run.measuring import files_of
 from normalbench.bench.run.workers.orders import Packing
-from normalbench.bench.shaders.isa import isa, spirv
 from normalbench.bench.shaders.languages.words import with_files
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.table import Step
@@ -251,16 +248,6 @@ def test_files_within_a_name_are_known_and_travel(tmp_path, monkeypatch, word, n
 
 def test_sources_are_known_by_their_content():
     assert sources() == sources() and len(sources()) == 16
-
-
-@pytest.mark.usefixtures("gl")
-def test_every_table_of_a_run_has_steps_and_no_two_share_a_key(tmp_path):
-    asks = run_command.asked_of(RunOptions(count=4096), tmp_path)
-    compilers = not isa.missing() and spirv.version(spirv.COMPILER)
-    usual = {table.name for table in TABLES.values() if table.in_all}
-    assert {ask.table.name for ask in asks} == usual - (set() if compilers else {"cost"})
-    keys = [json.dumps([ask.table.name, step.key], sort_keys=True) for ask in asks for step in ask.steps]
-    assert len(set(keys)) == len(keys) and all(ask.steps for ask in asks)
 
 
 def test_an_unknown_table_is_one_line(run, tmp_path):

@@ -13,10 +13,23 @@ import pytest
 import test_runs
 from test_runs import THREE
 
+from normalbench.bench.door import run as run_command
+from normalbench.bench.door.run_options import RunOptions
 from normalbench.bench.keep.runs import ROWS
+from normalbench.bench.shaders.isa import isa, spirv
 from normalbench.bench.tables.registry import TABLES
 
 finished = test_runs.finished
+
+
+@pytest.mark.usefixtures("gl")
+def test_every_table_of_a_run_has_steps_and_no_two_share_a_key(tmp_path):
+    asks = run_command.asked_of(RunOptions(count=4096), tmp_path)
+    compilers = not isa.missing() and spirv.version(spirv.COMPILER)
+    usual = {table.name for table in TABLES.values() if table.in_all}
+    assert {ask.table.name for ask in asks} == usual - (set() if compilers else {"cost"})
+    keys = [json.dumps([ask.table.name, step.key], sort_keys=True) for ask in asks for step in ask.steps]
+    assert len(set(keys)) == len(keys) and all(ask.steps for ask in asks)
 
 
 @contextmanager

@@ -1,16 +1,109 @@
 """`normalbench import` and the tables of devices: rows in a run, once each, all or none; and what its page shows."""
 
 import json
+import os
 import shutil
+import sys
+from collections import Counter
+from pathlib import Path
 
 import devices as made
-import test_import
-from test_import import content_of
+import pytest
 
+from normalbench.bench.door.cli import app as cli
+from normalbench.bench.keep import runs
 from normalbench.bench.keep.runs import read_run
 
-folder = test_import.folder
-made_once = test_import.made_once
+OTHER = "ANGLE (NVIDIA Corporation, NVIDIA GeForce RTX 4090/PCIe/SSE2, OpenGL 4.5.0)"
+
+
+@pytest.fixture(scope="module")
+def made_once(tmp_path_factory):
+    """A small run, of which each test has a copy."""
+    folder = tmp_path_factory.mktemp("small") / "run"
+    words = ("--encoding", "xy", "--storage", "rg8", "--normals", "axes", "--backend", "jax")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sys, "argv", ["normalbench", "run", "--tables", "quality", *words, "-o", str(folder)])
+        assert cli.main() == 0
+    return folder
+
+
+@pytest.fixture
+def folder(made_once, tmp_path):
+    return Path(shutil.copytree(made_once, tmp_path / "run"))
+
+
+def content_of(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+
+
+def test_a_device_that_was_compared_with_another_runs_codes_is_named(run, tmp_path, folder):
+    path = made.write(tmp_path / "a.json", sources="another")
+    for said in ("SwiftShader, Chromium 156: measured on the page of a run of other sources", ""):
+        status, _, err = run("import", str(path), "-o", str(folder))
+        assert status == 0 and said in err and err.count("\n") == bool(said), err
+
+
+def test_gpus_that_come_to_share_a_short_name_are_told_apart_whichever_is_first(run, tmp_path, folder):
+    paths = [made.write(tmp_path / "a.json", renderer=made.GEFORCE), made.write(tmp_path / "b.json", renderer=OTHER)]
+    for path in paths:
+        assert run("import", str(path), "-o", str(folder))[0] == 0
+    names = {row["renderer"]: row["device"] for row in read_run(folder).tables["devices"]}
+    assert names == {made.GEFORCE: "GeForce RTX 4090 (Direct3D11)", OTHER: "GeForce RTX 4090 (OpenGL)"}
+    out = run("devices", "--devices", ",".join(map(str, reversed(paths))), "--format", "json")[1]
+    assert {row["renderer"]: row["device"] for row in json.loads(out)} == names
+
+
+def test_one_bad_file_of_several_leaves_the_run_as_it_was(run, tmp_path, folder):
+    good, bad = made.write(tmp_path / "a.json"), tmp_path / "bad.json"
+    bad.write_text("{}")
+    before = content_of(folder)
+    status, out, err = run("import", str(good), str(bad), str(tmp_path / "none.json"), "-o", str(folder))
+    assert (status, out, err.count("\n")) == (2, "", 2) and "bad.json: it is not a device file" in err
+    assert "none.json: there is no such file" in err and content_of(folder) == before
+
+
+def test_a_run_that_another_process_writes_or_that_was_changed_is_refused(run, tmp_path, folder):
+    path = made.write(tmp_path / "a.json")
+    with runs.amended(folder):
+        status, _, err = run("import", str(path), "-o", str(folder))
+    assert status == 2 and "another process writes" in err, err
+    with (folder / "rows.jsonl").open("a") as file:
+        file.write((folder / "rows.jsonl").read_text())
+    before = content_of(folder)
+    status, _, err = run("import", str(path), "-o", str(folder))
+    assert status == 2 and "nothing is added to it" in err and content_of(folder) == before, err
+
+
+def test_a_full_disk_leaves_the_run_as_it_was(run, tmp_path, folder, monkeypatch):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    before = read_run(folder)
+    monkeypatch.setattr(os, "fsync", full)
+    status, _, err = run("import", str(made.write(tmp_path / "a.json")), "-o", str(folder))
+    assert status == 2 and "No space left on device" in err, err
+    after = read_run(folder)
+    assert after.steps == before.steps and not after.damage and after.finished
+    assert not list(folder.glob(".*partial"))
+
+
+def test_a_named_device_makes_its_table_part_of_all(run, tmp_path):
+    from normalbench.bench.door.run import chosen_tables
+
+    assert "devices" in {table.name for table in chosen_tables("all", {"devices": "a.json"})}
+    assert "devices" not in {table.name for table in chosen_tables("all", {"count": 3})}
+    path, out = made.write(tmp_path / "a.json"), tmp_path / "out"
+    assert run("run", "--tables", "devices", "--devices", str(path), "-o", str(out))[0] == 0
+    assert Counter(row["row_of"] for row in read_run(out).tables["devices"]) == {"codec": 35, "fact": 4}
+
+
+def test_a_stopped_run_takes_devices_and_stays_unfinished(run, tmp_path, folder):
+    facts = json.loads((folder / "run.json").read_text())
+    (folder / "run.json").write_text(json.dumps(facts | {"finished": False}))
+    assert run("import", str(made.write(tmp_path / "a.json")), "-o", str(folder))[0] == 0
+    done = read_run(folder)
+    assert not done.finished and len(done.tables["devices"]) == 39
 
 
 def test_a_file_adds_to_a_run_once_and_a_newer_one_replaces_it(run, tmp_path, folder):

@@ -8,15 +8,12 @@ import pytest
 from fitting import fit
 
 from normalbench.bench.ground.output.errors import UsageError
-from normalbench.bench.shaders.code.whole.kernel import pack_operation, unpack_operation
 from normalbench.bench.shaders.isa import isa
 from normalbench.bench.tables.budget import attributes as held
 from normalbench.bench.tables.budget import cost
 from normalbench.bench.tables.budget.bins import BINS
-from normalbench.bench.tables.budget.contract import attributes_held
 from normalbench.bench.tables.budget.readers import read_readers
 from normalbench.bench.tables.budget.solve import Placed, Problem, Rules, solved
-from normalbench.bench.tables.budget.table import BudgetOptions
 from normalbench.gbuffer.layouts.presets import LAYOUTS
 
 
@@ -185,15 +182,3 @@ def test_the_best_layout_within_a_limit_of_slots_is_that_of_exhaustive_search(mo
             assert min(fitting) * (1 - 1e-6) <= worst(one.placed) <= max(min(fitting) * 10**0.0202, 1e-6), most
     cheapest = cost.least(problem, told, solve)
     assert cheapest and told.of_whole(cheapest.placed) == min(prices)
-
-
-def test_every_code_has_a_kernel_in_every_target_that_holds_it():
-    """Of all that --hold may name: a code without one would count as dearer than any limit."""
-    words = "shadow:8,custom:32,other:5,tangent,emission,motion:packed"
-    named = f"normal,basecolor,roughness,metalness,specular,occlusion,id:4,flags:4,{words}"
-    held_all = attributes_held(named, BudgetOptions().speed)
-    pairs = [(code, one) for held_one in held_all for code in held_one.codes for one in BINS.values() if one.need(code)]
-    assert len(pairs) > 200
-    for code, one in pairs:
-        layout = cost.alone(code, one)
-        assert pack_operation(layout).made == unpack_operation(layout).given, f"{code.name} in {one.name}"

@@ -5,7 +5,25 @@ import re
 
 import pytest
 
+from normalbench.bench.shaders.code.whole.kernel import pack_operation, unpack_operation
+from normalbench.bench.tables.budget import cost
+from normalbench.bench.tables.budget.bins import BINS
+from normalbench.bench.tables.budget.contract import attributes_held
 from normalbench.bench.tables.budget.sentences import told
+from normalbench.bench.tables.budget.table import BudgetOptions
+
+
+def test_every_code_has_a_kernel_in_every_target_that_holds_it():
+    """Of all that --hold may name: a code without one would count as dearer than any limit."""
+    words = "shadow:8,custom:32,other:5,tangent,emission,motion:packed"
+    named = f"normal,basecolor,roughness,metalness,specular,occlusion,id:4,flags:4,{words}"
+    held_all = attributes_held(named, BudgetOptions().speed)
+    pairs = [(code, one) for held_one in held_all for code in held_one.codes for one in BINS.values() if one.need(code)]
+    assert len(pairs) > 200
+    for code, one in pairs:
+        layout = cost.alone(code, one)
+        assert pack_operation(layout).made == unpack_operation(layout).given, f"{code.name} in {one.name}"
+
 
 # Few scenes, targets and kernels.
 FEW_KINDS = ["budget", "--scene", "ramps", "--size", "64x48", "--bytes", "20", "--classes", "rough", "--format", "json"]

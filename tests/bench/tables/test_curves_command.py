@@ -2,7 +2,6 @@
 
 import itertools
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,7 +16,6 @@ from normalbench.encodings.catalogue import CURVE_ENCODINGS
 from normalbench.encodings.codecs.curve_codec import CurveCodec
 from normalbench.gbuffer.gl.device import NoDeviceError
 
-OWN = Path(__file__).parents[2] / "inputs/own_codes/roughness.hlsl"
 QUICK = ["curves", "--backend", "jax", "--count", "4096", "--format", "json"]
 
 
@@ -77,25 +75,6 @@ def test_both_languages_give_the_same_figures(storage, rounding):
 def test_dithering_is_the_same_in_both_languages():
     by_jax, by_gl = (row("square_root", "unorm:6", "dithered", backend) for backend in ("jax", "glsl"))
     assert by_jax["error_mean"] == pytest.approx(by_gl["error_mean"], rel=1e-3)
-
-
-@pytest.mark.usefixtures("gl")
-def test_a_users_own_curve_has_the_catalogues_rows(run):
-    """roughness.hlsl is `squared`: the same figures by GLSL."""
-    words = ("--encoding", f"{OWN},squared", "--storage", "r8,unorm:6", "--backend", "glsl", "--count", "4096")
-    status, out, _ = run("curves", *words, "--format", "json")
-    rows = json.loads(out)
-    own, known = ([row for row in rows if (row["encoding"] == "squared") == is_known] for is_known in (False, True))
-    assert status == 0 and len(own) == len(known) == 2
-    for one, other in zip(own, known, strict=True):
-        assert all(one[name] == other[name] for name in ("storage", "error_mean", "error_max", "display_max", "least"))
-
-
-def test_rows_are_by_bits_with_the_best_first(run):
-    status, out, err = run(*QUICK, "--encoding", "linear,srgb", "--storage", "unorm:4..6")
-    rows = json.loads(out)
-    assert status == 0 and not err and [found["bits"] for found in rows] == [4, 4, 5, 5, 6, 6]
-    assert all(one["error_max"] <= other["error_max"] for one, other in zip(rows[::2], rows[1::2], strict=True))
 
 
 def test_a_curve_lies_where_it_usually_does_over_its_usual_range():

@@ -49,16 +49,6 @@ def files_of(folder: Path) -> dict[str, bytes]:
     return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
-def test_there_is_a_section_for_each_device_and_every_link_leads_to_one(site):
-    page = Read(site / "index.html")
-    sections = {attributes["id"] for tag, attributes in page.tags if tag == "section"}
-    devices = {section for section in sections if section.startswith("device-")}
-    assert len(devices) == 10 and {"device-mali-g78-chromium-156", "device-apple-m2-safari-18"} <= devices
-    assert {link for link in page.links if link.startswith("#device-")} == {f"#{section}" for section in devices}
-    ids = [attributes["id"] for _, attributes in page.tags if "id" in attributes]
-    assert len(ids) == len(set(ids)) and files_of(site).keys() == {"index.html", MARKER}
-
-
 def test_the_page_says_who_agrees_and_what_to_take_on_each(site):
     text = Read(site / "index.html").text
     assert "5 devices agree with the run in every code of 35 codecs." in text

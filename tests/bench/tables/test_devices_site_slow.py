@@ -4,8 +4,21 @@ import time
 
 import devices as made
 import test_devices_site
+from test_devices_site import Read, files_of
+
+from normalbench.bench.show.site_files import MARKER
 
 site = test_devices_site.site
+
+
+def test_there_is_a_section_for_each_device_and_every_link_leads_to_one(site):
+    page = Read(site / "index.html")
+    sections = {attributes["id"] for tag, attributes in page.tags if tag == "section"}
+    devices = {section for section in sections if section.startswith("device-")}
+    assert len(devices) == 10 and {"device-mali-g78-chromium-156", "device-apple-m2-safari-18"} <= devices
+    assert {link for link in page.links if link.startswith("#device-")} == {f"#{section}" for section in devices}
+    ids = [attributes["id"] for _, attributes in page.tags if "id" in attributes]
+    assert len(ids) == len(set(ids)) and files_of(site).keys() == {"index.html", MARKER}
 
 
 MOST_SECONDS = 10

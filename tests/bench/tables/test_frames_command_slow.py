@@ -2,17 +2,73 @@
 
 import json
 
+import numpy as np
 import pytest
 from test_frames_command import QUICK
 from written import as_document
 
+from normalbench.bench.ground.options.storage_names import storages_named
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.tangent_frames import measure as frames
-from normalbench.bench.tables.tangent_frames.sets import rotations
+from normalbench.bench.tables.tangent_frames.sets import CHUNK, Frames, rotations
 from normalbench.encodings.catalogue import FRAME_ENCODINGS
 from normalbench.encodings.codecs.frame_codec import FrameCodec
 from normalbench.encodings.storages.storage import FRAME_STORAGES
 from normalbench.gbuffer.scenes.mesh import sphere
+
+
+def test_random_rotations_are_spread_evenly():
+    """By Haar's measure the angle to a fixed rotation has the mean pi/2 + 2/pi, 126.5 degrees; half have each hand."""
+    count = 2 * CHUNK + 100
+    made = rotations(count, 0)
+    chunks = list(made.chunks())
+    normals, tangents = (np.concatenate([getattr(c, name) for c in chunks]) for name in ("normals", "tangents"))
+    assert normals.shape == tangents.shape == (count, 4)
+    still = Frames(*(np.tile(row, (count, 1)) for row in ([0.0, 0, 1, 1], [1.0, 0, 0, 0])))
+    angles = frames.frame_angles(still, Frames(normals, tangents))
+    for column, mean in ((0, 90.0), (1, 90.0), (2, np.degrees(np.pi / 2 + 2 / np.pi))):
+        assert angles[column].mean() == pytest.approx(mean, abs=5 * angles[column].std() / np.sqrt(count))
+    assert abs(normals[:, 3].mean()) < 5 / np.sqrt(count)
+    assert np.array_equal(made.chunk(0).normals, rotations(10**6, 0).chunk(0).normals), "a prefix is a prefix"
+    assert not np.array_equal(made.chunk(0).normals, rotations(count, 1).chunk(0).normals)
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize(
+    "name, storage",
+    [("octahedral_angle", "unorm:12:12:12:1"), ("qtangent", "rgba8_snorm"), ("rotation_vector", "rgb10a2")],
+)
+def test_noise_costs_a_bit_and_a_half_and_no_hand(name, storage):
+    """A squared error is a sixth of a squared step in place of a twelfth: half a bit of each of three numbers. What is
+    settled after the first numbers were rounded is noisy as well, and both languages add the same."""
+
+    def row(rounding: str, backend: str) -> dict:
+        codec = FrameCodec(FRAME_ENCODINGS[name], storages_named(storage)[0], rounding)
+        return frames.measure(frames.Case(codec, rotations(2**14, 3), backend))
+
+    nearest, noisy, by_gl = row("nearest", "jax"), row("dithered", "jax"), row("dithered", "glsl")
+    assert noisy["rotation_rms_deg"] / nearest["rotation_rms_deg"] == pytest.approx(2**0.5, rel=0.015)
+    assert nearest["effective_bits"] - noisy["effective_bits"] == pytest.approx(1.5, abs=0.05)
+    assert noisy["rounding"] == "dithered" and not noisy["hands_lost"] and not noisy["below_limit"]
+    for figure in ("rotation_rms_deg", "rotation_max_deg", "normal_mean_deg", "tangent_mean_deg"):
+        assert by_gl[figure] == pytest.approx(noisy[figure], rel=2e-3), figure
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("storage", ["rgba8", "rgba16f", "unorm:12:12:7:1"])
+def test_numbers_that_are_cut_off_are_so_in_both_languages(storage):
+    """The error is about twice that of the nearest, the hand stays, and what is stored already is not cut off again."""
+    (chosen,) = storages_named(storage)
+
+    def row(rounding: str, backend: str) -> dict:
+        codec = FrameCodec(FRAME_ENCODINGS["octahedral_angle"], chosen, rounding)
+        return frames.measure(frames.Case(codec, rotations(2**14, 3), backend))
+
+    nearest, cut, by_gl = row("nearest", "jax"), row("truncate", "jax"), row("truncate", "glsl")
+    assert cut["rounding"] == "truncate" and not cut["hands_lost"]
+    assert 1.8 < cut["rotation_rms_deg"] / nearest["rotation_rms_deg"] < 2.3, cut
+    for name in ("normal_max_deg", "rotation_rms_deg", "rotation_max_deg"):
+        assert cut[name] == pytest.approx(by_gl[name], rel=1e-3), name
 
 
 @pytest.mark.parametrize("backend", ["jax", "glsl"])

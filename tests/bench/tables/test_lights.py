@@ -1,6 +1,5 @@
 """Light added up: the model, the GL device, and what the articles found."""
 
-import csv
 import json
 
 import numpy as np
@@ -14,19 +13,13 @@ from normalbench.bench.tables.lights.sums import (
     ORDERS,
     Adder,
     banding,
-    chromaticity,
     coloured_lights,
     equal_lights,
     gradient,
     ordered,
-    random_lights,
 )
-from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.catalogue import LIGHT_BUFFERS
 from normalbench.gbuffer.gl.device import NoDeviceError
-
-EVERY = sorted(LIGHT_BUFFERS)
-
 
 (LINEAR_1,) = light_buffers_named("linear:1")
 
@@ -53,17 +46,6 @@ def test_the_model_gives_the_accumulation_table(name, channels, total, count, va
         found |= dict.fromkeys(row["channel"], row["model"])
     for channel in channels:
         assert abs(found[channel] - value) <= 0.0005, f"{name} {channel}: {found[channel]} for {value}"
-
-
-@pytest.mark.parametrize("name", EVERY[:4])
-def test_no_error_is_beyond_the_blends_times_half_a_step(name):
-    """Of the model, which rounds to nearest: equal and random lights, in every order, every number of them."""
-    adder = by_model(name)
-    rows = [*equal_lights(adder, [1.0, 4.0], [8, 64, 256]), *random_lights(adder, 1.0, [8, 64, 256], 0)]
-    for row in rows:
-        error = abs(row["error"]) if "error" in row else row["model_max"]
-        # float32 rounds as well.
-        assert error <= row["bound"] + row["lights"] * 2.0**-23, f"{name}: {row}"
 
 
 def test_the_bound_is_half_a_code_a_blend():
@@ -124,33 +106,6 @@ def test_a_range_may_be_given_and_both_languages_know_it(gl):
     ranged = [encoding.name for encoding in light_buffers_named("srgb:4,rgbm:51.5,log")]
     assert ranged == ["srgb:4", "rgbm:51.5", "log"]
     assert light_buffers_named("rgbm:51.5")[0].limit == 51.5
-
-
-def test_a_pure_blue_light_amplifies_what_quantisation_loses_13_85_times(gl):
-    """1/0.0722, measured through every code that holds a fourth number, by the model and by the device."""
-    expected = {"white": 1.0, "red": 1 / 0.2126, "green": 1 / 0.7152, "blue": 1 / 0.0722}
-    for name, encoding in LIGHT_BUFFERS.items():
-        with Adder(encoding, gl) as adder:
-            for row in chromaticity(adder) if encoding.has_alpha else ():
-                for prefix in ("", "gl_"):
-                    amplification = row[f"{prefix}amplification"]
-                    if amplification is None:
-                        assert name == "rgba32f", row
-                    else:
-                        assert abs(amplification / expected[row["colour"]] - 1) < 0.01, (name, row)
-
-
-QUICK = ("--counts", "8")
-
-
-def test_tables_are_one_for_each_experiment(run):
-    status, out, _ = run("lights", *QUICK, "--light-buffer", "linear,log", "--experiment", "equal,banding")
-    assert status == 0 and out.count("experiment equal") == out.count("experiment banding") == 1
-    assert "shown" not in out.split("experiment equal")[0], "no table has another's columns"
-    status, out, _ = run(
-        "lights", *QUICK, "--light-buffer", "linear", "--experiment", "equal,banding", "--format", "csv"
-    )
-    assert tuple(next(csv.reader(out.splitlines()))) == tuple(TABLES["lights"].empty())
 
 
 def test_light_that_is_missing_is_drawn_as_far_off_as_light_that_is_too_much():

@@ -1,4 +1,4 @@
-"""Light added up in the other pipelines, and its pictures."""
+"""Light added up: the model, the GL device, and what the articles found."""
 
 import itertools
 
@@ -6,8 +6,12 @@ import numpy as np
 import pytest
 import test_lights_slow
 from PIL import Image
-from test_lights import QUICK
-from test_lights_slow import BY_DAY, LIGHT_PIPELINES
+from test_lights_slow import BY_DAY, QUICK
+
+from normalbench.gbuffer.pipelines import PIPELINES
+
+LIGHT_PIPELINES = [name for name, pipeline in PIPELINES.items() if pipeline.has_gbuffer]
+
 
 EACH = itertools.product(LIGHT_PIPELINES, (1, 4))
 

@@ -1,19 +1,21 @@
 """Light added up: the model, the GL device, and what the articles found."""
 
+import csv
 import json
 
 import numpy as np
 import pytest
-import test_lights
 from drawing import FP32, scene_of
-from test_lights import EVERY, QUICK, by_model
+from test_lights import by_model
 
 from normalbench.bench.ground.options.light_names import light_buffers_named
 from normalbench.bench.tables.lights import measure as lights
 from normalbench.bench.tables.lights.sums import (
     ROUNDINGS,
     Adder,
+    chromaticity,
     coloured_lights,
+    equal_lights,
     random_lights,
     steps_apart,
 )
@@ -25,11 +27,49 @@ from normalbench.gbuffer.frame.plan import Plan
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
 
+EVERY = sorted(LIGHT_BUFFERS)
+
+
+@pytest.mark.parametrize("name", EVERY[:4])
+def test_no_error_is_beyond_the_blends_times_half_a_step(name):
+    """Of the model, which rounds to nearest: equal and random lights, in every order, every number of them."""
+    adder = by_model(name)
+    rows = [*equal_lights(adder, [1.0, 4.0], [8, 64, 256]), *random_lights(adder, 1.0, [8, 64, 256], 0)]
+    for row in rows:
+        error = abs(row["error"]) if "error" in row else row["model_max"]
+        # float32 rounds as well.
+        assert error <= row["bound"] + row["lights"] * 2.0**-23, f"{name}: {row}"
+
+
+def test_a_pure_blue_light_amplifies_what_quantisation_loses_13_85_times(gl):
+    """1/0.0722, measured through every code that holds a fourth number, by the model and by the device."""
+    expected = {"white": 1.0, "red": 1 / 0.2126, "green": 1 / 0.7152, "blue": 1 / 0.0722}
+    for name, encoding in LIGHT_BUFFERS.items():
+        with Adder(encoding, gl) as adder:
+            for row in chromaticity(adder) if encoding.has_alpha else ():
+                for prefix in ("", "gl_"):
+                    amplification = row[f"{prefix}amplification"]
+                    if amplification is None:
+                        assert name == "rgba32f", row
+                    else:
+                        assert abs(amplification / expected[row["colour"]] - 1) < 0.01, (name, row)
+
+
+QUICK = ("--counts", "8")
+
+
+def test_tables_are_one_for_each_experiment(run):
+    status, out, _ = run("lights", *QUICK, "--light-buffer", "linear,log", "--experiment", "equal,banding")
+    assert status == 0 and out.count("experiment equal") == out.count("experiment banding") == 1
+    assert "shown" not in out.split("experiment equal")[0], "no table has another's columns"
+    status, out, _ = run(
+        "lights", *QUICK, "--light-buffer", "linear", "--experiment", "equal,banding", "--format", "csv"
+    )
+    assert tuple(next(csv.reader(out.splitlines()))) == tuple(TABLES["lights"].empty())
+
+
 # Hue in 6 bits and saturation in 2.
 COARSE = "hue_saturation"
-
-
-LIGHT_PIPELINES = [name for name, pipeline in PIPELINES.items() if pipeline.has_gbuffer]
 
 
 # Pipelines and samples per pixel that are drawn by day: light is added up by blending and by reading.
@@ -68,7 +108,7 @@ def test_random_lights_add_up_to_the_same_texels(gl, name):
 
 @pytest.mark.parametrize("name", EVERY[4:])
 def test_no_error_is_beyond_the_blends_times_half_a_step_of_any_code(name):
-    test_lights.test_no_error_is_beyond_the_blends_times_half_a_step(name)
+    test_no_error_is_beyond_the_blends_times_half_a_step(name)
 
 
 def test_light_beyond_the_range_is_in_the_bound():

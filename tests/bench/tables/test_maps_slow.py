@@ -1,14 +1,100 @@
 """`normalbench maps`: what block compression loses of normal maps, and what it refuses."""
 
+import json
+
 import numpy as np
 import pytest
 import texture2ddecoder
 from PIL import Image
-from test_maps import case
+from test_maps import case, small
+from written import png_bytes
 
+from normalbench.bench.subjects.normals.normal_sets import NORMAL_SETS, from_arrays
+from normalbench.bench.tables.maps import encoders
 from normalbench.bench.tables.maps.encoders import Texels
-from normalbench.bench.tables.maps.measure import bands, code_texels, measure
+from normalbench.bench.tables.maps.formats import FORMATS
+from normalbench.bench.tables.maps.measure import Clock, bands, code_texels, measure, through
 from normalbench.bench.tables.maps.sets import MAPS, SIZE
+from normalbench.bench.tables.quality import measure as quality
+from normalbench.bench.tables.registry import TABLES
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
+from normalbench.gbuffer.gl.device import device
+
+
+@pytest.mark.parametrize(("encoding", "swizzle", "storage"), [("octahedral", "rg", "rg8"), ("xyz", "rgb", "rgba8")])
+def test_what_is_not_compressed_is_a_row_of_quality(encoding, swizzle, storage):
+    """But for the last place of float32."""
+    normals = NORMAL_SETS["playground"](0, 0)
+    (row,) = measure(case(normals, "none", swizzle, encoding))
+    same = quality.measure(quality.Case(Codec(ENCODINGS[encoding], STORAGES[storage]), normals, "jax"))
+    for column in ("psnr_db", "angle_mean_deg", "angle_rms_deg", "angle_p99_deg", "angle_max_deg", "count"):
+        assert row[column] == pytest.approx(same[column], rel=1e-4), column
+    assert row["bits_per_texel"] == same["bits"] + (8 if encoding == "xyz" else 0)
+
+
+def test_the_angles_are_those_of_the_decoded_normals():
+    one = case(MAPS["bumps"]())
+    (band,) = bands(one.normal_set)
+    found = through(one, band, Clock()).astype(np.float64)
+    n = band.n.astype(np.float64)
+    cosines = np.sum(n * found, axis=-1) / np.linalg.norm(found, axis=-1) / np.linalg.norm(n, axis=-1)
+    angles = np.degrees(np.arccos(np.clip(cosines, -1, 1)))
+    (row,) = measure(one)
+    figures = [row[f"angle_{name}_deg"] for name in ("mean", "rms", "p99", "max")]
+    expected = [angles.mean(), np.sqrt(np.mean(angles**2)), np.percentile(angles, 99), angles.max()]
+    assert figures == pytest.approx(expected, rel=2e-3)
+
+
+def test_a_large_image_is_compressed_in_bands_of_whole_blocks():
+    parts = list(bands(from_arrays("large", "", *[np.ones((601, 1001, 3), np.float32)] * 2, np.ones((601, 1001), bool),
+                                   (601, 1001))))  # fmt: skip
+    assert len(parts) == 3 and sum(band.real[0] for band in parts) == 601
+    assert all(band.n.shape[0] % 4 == band.n.shape[1] % 4 == 0 and band.n.size <= 3 * 2**18 for band in parts)
+
+
+@pytest.mark.usefixtures("gl")
+def test_the_device_decodes_bc7_as_the_model_does():
+    model, decoded = (measure(case(MAPS["bumps"](), "bc7", decoder=name))[0] for name in ("model", "device"))
+    for column in ("psnr_db", "angle_mean_deg", "angle_max_deg", "code_psnr_db"):
+        assert decoded[column] == pytest.approx(model[column], rel=1e-6), column
+    assert decoded["device"] == device().renderer and model["device"] == "NumPy, exact"
+
+
+def test_the_command_measures_a_file_and_names_its_rows(run, tmp_path):
+    n = quality.image_of(small(30, 22))[0]
+    (tmp_path / "map.png").write_bytes(png_bytes(np.rint((n * 0.5 + 0.5) * 65535).astype(np.uint16)))
+    words = ("--normals", str(tmp_path / "map.png"), "--encoding", "xy,xyz")
+    status, out, err = run("maps", *words, "--format", "json")
+    rows = json.loads(out)
+    assert (status, err.count("left out")) == (0, 0), "of all formats, those with room are meant"
+    assert all(tuple(row) == tuple(TABLES["maps"].empty()) for row in rows)
+    assert len(rows) == 10 == len({TABLES["maps"].name_of(row) for row in rows})
+    rms = [row["angle_rms_deg"] for row in rows]
+    assert rms == sorted(rms) and {row["count"] for row in rows} == {660}
+    (bc5,) = [row for row in rows if row["block"] == "bc5"]
+    assert bc5["encoder"].startswith("quicktex 0.") and bc5["encode_ms_per_megatexel"] > 0
+
+
+def test_a_missing_encoder_is_named(run, monkeypatch):
+    """Asked for, it is exit status 3; of all formats the others are measured."""
+    there = encoders.import_module
+
+    def import_module(name):
+        if name.startswith("quicktex"):
+            raise ImportError("No module named 'quicktex'")
+        return there(name)
+
+    monkeypatch.setattr(encoders, "import_module", import_module)
+    status, out, err = run("maps", "--block", "bc5")
+    assert (status, out, err.count("\n")) == (3, "", 1) and "pip install quicktex" in err
+    status, out, err = run("maps", "--encoding", "xy", "--normals", "bumps", "--format", "json")
+    assert status == 0 and "left out: bc5: it needs quicktex" in err
+    assert {row["block"] for row in json.loads(out)} == set(FORMATS) - {"bc5"}
+    monkeypatch.setattr(encoders, "import_module", lambda name: there("no_such_module_as_" + name))
+    assert "pip install normalbench[maps]" in TABLES["maps"].work.missing()
+
 
 # Each format with the swizzle that suits two numbers, and what an independent tool decodes its blocks by.
 TOOLS = {

@@ -1,7 +1,7 @@
-"""`normalbench mix`: what further operations make of stored codes at worst."""
+"""`normalbench mix`: what filters, mip levels, resolves and blending make of stored codes."""
 
-import test_mix_slow
+from test_mix_slow import check_the_worst_mixes
 
 
 def test_the_worst_mix_of_further_operations_is_searched_for_and_named():
-    test_mix_slow.check_the_worst_mixes("mip_2x2", "resolve")
+    check_the_worst_mixes("mip_2x2", "resolve")

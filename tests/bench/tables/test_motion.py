@@ -1,35 +1,21 @@
 """`normalbench motion`: the wobble of a code, of highlights and of images, animations, and bad input."""
 
-import itertools
 import json
 import math
-from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
 from PIL import Image
 
 from normalbench.bench.measures.metrics.totals import psnr_db
-from normalbench.bench.run.measuring import Nothing, asked, measured
 from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.bench.tables.motion import highlights, panel, turning
 from normalbench.bench.tables.motion.code_wobble import Motion, code_wobble
-from normalbench.bench.tables.motion.measure import Differences, FrameSequence, in_space, on_surfaces
+from normalbench.bench.tables.motion.measure import Differences, in_space, on_surfaces
 from normalbench.bench.tables.motion.table import MotionOptions
 from normalbench.bench.tables.motion.trips import trip_of
 from normalbench.bench.tables.motion.work import motions, picture_turns
-from normalbench.bench.tables.registry import TABLES
-from normalbench.encodings.catalogue import ENCODINGS, LIGHT_BUFFERS
-from normalbench.gbuffer.display import displayed
-from normalbench.gbuffer.frame.plan import Plan
-from normalbench.gbuffer.layouts.presets import LAYOUTS
-from normalbench.gbuffer.pipelines import PIPELINES
-from normalbench.gbuffer.render import rendering
-from normalbench.gbuffer.scenes.built_in.gloss import POWERS
-from normalbench.gbuffer.scenes.catalogue import SCENES
 from normalbench.gbuffer.scenes.scene import TURNS, View
-from normalbench.gbuffer.scenes.setting import Setting
 from normalbench.reports.page.pixels import MAX_FILM, film_uri
 
 COUNT, FRAMES, SEED = 2**14, 8, 0
@@ -92,21 +78,6 @@ def test_a_code_in_world_space_stays_while_a_camera_turns(name, axis):
     assert wobble(name, "world", "object", axis, frames=4, count=4096)["ratio"] > 0.3
 
 
-def test_a_frame_of_the_pixels_own_turns_along_with_a_yaw():
-    """Its axes are level, so that a camera that yaws turns them with the surface; one that rolls does not."""
-    yaw, roll = (wobble("per_pixel_view", axis=axis, count=4096) for axis in ("yaw", "roll"))
-    assert yaw["ratio"] < 0.02 and roll["ratio"] > 0.5, (yaw, roll)
-
-
-@pytest.mark.parametrize("name", ["octahedral", "spheremap", "per_pixel_view"])
-def test_figures_are_the_same_for_every_seed(name):
-    """Within 2 % of their mean, at the usual count."""
-    found = [wobble(name, axis="roll", frames=6, count=MotionOptions().count, seed=seed) for seed in range(4)]
-    for column in ("static_rms_deg", "wobble_deg", "ratio", "jumps_percent", "jump_deg"):
-        values = np.array([row[column] for row in found])
-        assert np.max(np.abs(values / values.mean() - 1)) < 0.02, (column, values)
-
-
 def test_only_what_an_encoding_is_made_for_counts():
     """Normals of z < 0 would come back from `xy` mirrored, some 100 degrees off."""
     row = wobble("xy", turn=1.0, count=4096)
@@ -154,104 +125,9 @@ def test_a_camera_turns_left_up_and_counter_clockwise(axis, forward, up):
     assert view.turned(axis, 360.0).matrix() == pytest.approx(view.matrix(), abs=1e-12)
 
 
-@pytest.mark.usefixtures("gl")
-def test_an_encoding_in_glsl_alone_is_measured(run, tmp_path):
-    """By GLSL, with the figures of its twin in the catalogue."""
-    text = (ENCODINGS["octahedral"].glsl.parents[1] / "vec.glsl").as_posix()
-    text = ENCODINGS["octahedral"].glsl.read_text().replace("octahedral_", "mine_").replace("../vec.glsl", text)
-    (tmp_path / "mine.glsl").write_text(text)
-    words = ("motion", "--encoding", f"octahedral,{tmp_path / 'mine.glsl'}", "--picture-turn", "none", *SMALL)
-    status, out, err = run(*words, "--space", "view", "--format", "json")
-    rows = json.loads(out)
-    assert status == 0, err
-    by_jax, by_glsl = ([row for row in rows if row["backend"] == backend] for backend in ("jax", "glsl"))
-    assert len(by_jax) == len(by_glsl) == 5
-    for one, other in zip(by_jax, by_glsl, strict=True):
-        for column in ("static_rms_deg", "wobble_deg", "jumps_percent"):
-            assert one[column] == pytest.approx(other[column], rel=0.01), column
-
-
 @pytest.fixture(scope="module")
 def pictures(tmp_path_factory):
     return tmp_path_factory.mktemp("pictures")
-
-
-@pytest.fixture(scope="module")
-def rows(gl, pictures):  # noqa: ARG001 # a device is needed
-    """Two codes of 16 bits, rendered while the camera rolls by a quarter of a degree."""
-    table = TABLES["motion"]
-    options = {"encoding": "octahedral,per_pixel_view", "axis": "roll", "turn": "0.25,2", "count": 4096}
-    options |= {"frames": FRAMES, "size": "160x120", "lights": 3}
-    return measured(asked(table, table.options(**options), table.outputs(images=pictures)), Nothing()).rows
-
-
-def test_rows_have_the_columns_of_the_table(rows):
-    assert all(tuple(row) == tuple(TABLES["motion"].empty([f"{power:g}" for power in POWERS])) for row in rows)
-    names = [(row["encoding"], row["space"], row["turn_deg"]) for row in rows]
-    spaces = [("octahedral", "view"), ("octahedral", "world"), ("per_pixel_view", "view")]
-    assert names == [(*space, turn) for space in spaces for turn in (0.25, 2.0)]
-
-
-def test_highlights_wobble_in_view_space_and_stay_in_world_space(rows):
-    """Of the rendered turn alone; sharp highlights more than dull ones."""
-    view, _, world, _, pixel, _ = rows
-    assert all(row["highlight_px"] is row["wobble_psnr_db"] is None for row in rows if row["turn_deg"] == 2)
-    assert world["highlight_px"] == world["peak_percent"] == 0 and world["reprojected_psnr_db"] == math.inf
-    assert view["reprojected_psnr_db"] == pytest.approx(view["wobble_psnr_db"], abs=4)
-    for row in (view, pixel):
-        assert row["highlight_px"] > 0.005 and row["peak_percent"] > 0.5, row
-        assert row["peak_percent_1024"] > 10 * row["peak_percent_4"], row
-
-
-def test_the_image_is_that_of_a_real_target(gl, rows):
-    """Drawn anew by GLSL, which encodes into a texture of RG8 and decodes from it: the same static and moving PSNR."""
-    (codec,) = codecs_named("octahedral", "rg8", "nearest")
-    shots = FrameSequence("roll", 0.25, FRAMES, (160, 120), Setting(1, 3, SEED))
-    images = [drawn(gl, shots, layout) for layout in (LAYOUTS["fp32"].with_codec(codec), LAYOUTS["fp32"])]
-    covered = images[1][1]
-    apart = images[0][0] - images[1][0]
-    static = np.mean([np.mean(one[where] ** 2) for one, where in zip(apart, covered, strict=True)])
-    both = covered[1:] & covered[:-1]
-    moving = np.mean([np.mean(one[where] ** 2) for one, where in zip(np.diff(apart, axis=0), both, strict=True)])
-    assert rows[0]["static_psnr_db"] == pytest.approx(psnr_db(static), abs=0.1)
-    assert rows[0]["wobble_psnr_db"] == pytest.approx(psnr_db(moving), abs=0.1)
-
-
-def test_rows_of_a_camera_have_a_panel(rows):
-    for row in rows:
-        assert (row["panel_psnr_db"] is None) == (row["turn_deg"] == 2), row
-    assert all(15 < row["panel_psnr_db"] < 45 and 15 < row["crawl_psnr_db"] < 50 for row in rows[::2])
-
-
-def test_steps_of_a_panel_crawl_in_view_space_and_stay_in_world_space(gl):
-    """8:8 bits, a camera that goes around it: in world space more steps are there to see, and they move by less. The
-    manual has these figures."""
-    found = {}
-    with (
-        panel.going_around(gl, "yaw", 0.25, 16) as around,
-        trip_of(codecs_named("octahedral", "rg8", "nearest")[0]) as trip,
-    ):
-        right = panel.exact(around)
-        for space in turning.SPACES:
-            found[space] = Differences()
-            for apart, covered in panel.differences(around, right, partial(in_space, trip, space)):
-                found[space].add(apart, covered)
-    still, moving = ([getattr(found[space], of) for space in turning.SPACES] for of in ("static_db", "wobble_db"))
-    assert (*still, *moving) == pytest.approx((27.7, 21.5, 26.0, 36.6), abs=0.3)
-
-
-def test_the_panel_is_drawn_as_by_a_real_target(gl):
-    """By GLSL, which encodes into a texture of RG8 and decodes from it: the same difference from exact normals."""
-    (codec,) = codecs_named("octahedral", "rg8", "nearest")
-    with panel.going_around(gl, "yaw", 0.5, 3) as around, trip_of(codec) as trip:
-        right = panel.exact(around)
-        found = [one for one, _ in panel.differences(around, right, partial(in_space, trip, "world"))]
-        layout = replace(LAYOUTS["fp32"], space="world").with_codec(codec)
-        with rendering(gl, PIPELINES["deferred"], around.scene, replace(around.made.frame.plan, layout=layout)) as made:
-            for at, view in enumerate(around.views()):
-                made.draw(replace(around.scene, view=view, previous=view))
-                apart = right.display.image(made.image()).astype(np.float32) - right.shown[at] - found[at]
-                assert psnr_db(float(np.mean(apart[right.covered[at]] ** 2))) > 45, at
 
 
 @pytest.mark.parametrize("axis", TURNS)
@@ -262,24 +138,6 @@ def test_a_camera_goes_around_what_it_looks_at(axis):
     assert np.linalg.norm(np.subtract(gone.eye, gone.target)) == pytest.approx(np.sqrt(44))
     assert gone.target == view.target
     assert gone.matrix()[:3, :3] == pytest.approx(view.turned(axis, 7.0).matrix()[:3, :3])
-
-
-def drawn(gl, shots, layout):
-    """The displayed images of a sequence, and where there is a surface, by the renderer alone."""
-    pipeline, scene = PIPELINES["deferred"], gloss(shots.setting)
-    plan = Plan(shots.size, 1, layout, LIGHT_BUFFERS["rgba32f"], max(pipeline.light_targets), False, 1.0)
-    images, covered = [], []
-    for view in shots.views(scene.view):
-        with rendering(gl, pipeline, gloss(shots.setting, view), plan) as made:
-            made.draw()
-            images.append(displayed(made.image()))
-            covered.append(made.gbuffer()[0][..., 2] != 0)
-    return np.stack(images), np.stack(covered)
-
-
-def gloss(setting, view=None):
-    scene = SCENES["gloss"].make(setting)
-    return replace(scene, view=view, previous=view) if view else scene
 
 
 def test_codes_on_surfaces_are_those_of_a_turned_camera():
@@ -335,23 +193,6 @@ def test_a_difference_counts_where_both_frames_have_a_surface():
     assert sums.wobble_db == pytest.approx(psnr_db(0.01 / 2)) and sums.static[0] == pytest.approx(0.01)
 
 
-def test_an_animation_shows_the_highlight_and_the_page_has_it(rows, pictures):
-    """As many frames as were rendered, none black, no two the same; the page's is that of the worst row."""
-    path = pictures / "octahedral-rg8-nearest-view-roll-0.25.png"
-    assert len(list(pictures.iterdir())) == 3
-    with Image.open(path) as image:
-        frames = []
-        for at in range(image.n_frames):
-            image.seek(at)
-            frames.append(np.asarray(image.convert("RGB")).astype(int))
-    assert len(frames) == FRAMES and all(frame.max() == 255 and frame.std() > 20 for frame in frames)
-    assert all(np.abs(one - other).max() > 8 for one, other in itertools.pairwise(frames))
-    (film,) = TABLES["motion"].work.films(pictures, rows)
-    worst = max((row for row in rows if row["highlight_px"] is not None), key=lambda row: row["highlight_px"])
-    assert worst["encoding"] in film.said and worst["encoding"] in film.path.name
-    assert 1000 < len(film_uri(film.path)) < 300_000
-
-
 def test_an_animation_that_is_damaged_or_too_large_is_left_out(tmp_path):
     damaged, large = tmp_path / "damaged.png", tmp_path / "large.png"
     damaged.write_bytes(b"\x89PNG\r\n")
@@ -365,16 +206,6 @@ def test_a_still_code_leaves_a_plot_empty_and_is_no_error(run, tmp_path):
     words = ("motion", "--encoding", "octahedral", "--space", "world", "--picture-turn", "none", *SMALL)
     status, _, err = run(*words, "--plot", str(tmp_path / "plot.svg"))
     assert (status, err) == (0, "") and (tmp_path / "plot.svg").exists()
-
-
-def test_a_code_that_stays_is_not_drawn():
-    """float32 moves a few codes in a million of a pixel's own axes that yaw along."""
-    table = TABLES["motion"]
-    options = table.options(picture_turn="none", count=4096, frames=4)
-    done = measured(asked(table, options, table.outputs()), Nothing())
-    (chart,) = table.work.charts(done.rows)
-    shown = {point["line"] for point in chart.rows}
-    assert shown == {"octahedral rg8", "spheremap rg8"}
 
 
 def test_frames_are_rendered_of_the_turn_nearest_a_quarter_of_a_degree():

@@ -1,4 +1,4 @@
-"""`normalbench motion`: its page, its animation and its plot."""
+"""`normalbench motion`: the wobble of a code, of highlights and of images, animations, and bad input."""
 
 import numpy as np
 from PIL import Image

@@ -3,16 +3,12 @@ never measured twice."""
 
 import itertools
 import json
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from normalbench.bench.keep.runs import facts_of, opened, read_run
 from normalbench.bench.measures.metrics.totals import Total, Worst, total_of
 from normalbench.bench.run.measuring import Nothing, asked, measured
-from normalbench.bench.run.workers import tasks
-from normalbench.bench.run.workers.chunks import tasks_of
 from normalbench.bench.subjects.normals import normal_sets
 from normalbench.bench.subjects.normals.normal_sets import CHUNK, SHIFTS, STEPS, TURN, hemisphere, sphere
 from normalbench.bench.tables.quality import measure as quality
@@ -24,9 +20,6 @@ TABLE = TABLES["quality"]
 
 # Three parts, the last of which is short.
 COUNT = 5 * CHUNK + 17
-
-
-PARTS = ["1 of 3", "2 of 3", "3 of 3"]
 
 
 @pytest.fixture
@@ -44,62 +37,10 @@ def rows_of(one, kept=None):
     return [row for rows in measured(one, kept or Nothing()).kept for row in rows]
 
 
-@pytest.mark.usefixtures("gl")
-@pytest.mark.parametrize("backend", ["jax", "glsl"])
-def test_the_row_is_that_of_the_set_at_once(backend, monkeypatch):
-    """Also of a set that the encoding is not for, half of whose decodes are far off."""
-    at_once = rows_of(ask(backend, "octahedral,xy"))
-    monkeypatch.setattr(normal_sets, "PART", 2 * CHUNK)
-    in_parts = ask(backend, "octahedral,xy")
-    assert [[part.key["part"] for part in step.parts] for step in in_parts.steps] == [PARTS] * 2
-    assert rows_of(in_parts) == at_once
-    assert at_once[0]["count"] == COUNT
-
-
 def test_a_set_of_the_usual_size_has_no_parts():
     assert [step.parts for step in ask().steps] == [[], []]
     assert sphere(normal_sets.PART).parts == ()
     assert [len(part.starts) for part in hemisphere(normal_sets.PART + 1).parts] == [normal_sets.PART // CHUNK, 1]
-
-
-@pytest.mark.usefixtures("small_parts")
-def test_what_stops_in_the_middle_goes_on_with_the_part_that_is_missing(tmp_path, monkeypatch):
-    """Parts lie in the run's file until their step is whole; nobody sees them as rows."""
-    whole, measured, facts = rows_of(ask()), [], {**facts_of([]), "request": {}}
-    run_rows = quality.rows
-
-    def some(cases, tick):
-        for at, row in enumerate(run_rows(cases, tick)):
-            if at == 3:
-                raise KeyboardInterrupt
-            measured.append(row)
-            yield row
-
-    monkeypatch.setattr(quality, "rows", some)
-    with opened(tmp_path / "run", facts) as run, pytest.raises(KeyboardInterrupt):
-        rows_of(ask(), run)
-    stopped = read_run(tmp_path / "run")
-    # The first part of both codecs, and the second of one.
-    assert [part["key"]["part"] for part in stopped.parts] == ["1 of 3", "1 of 3", "2 of 3"]
-    assert stopped.steps == [] and stopped.tables == {}
-    monkeypatch.setattr(quality, "rows", run_rows)
-    wanted = []
-    monkeypatch.setattr(quality, "rows", lambda cases, tick: run_rows(wanted.append([*cases]) or wanted[-1], tick))
-    with opened(tmp_path / "run", facts) as run:
-        one = ask()
-        assert rows_of(one, run) == json.loads(json.dumps(whole))
-        run.arrange(("quality", step) for step in one.steps)
-    assert len(wanted[0]) == 3
-    done = read_run(tmp_path / "run")
-    assert len(done.steps) == 2 and not done.parts
-    # Another request leaves parts whose step is not whole.
-    (other,) = ask(encoding="xyz").steps
-    with opened(tmp_path / "run", facts) as run:
-        run.keep("quality", other.parts[0], [{"total": ""}])
-        run.arrange(("quality", step) for step in one.steps)
-    done = read_run(tmp_path / "run")
-    assert len(done.steps) == 2 and [part["key"]["encoding"] for part in done.parts] == ["xyz"]
-    assert done.tables["quality"] == json.loads(json.dumps(whole))
 
 
 @pytest.mark.usefixtures("small_parts")
@@ -123,18 +64,6 @@ def test_a_command_with_a_file_goes_on_and_leaves_nothing_behind(run, tmp_path, 
     # The file has bins as lists.
     assert row | {"angle_counts": ""} == whole[0] | {"angle_counts": ""}
     assert [path.name for path in tmp_path.iterdir()] == ["rows.json"]
-
-
-@pytest.mark.usefixtures("small_parts")
-def test_a_worker_measures_parts_by_their_names():
-    """A step's parts are among what it makes of an order; the rows are those that this process measures."""
-    one = ask(encoding="octahedral")
-    (step,) = one.steps
-    packed = (replace(task, is_packed=True) for task in tasks_of(one, step.parts, 1))
-    answers = [tasks.measure(*task.arguments()) for task in packed]
-    assert not any(answer.refused for answer in answers)
-    rows = [row for answer in answers for rows, _ in answer.steps for row in rows]
-    assert TABLE.work.merge(step, rows) == rows_of(one)
 
 
 @pytest.mark.usefixtures("small_parts")

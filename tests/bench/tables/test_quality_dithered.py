@@ -1,10 +1,8 @@
 """`normalbench quality --rounding dithered`: what noise costs a normal, that both languages add the same, and what it
 refuses."""
 
-import json
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from normalbench.bench.subjects.normals.normal_sets import NORMAL_SETS
@@ -32,22 +30,6 @@ def test_noise_costs_a_bit(encoding, storage):
     assert nearest["effective_bits"] - dithered["effective_bits"] == pytest.approx(1, abs=0.03)
     assert dithered["angle_max_deg"] < 2.1 * nearest["angle_max_deg"]
     assert (dithered["rounding"], dithered["compiled_by"], dithered["below_limit"]) == ("dithered", "XLA", "")
-
-
-def test_a_number_is_off_by_a_third_of_a_step_and_right_on_average():
-    """In place of a quarter. The third number of a cube's code, one of six faces, is as it was."""
-    dithered, nearest = (
-        quality.image_round_trip(case("cube", "rgba8", rounding, normals="playground"))
-        for rounding in ("dithered", "nearest")
-    )
-    exact = quality.image_round_trip(case("cube", "rgba32f", "nearest", normals="playground"))
-    step, seen = STORAGES["rgba8"].step(0), exact.covered
-    apart, usual = ((made.encoded - exact.encoded)[seen][:, :2] / step for made in (dithered, nearest))
-    moves = abs(usual).max(axis=1) > 1e-3
-    assert abs(usual[moves]).mean() == pytest.approx(1 / 4, rel=0.1)
-    assert abs(apart[moves]).mean() == pytest.approx(1 / 3, rel=0.1)
-    assert abs(apart.mean()) < 0.01
-    assert np.array_equal(dithered.encoded[seen][:, 2], nearest.encoded[seen][:, 2])
 
 
 @pytest.mark.usefixtures("gl")
@@ -93,28 +75,3 @@ def test_what_has_no_even_steps_of_its_own_is_not_dithered():
 def test_what_noise_has_no_part_in_is_refused_in_a_line(run, asked, said):
     status, out, err = run("quality", "--encoding", "octahedral", "--rounding", "dithered", *asked)
     assert (status, out) == (2, "") and err.count("\n") == 1 and said in err, err
-
-
-@pytest.mark.usefixtures("rows_are_shared")
-def test_files_of_a_dithered_code_have_its_name(run, tmp_path):
-    """A page cannot run it, and its file there says so."""
-    folders = {name: tmp_path / name for name in ("images", "maps", "live")}
-    more = [word for name, folder in folders.items() for word in (f"--{name}", str(folder))]
-    status, out, err = run(
-        *["quality", "--encoding", "octahedral", "--storage", "rg8", "--rounding", "nearest,dithered"],
-        *["--backend", "jax", "--normals", "playground", "--format", "json", *more],
-    )
-    assert (status, err) == (0, "")
-    assert [row["rounding"] for row in json.loads(out)] == ["nearest", "dithered"]
-    for name in ("images", "maps"):
-        assert any("dithered" in path.name for path in folders[name].iterdir()), name
-    said = json.loads((folders["live"] / "octahedral-rg8-dithered.json").read_text())
-    assert "noise" in said["left_out"] and "checks" in json.loads((folders["live"] / "octahedral-rg8.json").read_text())
-
-
-@pytest.mark.usefixtures("rows_are_shared")
-def test_of_all_ways_to_round_the_one_with_noise_is_left_out_of_an_exact_search(run):
-    more = ["--backend", "jax", "--normals", "sphere", "--count", "4096", "--format", "json", "--codes"]
-    status, out, err = run("quality", "--encoding", "octahedral", "--storage", "unorm:4:4", "--rounding", "all", *more)
-    assert status == 0 and err.count("\n") == 1 and "left out: octahedral/" in err and "--codes is of codes" in err, err
-    assert {row["rounding"] for row in json.loads(out)} == {"nearest", "truncate", "truncate_half"}

@@ -1,8 +1,5 @@
 """The quality table as people read it."""
 
-import csv
-import io
-
 from normalbench.bench.measures.metrics.code_limits import code_limit
 from normalbench.bench.tables.quality.order import in_order, with_limits
 from normalbench.bench.tables.quality.table import TABLE
@@ -12,28 +9,6 @@ SMALL = ("--count", "20000", "--backend", "jax")
 
 def lines(out: str) -> list[list[str]]:
     return [line.strip("| ").split() for line in out.splitlines()]
-
-
-def test_rows_are_grouped_by_bits_the_best_first_and_the_limit_last(run):
-    """Whatever the order asked for; two sets are two groups of each size."""
-    words = [
-        "--encoding",
-        "xy,spherical,octahedral,xyz",
-        "--storage",
-        "rgba8,rgb10a2",
-        "--normals",
-        "sphere,hemisphere",
-    ]
-    status, out, _ = run("quality", *words, *SMALL, "--format", "csv")
-    rows = list(csv.DictReader(io.StringIO(out)))
-    keys = [(row["normals"] == "hemisphere", int(row["bits"]), -float(row["effective_bits"])) for row in rows]
-    assert status == 0 and len(rows) == 16 and keys == sorted(keys)
-    status, out, _ = run("quality", *words, *SMALL, "--format", "markdown")
-    table = [cells.split("|") for cells in out.splitlines() if cells.startswith("| ")][1:]
-    names, bits = [cells[1].strip() for cells in table], [int(cells[4]) for cells in table]
-    ends = [i for i, name in enumerate(names) if name == "limit"]
-    assert [bits[i] for i in ends] == [16, 20, 24, 30] * 2 and ends[-1] == len(names) - 1
-    assert all(bits[i + 1] != bits[i] for i in ends[:-1])
 
 
 def test_the_limit_row_says_what_its_bits_could_do(run):

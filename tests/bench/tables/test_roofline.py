@@ -4,8 +4,6 @@ import re
 from pathlib import Path
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from normalbench.bench.ground.options.gpu_families import FAMILIES
 from normalbench.bench.ground.output.errors import UsageError
@@ -63,16 +61,6 @@ def test_normals_that_fit_into_their_share_of_the_cache_have_its_bandwidth():
 )
 def test_from_how_many_reads_on_a_code_is_faster(one, other, said):
     assert from_reads(one, other, ONE, frame(1)) == said
-
-
-@given(st.lists(st.integers(0, 200), min_size=4, max_size=4), st.integers(1, 8), st.integers(1, 8))
-def test_no_two_codes_are_each_faster_than_the_other(counts, one_bytes, other_bytes):
-    """And a code that is no better in anything is never faster."""
-    a, b = Work(one_bytes, *counts[:2]), Work(other_bytes, *counts[2:])
-    answers = {from_reads(a, b, ONE, frame(1)), from_reads(b, a, ONE, frame(1))}
-    assert answers not in ({"always"}, {"equal", "always"})
-    worse = Work(a.bytes + 1, a.encode + 1, a.decode + 1)
-    assert from_reads(worse, a, ONE, frame(1)) == "never"
 
 
 def test_a_point_lies_above_its_line_where_memory_takes_longer():

@@ -4,6 +4,21 @@ import json
 import re
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from test_roofline import ONE, frame
+
+from normalbench.bench.tables.roofline.measure import Work, from_reads
+
+
+@given(st.lists(st.integers(0, 200), min_size=4, max_size=4), st.integers(1, 8), st.integers(1, 8))
+def test_no_two_codes_are_each_faster_than_the_other(counts, one_bytes, other_bytes):
+    """And a code that is no better in anything is never faster."""
+    a, b = Work(one_bytes, *counts[:2]), Work(other_bytes, *counts[2:])
+    answers = {from_reads(a, b, ONE, frame(1)), from_reads(b, a, ONE, frame(1))}
+    assert answers not in ({"always"}, {"equal", "always"})
+    worse = Work(a.bytes + 1, a.encode + 1, a.decode + 1)
+    assert from_reads(worse, a, ONE, frame(1)) == "never"
 
 
 @pytest.mark.usefixtures("radv")

@@ -1,9 +1,8 @@
 """From which roughness on a code carries reflections."""
 
-import json
 from contextlib import ExitStack
 from dataclasses import replace
-from itertools import pairwise, product
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -14,12 +13,12 @@ from normalbench.bench.tables.roughness.objects import OBJECTS, busiest
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
-from normalbench.encodings.vec import from_array
 from normalbench.gbuffer.environment.environment import Environment, directions
 
 pytestmark = pytest.mark.usefixtures("gl")
+
+
 CODEC = Codec(ENCODINGS["octahedral"], STORAGES["rg8"])
-SMALL = ("--size", "64x64", "--environment", "sky", "--storage", "rg8")
 
 
 def half_lit() -> Environment:
@@ -81,81 +80,10 @@ def test_the_points_within_a_pixel_are_haltons():
     assert [halton(index, 3) for index in range(1, 5)] == pytest.approx([1 / 3, 2 / 3, 1 / 9, 4 / 9])
 
 
-@pytest.mark.parametrize(
-    "encoding, storage",
-    [("octahedral", "rg8"), ("octahedral", "rg8_snorm"), ("octahedral", "rgb8_12_12"), ("cube", "rgb8_10_10_3")],
-)
-def test_the_shaders_noise_is_that_of_the_emulation(gl, encoding, storage):
-    """Exact normals, encoded, moved by the same noise and stored by JAX, are what the G-buffer gives back."""
-    codec = Codec(ENCODINGS[encoding], STORAGES[storage])
-    case = Case((codec,), "panel20", half_lit(), (0.1,), (80, 80))
-    with ExitStack() as stack:
-        pictures = Pictures(gl, stack, case)
-        axes = pictures.what.view.matrix()[:3, :3]
-        exact = from_array(pictures.exact(1).made[0].gbuffer()[1][..., :3] @ axes)
-        code = codec.encoding.encode(exact, exact)
-        for seen, frame in ((Seen(), None), (Seen(STILL), 0)):
-            noise = np.zeros((80, 80, 4), np.float32)
-            if frame is not None:
-                # GL's rows begin at the bottom; the tile repeats after 64 pixels.
-                noise = np.pad(codec.dither(frame).added, ((0, 16), (0, 16), (0, 0)), mode="wrap")[::-1]
-            stored = codec.store(type(code)(*(c + noise[..., i] for i, c in enumerate(code))))
-            expected = np.stack([np.asarray(c) for c in codec.encoding.decode(stored, exact)], axis=-1) @ axes.T
-            found = pictures.opened(stack, codec, seen).made[0].gbuffer()[1][..., :3]
-            # Near a tie the two languages may round apart: a step of 8 bits is 0.008.
-            is_same = np.abs(found - expected).max(axis=-1) < 1e-5
-            assert is_same.mean() > 0.995, f"{1 - is_same.mean()} of pixels differ with {seen}"
-
-
-def test_noise_lowers_what_is_seen_of_steps(gl):
-    """On a panel, by FLIP: one frame, and more so the mean of eight. Without noise eight frames change little."""
-    case = Case((CODEC,), "panel4", half_lit(), (0.1,), (64, 64))
-    with ExitStack() as stack:
-        pictures = Pictures(gl, stack, case)
-        opened = {one: pictures.opened(stack, CODEC, Seen(*one)) for one in product((NONE, MOVING), (1, 8))}
-        worst = {one: pictures.figures(made, 0.3, True)["flip_p99"] for one, made in opened.items()}
-    assert worst[MOVING, 8] < 0.6 * worst[MOVING, 1] and worst[MOVING, 1] < 0.6 * worst[NONE, 1], worst
-    assert worst[NONE, 8] == pytest.approx(worst[NONE, 1], rel=0.1), worst
-
-
-def test_an_index_is_not_dithered_and_says_so_in_a_line(run):
-    """Its rows without noise are measured."""
-    status, out, err = run(
-        "roughness", "--object", "panel4", *SMALL, "--encoding", "spherical_fibonacci", "--dither", "still",
-        "--threshold", "0.1", "--frames", "1,2", "--format", "json",
-    )  # fmt: skip
-    rows = json.loads(out)
-    assert status == 0, err
-    assert len(err.splitlines()) == 1 and "spherical_fibonacci/rg8 is not dithered" in err and "an index" in err, err
-    skipped = [(row["dither"], row["frames"]) for row in rows if row["skipped"]]
-    assert skipped == [("still", 1), ("still", 2)] and len(rows) == 2 + 2 * 25
-
-
 def test_objects_are_turned_to_where_an_environment_is_busiest():
     """Where its halves meet: at x = 0, to half a window."""
     way = busiest(half_lit())
     assert abs(way[0]) < np.sin(np.radians(5)) and np.linalg.norm(way) == pytest.approx(1)
-
-
-def test_the_least_roughness_keeps_its_threshold_and_a_step_less_does_not(run):
-    status, out, err = run(
-        "roughness", "--object", "panel20", "--size", "96x96", "--environment", "strips", "--storage", "rg8,rg16",
-        "--format", "json",
-    )  # fmt: skip
-    assert status == 0, err
-    rows = json.loads(out)
-    answers = {(row["storage"], row["threshold"]): row for row in rows if row["threshold"] is not None}
-    assert len(answers) == 4 and len(rows) == 4 + 2 * 24
-    for (storage, threshold), row in answers.items():
-        assert row["flip_p99"] <= threshold and row["decides"], row
-        above = [r for r in rows if r["storage"] == storage and r["threshold"] is None and r["flip_p99"] is not None]
-        assert all(r["flip_p99"] <= threshold for r in above if r["roughness"] >= row["roughness"]), (
-            storage,
-            threshold,
-        )
-    for storage in ("rg8", "rg16"):
-        assert answers[storage, 0.1]["roughness"] <= answers[storage, 0.05]["roughness"]
-    assert answers["rg16", 0.1]["roughness"] < answers["rg8", 0.1]["roughness"]
 
 
 def test_the_object_and_environment_that_need_most_decide():

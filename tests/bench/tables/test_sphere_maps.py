@@ -84,13 +84,3 @@ def test_no_error_at_all_is_in_the_first_bin():
     histogram = np.zeros(metrics.BINS + 1, np.int64)
     histogram[0] = 5
     assert metrics.counts_by_angle(histogram) == ((0.0, 5),)
-
-
-def test_a_codec_without_a_twin_in_jax_is_mapped_by_glsl(gl, monkeypatch):  # noqa: ARG001
-    """The same angles as by JAX, to float32's own error."""
-    codec = Codec(ENCODINGS["octahedral"], STORAGES["rg8"])
-    by_jax = sphere_maps.sphere_map(codec)
-    monkeypatch.setattr(sphere_maps, "has_twin", lambda _: False)
-    by_glsl = sphere_maps.sphere_map(codec)
-    assert np.nanmax(np.abs(by_jax.mean_deg - by_glsl.mean_deg)) < 1e-4
-    assert np.nanmax(np.abs(by_jax.max_deg - by_glsl.max_deg)) < 1e-3

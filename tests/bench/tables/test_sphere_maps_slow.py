@@ -7,6 +7,19 @@ from test_sphere_maps import codec
 from normalbench.bench.subjects.normals.normal_sets import hemisphere
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.quality import sphere_maps
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
+
+
+def test_a_codec_without_a_twin_in_jax_is_mapped_by_glsl(gl, monkeypatch):  # noqa: ARG001
+    """The same angles as by JAX, to float32's own error."""
+    codec = Codec(ENCODINGS["octahedral"], STORAGES["rg8"])
+    by_jax = sphere_maps.sphere_map(codec)
+    monkeypatch.setattr(sphere_maps, "has_twin", lambda _: False)
+    by_glsl = sphere_maps.sphere_map(codec)
+    assert np.nanmax(np.abs(by_jax.mean_deg - by_glsl.mean_deg)) < 1e-4
+    assert np.nanmax(np.abs(by_jax.max_deg - by_glsl.max_deg)) < 1e-3
 
 
 def row(name: str, normals) -> dict:

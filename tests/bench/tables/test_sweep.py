@@ -1,24 +1,16 @@
 """What `normalbench sweep` prints, keeps and refuses."""
 
-import json
-import os
 import queue
 import signal
-import subprocess
 import sys
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
 
 from normalbench.bench.door.cli import app as cli
 from normalbench.bench.run.measuring import beside
-from normalbench.bench.tables.registry import TABLES
-from normalbench.bench.tables.shots import STAGES
 from normalbench.bench.tables.sweep import measure as sweep
 from normalbench.bench.tables.sweep.charts import charts, frame_label
-from normalbench.gbuffer.scenes.catalogue import SCENES
-from normalbench.gbuffer.scenes.setting import Setting
 
 pytestmark = pytest.mark.usefixtures("gl")
 
@@ -27,29 +19,6 @@ SMALL = ["--size", "96x72", "--lights", "4", "--repeats", "1"]
 
 
 SWEEP = ["sweep", *SMALL, "--objects", "3,5", "--pipeline", "prepass,hybrid"]
-
-
-def test_a_sweep_counts_what_each_pass_draws(run):
-    """Light pre-pass draws everything twice, the hybrid its general surfaces once."""
-    status, out, _ = run(*SWEEP, "--format", "json")
-    rows = json.loads(out)
-    assert status == 0 and all(tuple(row) == tuple(TABLES["sweep"].empty(STAGES)) for row in rows)
-    assert [(r["shadow"], r["objects"], r["pipeline"]) for r in rows] == [
-        (shadow, objects, pipeline)
-        for shadow in (True, False)
-        for objects in (3, 5)
-        for pipeline in ("prepass", "hybrid")
-    ]
-    for row in rows:
-        scene = SCENES["objects"].make(Setting(row["objects"], 4))
-        general, special = (
-            sum(len(p.mesh.triangles) * np.sum([(scene.materials[m].kind != "general") == s for m in p.materials])
-                for p in scene.parts)
-            for s in (False, True)
-        )  # fmt: skip
-        assert row["triangles_geometry"] == general + special
-        assert row["triangles_material"] == special + (general if row["pipeline"] == "prepass" else 0)
-        assert (row["triangles_shadow_map"] > 0) == row["shadow"]
 
 
 def test_a_bar_says_its_length_and_whether_it_is_too_noisy_to_compare():
@@ -102,16 +71,6 @@ def test_rows_of_another_sweep_are_not_taken_and_not_thrown_away(run, tmp_path, 
     (tmp_path / "mine.toml").write_text(layout.format("rg8"))
     monkeypatch.setattr(sweep, "measure", measure)
     assert run(*command)[0] == 0 and not journal.exists()
-
-
-def test_a_sweep_goes_through_a_pipe(run, tmp_path):
-    """What is no file has no journal beside it."""
-    pipe = tmp_path / "pipe"
-    os.mkfifo(pipe)
-    reader = subprocess.Popen(["cat", str(pipe)], stdout=subprocess.PIPE, text=True)
-    status, *_ = run(*SWEEP, "--format", "csv", "-o", str(pipe))
-    assert status == 0 and reader.communicate(timeout=20)[0].count("\n") == 9
-    assert [path.name for path in tmp_path.iterdir()] == ["pipe"]
 
 
 def test_two_sweeps_do_not_share_an_output(run, tmp_path):

@@ -1,4 +1,4 @@
-"""What `normalbench sweep` writes."""
+"""What `normalbench sweep` prints, keeps and refuses."""
 
 import csv
 
@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from PIL import Image
 from test_sweep import SWEEP
+
+pytestmark = pytest.mark.usefixtures("gl")
 
 
 @pytest.mark.usefixtures("gl")

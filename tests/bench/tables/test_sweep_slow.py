@@ -1,16 +1,55 @@
 """What `normalbench sweep` prints, keeps and refuses."""
 
 import json
+import os
 import signal
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 from test_sweep import SWEEP
 
+from normalbench.bench.tables.registry import TABLES
+from normalbench.bench.tables.shots import STAGES
 from normalbench.bench.tables.sweep import measure as sweep
+from normalbench.gbuffer.scenes.catalogue import SCENES
+from normalbench.gbuffer.scenes.setting import Setting
 
 pytestmark = pytest.mark.usefixtures("gl")
+
+
+def test_a_sweep_counts_what_each_pass_draws(run):
+    """Light pre-pass draws everything twice, the hybrid its general surfaces once."""
+    status, out, _ = run(*SWEEP, "--format", "json")
+    rows = json.loads(out)
+    assert status == 0 and all(tuple(row) == tuple(TABLES["sweep"].empty(STAGES)) for row in rows)
+    assert [(r["shadow"], r["objects"], r["pipeline"]) for r in rows] == [
+        (shadow, objects, pipeline)
+        for shadow in (True, False)
+        for objects in (3, 5)
+        for pipeline in ("prepass", "hybrid")
+    ]
+    for row in rows:
+        scene = SCENES["objects"].make(Setting(row["objects"], 4))
+        general, special = (
+            sum(len(p.mesh.triangles) * np.sum([(scene.materials[m].kind != "general") == s for m in p.materials])
+                for p in scene.parts)
+            for s in (False, True)
+        )  # fmt: skip
+        assert row["triangles_geometry"] == general + special
+        assert row["triangles_material"] == special + (general if row["pipeline"] == "prepass" else 0)
+        assert (row["triangles_shadow_map"] > 0) == row["shadow"]
+
+
+def test_a_sweep_goes_through_a_pipe(run, tmp_path):
+    """What is no file has no journal beside it."""
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    reader = subprocess.Popen(["cat", str(pipe)], stdout=subprocess.PIPE, text=True)
+    status, *_ = run(*SWEEP, "--format", "csv", "-o", str(pipe))
+    assert status == 0 and reader.communicate(timeout=20)[0].count("\n") == 9
+    assert [path.name for path in tmp_path.iterdir()] == ["pipe"]
 
 
 def test_a_stopped_sweep_goes_on_where_it_was(run, tmp_path, monkeypatch):

@@ -8,6 +8,8 @@ from normalbench.gbuffer.environment.lobe_sums import seen_through_lobe
 from normalbench.gbuffer.environment.prefilter import COARSE, FINE, STEP, key_of, prefiltered
 
 HEIGHT = 32
+
+
 ROUGHNESSES = sorted({*FINE, *COARSE} - {0})
 
 
@@ -62,24 +64,6 @@ def middles(height):
     return direction(t, (np.arange(2 * height) + 0.5) * np.pi / height - np.pi)
 
 
-def by_shares(radiance, r, alpha, shares=3000, turns=600):
-    """Directions around r that stand for equal shares of D, each with the radiance of its texel."""
-    u = ((np.arange(shares) + 0.5) / shares)[:, None]
-    sine_squared = alpha**2 * u / (1 - u * (1 - alpha**2))  # of half the angle between r and l
-    cosine = 1 - 2 * sine_squared
-    turn = (np.arange(turns) + 0.5) / turns * 2 * np.pi
-    across = np.cross(r, (0.3, -0.5, 0.8))
-    across = across / np.linalg.norm(across)
-    ring = np.cos(turn)[:, None] * across + np.sin(turn)[:, None] * np.cross(r, across)
-    light = cosine[..., None] * r + np.sqrt(1 - cosine**2)[..., None] * ring
-    height, width = radiance.shape[:2]
-    row = np.arccos(np.clip(light[..., 1], -1, 1)) / np.pi * height
-    column = (np.arctan2(light[..., 0], -light[..., 2]) / (2 * np.pi) + 0.5) * width
-    found = radiance[np.minimum(row.astype(int), height - 1), column.astype(int) % width]
-    weight = np.broadcast_to(np.maximum(cosine, 0), found.shape[:2])[..., None]
-    return (found * weight).sum((0, 1)) / weight.sum()
-
-
 def centre(level, row, column):
     return direction((row + 0.5) * np.pi / len(level), (column + 0.5) * np.pi / len(level) - np.pi)
 
@@ -96,15 +80,6 @@ def test_a_narrow_lobe_is_integrated_over_each_texel(levels, roughness):
         expected = integral(picture(), centre(level, row, column), roughness**2)
         error = np.abs(level[row, column] / expected - 1).max()
         assert error < 1e-4, f"{error} at row {row}, column {column}: {level[row, column]} for {expected}"
-
-
-@pytest.mark.parametrize("roughness", [0.05, 0.1, 0.2])
-def test_near_the_poles_directions_that_share_the_lobe_see_the_same(roughness):
-    radiance = np.minimum(picture(), 10)
-    level = seen_through_lobe(radiance, roughness**2)
-    for row, column in ((0, 23), (1, 40), (HEIGHT - 1, 5)):
-        expected = by_shares(radiance, centre(level, row, column), roughness**2)
-        assert np.abs(level[row, column] / expected - 1).max() < 2e-3
 
 
 @pytest.mark.parametrize("roughness", [one for one in ROUGHNESSES if one >= NARROW])
@@ -125,15 +100,6 @@ def test_coarse_levels_of_a_small_picture_are_integrated_over_its_texels(roughne
     for row, column in ((0, 3), (1, 2), (3, 7)):
         expected = integral(radiance, centre(level, row, column), alpha)
         assert np.abs(level[row, column] / expected - 1).max() < 2e-4
-
-
-def test_the_two_sums_agree_where_one_takes_over():
-    """Within 1 %, on a picture of contrasts of a hundred between areas of four texels."""
-    radiance = np.minimum(picture(16), 30).repeat(4, axis=0).repeat(4, axis=1)
-    for roughness in (0.27, 0.275):
-        level = seen_through_lobe(radiance, roughness**2)
-        expected = integral(radiance, centre(level, 20, 9), roughness**2)
-        assert np.abs(level[20, 9] / expected - 1).max() < 1e-2
 
 
 @pytest.mark.parametrize("height", [8, 12, 64])
@@ -169,16 +135,6 @@ def test_irradiance_is_the_cosine_weighted_integral_over_pi(levels):
         expected = (radiance * (cosine * area)[..., None]).sum((0, 1)) / np.pi
         # Middles of texels integrate the cosine itself to 1e-3.
         assert np.abs(found[row, column] / expected - 1).max() < 2e-3
-
-
-def test_a_gradient_along_y_has_two_thirds_of_its_slope_in_the_irradiance():
-    """The integral of (1 + a l.y) max(n.l, 0) is pi (1 + 2/3 a n.y)."""
-    height = 64
-    y = np.cos((np.arange(height) + 0.5) * np.pi / height)
-    radiance = np.broadcast_to((1 + 0.5 * y)[:, None, None], (height, 2 * height, 3)).astype(np.float32)
-    found = prefiltered(Environment("gradient", radiance)).irradiance
-    n_y = np.cos((np.arange(len(found)) + 0.5) * np.pi / len(found))
-    assert np.abs(found - (1 + n_y / 3)[:, None, None]).max() < 2e-4
 
 
 def test_a_single_bright_texel_is_seen_as_the_lobe():

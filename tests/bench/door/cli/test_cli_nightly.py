@@ -1,4 +1,4 @@
-"""The command line: what a run of the usual codecs leaves."""
+"""The command line: what it prints, what it writes, and what it says of bad input."""
 
 import csv
 import io

@@ -4,10 +4,8 @@ import itertools
 import subprocess
 import sys
 
-import numpy as np
 import pytest
 
-ROW = ("quality", "--encoding", "octahedral", "--storage", "rg8", "--backend", "jax", "--count", "1000")
 CLOSED = [closed for count in (1, 2, 3) for closed in itertools.combinations((0, 1, 2), count)]
 
 
@@ -23,37 +21,11 @@ def without_streams(closed, command, **more):
     return subprocess.run(words, capture_output=True, text=True, timeout=300, **more)
 
 
-def test_messages_do_not_go_into_rows(run, tmp_path, monkeypatch):
-    """The count of a file is told to change nothing."""
-    monkeypatch.chdir(tmp_path)
-    np.save("f.npy", np.eye(3, dtype=np.float32))
-    words = (*ROW, "--normals", "f.npy", "--format", "csv")
-    _, rows, err = run(*words)
-    assert "--count has no effect" in err
-    done = started((2,), *words)
-    assert (done.returncode, done.stdout) == (0, rows)
-
-
-@pytest.mark.parametrize("closed", CLOSED)
-def test_rows_in_a_file_are_whole_whatever_is_closed(run, tmp_path, closed):
-    """In JSON: CSV imports more."""
-    done = started(closed, "list", "-o", "rows.json", cwd=tmp_path)
-    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
-    assert (tmp_path / "rows.json").read_text() == run("list", "--format", "json")[1]
-
-
 @pytest.mark.parametrize("closed", [closed for closed in CLOSED if 1 in closed])
 def test_a_closed_output_is_refused_where_something_would_be_printed(closed):
     done = started(closed, "list")
     said = "" if 2 in closed else "normalbench: standard output is closed; name a file with -o\n"
     assert (done.returncode, done.stdout, done.stderr) == (2, "", said)
-
-
-@pytest.mark.parametrize("closed", CLOSED)
-def test_a_wrong_word_has_its_status_whatever_is_closed(closed):
-    done = started(closed, "list", "nothing")
-    assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr.count("\n") == (2 not in closed), done.stderr
 
 
 def test_children_have_the_three_streams(tmp_path):
@@ -68,13 +40,3 @@ def test_children_have_the_three_streams(tmp_path):
     )
     done = without_streams(range(3), [sys.executable, "-c", program], cwd=tmp_path)
     assert done.returncode == 0 and (tmp_path / "made").exists()
-
-
-def test_a_users_encoder_is_measured_without_streams(tmp_path):
-    """It is tried in a process of its own."""
-    (tmp_path / "mine.glsl").write_text(
-        "vec2 mine_encode(vec3 n, vec3 view) { return n.xy; }\n"
-        "vec3 mine_decode(vec2 e, vec3 view) { return vec3(e, sqrt(max(1.0 - dot(e, e), 0.0))); }\n"
-    )
-    done = started((0, 1, 2), "doctor", "mine.glsl", "-o", "said.txt", cwd=tmp_path)
-    assert done.returncode == 0 and (tmp_path / "said.txt").read_text().startswith("nothing is likely wrong\n")

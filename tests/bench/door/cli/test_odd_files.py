@@ -1,6 +1,5 @@
 """Files of odd kinds and names, and places that go away: a line each, soon, and nothing is lost."""
 
-import json
 import os
 import subprocess
 import sys
@@ -19,9 +18,6 @@ SHADER = """
 vec2 mine_encode(vec3 n, vec3 view) { return n.xy; }
 vec3 mine_decode(vec2 e, vec3 view) { return vec3(e, sqrt(max(1.0 - dot(e, e), 0.0))); }
 """
-
-
-GATE = '[[gate]]\nencoding = "octahedral"\nnormals = "axes"\nbackend = "jax"\npsnr_db = "at least 1"\n'
 
 
 JAX = ("quality", "--storage", "rg8", "--backend", "jax")
@@ -54,15 +50,6 @@ def test_a_pipe_is_not_waited_for(run, tmp_path, monkeypatch, name):
     assert time.monotonic() - began < 20
 
 
-def test_a_byte_order_mark_is_no_part_of_a_text(run, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    Path("gates.toml").write_text(GATE, encoding="utf-8-sig")
-    assert run("check", "gates.toml")[0] == 0
-    Path("mine.glsl").write_text(SHADER, encoding="utf-8-sig")
-    status, out, err = run(*JAX[:-2], "--backend", "glsl", "--encoding", "mine.glsl", "--format", "json")
-    assert status == 0 and json.loads(out)[0]["psnr_db"] > 1, err
-
-
 @pytest.mark.usefixtures("gl")
 def test_a_comma_in_a_files_name_is_a_part_of_it(run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -89,13 +76,6 @@ def test_a_name_that_promises_a_page_or_a_chart_gets_no_text(run, tmp_path, name
     status, out, err = run(*QUICK, "-o", str(path))
     assert (status, out, path.exists()) == (2, "", False)
     assert err == f"normalbench: -o writes rows, not {name}; {option} {path} does, where a command has it\n"
-
-
-def test_a_terminal_without_a_degree_sign_gets_the_table(tmp_path):
-    script = "from normalbench.bench.door.cli import app; app.main = lambda: print('0.9\u00b0') or 0; app.program()"
-    known = os.environ | {"PYTHONIOENCODING": "ascii"}
-    done = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, env=known, capture_output=True, text=True)
-    assert (done.returncode, done.stdout, done.stderr) == (0, "0.9\\xb0\n", "")
 
 
 def test_a_folder_that_is_deleted_meanwhile_is_noticed_at_the_next_row(tmp_path):

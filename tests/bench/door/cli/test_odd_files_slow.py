@@ -2,11 +2,31 @@
 
 import json
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
-from test_odd_files import QUICK
+from test_odd_files import JAX, QUICK, SHADER
 from written import some_normals
+
+GATE = '[[gate]]\nencoding = "octahedral"\nnormals = "axes"\nbackend = "jax"\npsnr_db = "at least 1"\n'
+
+
+def test_a_byte_order_mark_is_no_part_of_a_text(run, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("gates.toml").write_text(GATE, encoding="utf-8-sig")
+    assert run("check", "gates.toml")[0] == 0
+    Path("mine.glsl").write_text(SHADER, encoding="utf-8-sig")
+    status, out, err = run(*JAX[:-2], "--backend", "glsl", "--encoding", "mine.glsl", "--format", "json")
+    assert status == 0 and json.loads(out)[0]["psnr_db"] > 1, err
+
+
+def test_a_terminal_without_a_degree_sign_gets_the_table(tmp_path):
+    script = "from normalbench.bench.door.cli import app; app.main = lambda: print('0.9\u00b0') or 0; app.program()"
+    known = os.environ | {"PYTHONIOENCODING": "ascii"}
+    done = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, env=known, capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "0.9\\xb0\n", "")
 
 
 def test_a_name_that_is_no_utf_8_is_measured_and_written(run, tmp_path, monkeypatch):

@@ -21,8 +21,14 @@ from normalbench.reports.charts import motion, pictures
 SHADER = """vec2 mine_encode(vec3 n, vec3 view) { return n.xy; }
 vec3 mine_decode(vec2 e, vec3 view) { return vec3(e, sqrt(max(1.0 - dot(e, e), 0.0))); }
 """
+
+
 ROW = ("quality", "--storage", "rg8", "--normals", "sphere", "--backend", "jax", "--count", "1000")
+
+
 ONE = (*ROW, "--encoding", "octahedral")
+
+
 LAYOUT = 'title = "mine"\nencoding = "octahedral"\ntargets = [{ format = "rg8", holds = "normal.x normal.y" }]\n'
 
 
@@ -113,15 +119,6 @@ def test_a_file_of_another_kind_is_not_replaced(run, folder, case):
     assert (folder / words[-1]).read_bytes() == before
 
 
-def test_code_does_not_replace_a_users_shader_in_its_folder(run, folder):
-    path = folder / "out" / "octahedral_rgb10a2.hlsl"
-    path.parent.mkdir()
-    path.write_text("// Mine.\n")
-    status, _, err = run("code", "octahedral", "--storage", "rgb10a2", "--to", "hlsl", "-o", "out")
-    assert status == 2 and "octahedral_rgb10a2.hlsl: it is not a file of normalbench" in err, err
-    assert path.read_text() == "// Mine.\n"
-
-
 @pytest.mark.parametrize("is_run", [True, False])
 def test_an_input_in_a_folder_is_not_replaced(folder, is_run):
     """In the folder of a run everything else may be."""
@@ -145,6 +142,8 @@ AGAIN = {
     "rows": (*ONE, "-o"),
     "gates": ("check", "gates.toml", "-o"),
 }
+
+
 ENDINGS = ("csv", "json", "md", "txt")
 
 
@@ -163,17 +162,7 @@ def test_rows_replace_those_of_the_same_command(run, case, ending):
         assert (status, err) == (0, ""), err
 
 
-@pytest.mark.parametrize("words", [(*ONE, "--report", "p.html"), ("renderdoc", "--script", "s.py")])
-def test_a_page_and_a_script_replace_themselves(run, words):
-    assert [run(*words)[0] for _ in range(2)] == [0, 0]
-
-
 DEPTHS = ("depth", "--storage", "depth16", "--depth", "linear", "--backend", "jax", "--count", "100")
-
-
-@pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
-def test_a_picture_replaces_a_picture(run, ending):
-    assert [run(*DEPTHS, "--plot", f"p.{ending}")[0] for _ in range(2)] == [0, 0]
 
 
 def test_a_picture_replaces_that_of_another_command(run):

@@ -1,4 +1,4 @@
-"""No command writes over a file that it would not have written; its own rows it replaces, in every format."""
+"""No command writes over a file that it reads, or over a file that it would not have written."""
 
 import itertools
 

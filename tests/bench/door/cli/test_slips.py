@@ -13,7 +13,6 @@ import typer
 from normalbench.bench.door.cli.app import _is_delicate, app
 from normalbench.bench.door.table_command import _why_nothing
 from normalbench.bench.ground.options.counts import whole_number
-from normalbench.bench.keep import capabilities
 from normalbench.bench.tables.registry import TABLES
 
 ROW = ("quality", "--storage", "rg8", "--normals", "sphere", "--backend", "jax", "--count", "1000")
@@ -264,10 +263,6 @@ def test_names_in_a_repeated_option_add_up(run):
     }
 
 
-def test_what_is_said_twice_alike_is_said_once(run):
-    assert rows_of(run, *ONE, "--count", "1000", "--codes", "--codes")[0]["count"] == 1000
-
-
 @pytest.mark.parametrize(
     "text, number",
     [
@@ -312,12 +307,6 @@ def test_csv_has_no_histogram_and_json_has_it_as_a_list(run):
     assert sum(count for _, count in row["angle_counts"]) == row["count"] == 1000
     edges = [edge for edge, _ in row["angle_counts"]]
     assert edges == sorted(edges) and edges[-1] <= row["angle_max_deg"]
-
-
-def test_what_is_left_out_for_one_reason_is_one_line(run):
-    status, _, err = run(*ROW, "--encoding", "all")
-    assert status == 0 and err.count("\n") == 1, err
-    assert err.startswith("normalbench: left out: xyz/rg8, ") and "3 components, but RG8 has 2 channels" in err
 
 
 def test_version_and_short_help(run):
@@ -365,15 +354,6 @@ def test_a_list_fits_the_terminal_with_a_table_for_each_kind(run, monkeypatch, w
     assert out.count("name ") >= {"all": 12, "storages": 1, "layouts": 1}[what]
     # A letter between two colons is no emoji, and of a storage nothing is left out.
     assert what != "storages" or ("unorm:B:..." in out and "across channels" in out and "not shown" not in out)
-
-
-def test_doctor_ends_in_what_can_be_measured(run, monkeypatch):
-    monkeypatch.setattr(capabilities, "find_spec", lambda _: None)
-    status, out, _ = run("doctor", "--format", "json")
-    rows = {row["name"]: row["value"] for row in json.loads(out)}
-    assert status == 0 and rows["quality, mix, depth, frames, vectors by JAX"] == "yes"
-    missing = rows["glTF files that Draco or meshoptimizer packed"]
-    assert missing == "no: no DracoPy and no meshoptimizer; pip install normalbench[compressed]"
 
 
 @pytest.mark.parametrize(

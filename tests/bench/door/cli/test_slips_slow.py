@@ -1,11 +1,34 @@
 """What people's hands do: each slip is one line that says what would be right, exit status 2, or is understood."""
 
+import json
 import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from test_slips import ONE, ROW, rows_of
+
+from normalbench.bench.keep import capabilities
+
+
+def test_what_is_said_twice_alike_is_said_once(run):
+    assert rows_of(run, *ONE, "--count", "1000", "--codes", "--codes")[0]["count"] == 1000
+
+
+def test_what_is_left_out_for_one_reason_is_one_line(run):
+    status, _, err = run(*ROW, "--encoding", "all")
+    assert status == 0 and err.count("\n") == 1, err
+    assert err.startswith("normalbench: left out: xyz/rg8, ") and "3 components, but RG8 has 2 channels" in err
+
+
+def test_doctor_ends_in_what_can_be_measured(run, monkeypatch):
+    monkeypatch.setattr(capabilities, "find_spec", lambda _: None)
+    status, out, _ = run("doctor", "--format", "json")
+    rows = {row["name"]: row["value"] for row in json.loads(out)}
+    assert status == 0 and rows["quality, mix, depth, frames, vectors by JAX"] == "yes"
+    missing = rows["glTF files that Draco or meshoptimizer packed"]
+    assert missing == "no: no DracoPy and no meshoptimizer; pip install normalbench[compressed]"
 
 
 @pytest.mark.parametrize("typed, expected", [("xyz,oct", "xyz,octahedral"), ("optim", "optimised_rings")])

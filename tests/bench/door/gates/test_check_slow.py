@@ -1,8 +1,91 @@
 """`normalbench check`: gates that pass, fail, and say what is wrong with them."""
 
 import json
+import os
 
+import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from normalbench.bench.door.gates.gates import checked, read_gates
+from normalbench.bench.ground.output.errors import MissingError, UsageError
+
+
+def test_a_figure_that_a_run_did_not_measure_is_named_with_its_option(run, tmp_path):
+    path, folder = tmp_path / "gates.toml", str(tmp_path / "results")
+    words = ("--encoding", "xy", "--storage", "rg8", "--normals", "axes", "--backend", "jax")
+    assert run("run", "--tables", "quality", *words, "-o", folder)[0] == 0
+    path.write_text('[[gate]]\nencoding = "xy"\nangle_sup_deg = "at most 90"\n')
+    status, out, err = run("check", str(path), "--run", folder)
+    assert (status, out) == (2, "") and f"{folder} has no angle_sup_deg; measure the run with --worst-case" in err
+
+
+@pytest.mark.usefixtures("gl")
+def test_a_layout_alone_is_held_to_as_it_is(run, tmp_path):
+    """The codec that is usual for a gate is not put into it."""
+    path = tmp_path / "gates.toml"
+    path.write_text(
+        '[[gate]]\ntable = "render"\nlayout = "cryengine3"\nsize = "64x48"\nlights = 4\npsnr_db = "at least 1"\n'
+    )
+    (row,) = json.loads(run("check", str(path), "--format", "json")[1])
+    assert row["row"].startswith("hybrid cryengine3 best_fit rgba8 nearest"), row
+
+
+LIMITS = st.sampled_from(["at least 1", "at most nan"])
+
+
+VALUES = st.one_of(st.text(max_size=8), st.integers(), st.floats(), st.booleans(), LIMITS)
+
+
+NAMES = st.sampled_from(["encoding", "storage", "table", "count", "seed", "psnr_db", "x", "normals"])
+
+
+@settings(max_examples=100, deadline=None, derandomize=True)
+@given(st.one_of(st.text(max_size=200), st.lists(st.dictionaries(NAMES, VALUES, max_size=5), max_size=3)))
+def test_no_gates_give_a_traceback(tmp_path_factory, content):
+    """Text of every kind, and gates of every value: they are read and refused, or measured."""
+    path = tmp_path_factory.mktemp("gates") / "gates.toml"
+    if not isinstance(content, str):
+        lines = (f"{name} = {json.dumps(value)}" for gate in content for name, value in [("", None), *gate.items()])
+        content = "\n".join("[[gate]]" if line.startswith(" = ") else line for line in lines)
+    path.write_text(content, encoding="utf-8", errors="surrogatepass")
+    try:
+        gates = [gate for gate in read_gates(path) if gate.options.get("count", 10**9) in range(1, 1000)]
+        list(checked(gates, None, lambda _: None))
+    except (UsageError, MissingError) as error:
+        assert "\n" not in str(error) or "gates" in str(error)
+
+
+def test_files_of_a_gate_lie_next_to_the_file_of_gates(run, tmp_path, monkeypatch):
+    """Wherever the command runs; a file that only the shell's folder has is an error of one line."""
+    folder, shell = tmp_path / "gates", tmp_path / "shell"
+    folder.mkdir()
+    shell.mkdir()
+    monkeypatch.chdir(shell)
+    np.save(folder / "bumps.npy", np.eye(3))
+    path, asked = folder / "gates.toml", '[[gate]]\nencoding = "xyz"\nnormals = "bumps.npy"\npsnr_db = "at least 1"\n'
+    path.write_text(asked + 'matches_baseline = "kept.json"\n')
+    assert run("check", str(path), "--write-baseline")[0] == 0
+    monkeypatch.chdir(tmp_path)
+    assert run("check", "gates/gates.toml")[0] == 0, "its baseline does not depend on the shell's folder"
+    monkeypatch.chdir(shell)
+    (folder / "bumps.npy").rename(shell / "bumps.npy")
+    path.write_text(asked)
+    status, out, err = run("check", str(path))
+    said = "gate 1: normals: bumps.npy is in this shell's folder, and paths are relative to the file of gates; write "
+    assert (status, out, err.count("\n")) == (2, "", 1) and said + os.path.relpath("bumps.npy", folder) in err, err
+
+
+def test_a_gate_on_a_distance_judges_no_other(run, tmp_path):
+    """The whole range is measured beside it, and its error is another one."""
+    path = tmp_path / "gates.toml"
+    asked = 'table = "depth"\ndepth = "linear"\nstorage = "r32f"\nbackend = "jax"\ncount = 16\ndistance = "10"\n'
+    path.write_text(f'[[gate]]\n{asked}error_max = "at most 1"\n')
+    rows = json.loads(run("check", str(path), "--format", "json")[1])
+    assert [row["row"].split() for row in rows] == [
+        ["linear", "r32f", "nearest", "eye_ray", "jax", "0.1", "1000.0", "10.0"]
+    ]
 
 
 @pytest.mark.parametrize(

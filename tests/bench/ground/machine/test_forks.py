@@ -11,6 +11,9 @@ import pytest
 from normalbench.bench.ground.machine.cores import on_all_cores
 from normalbench.bench.ground.machine.systems import forks, linux_forks
 
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere each process imports for itself")
+
+
 MODULE = """
 import os, signal, subprocess, sys, time
 
@@ -20,7 +23,6 @@ made = os.getpid()
 def main(words):
     exec(words[0])
 """
-pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere each process imports for itself")
 
 
 @pytest.fixture
@@ -119,11 +121,3 @@ def test_other_variables_of_jax_are_read_anew(ended, monkeypatch):
     first = ended("print(made)").stdout
     monkeypatch.setenv("JAX_ENABLE_X64", "1")
     assert ended("print(made)").stdout != first
-
-
-def test_one_that_does_not_stay_is_done_without(monkeypatch):
-    """Each process then imports for itself."""
-    linux_forks._forking.end()
-    monkeypatch.setattr(linux_forks, "_command", lambda _: ["false"])
-    done = forks.finished("normalbench.bench.subjects.codecs.first_look", ["gone.glsl"], 60.0)
-    assert "there is no such file" in done.stdout

@@ -23,32 +23,3 @@ def test_what_is_freed_is_not_cleared_anew_by_the_system():
     """100 times 10 MB would be 244 000 pages."""
     done = subprocess.run([sys.executable, "-c", ALLOCATE], capture_output=True, text=True, check=True)
     assert int(done.stdout) < 5000
-
-
-COMMAND = """
-import resource, sys
-resource.setrlimit(resource.RLIMIT_AS, (10**9, 10**9))
-from normalbench.bench.door.cli.app import main
-sys.argv = ["normalbench", *sys.argv[1:]]
-sys.exit(main())
-"""
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="the limit of addresses")
-@pytest.mark.parametrize(
-    "words", ["quality --encoding octahedral --storage rg8 --normals axes", "code octahedral --storage rg8", "doctor"]
-)
-def test_a_process_without_addresses_enough_is_one_line(words):
-    """With 1 GB the libraries that JAX is written in ended it: terminate called, status 134."""
-    done = subprocess.run([sys.executable, "-c", COMMAND, *words.split()], capture_output=True, text=True)
-    said = (
-        "normalbench: not enough memory: this process is limited to 1 GB of addresses, and JAX and OpenGL need 2.5 GB"
-    )
-    assert (done.returncode, done.stdout) == (3, ""), done.stderr
-    assert done.stderr == f"{said}; raise the limit: ulimit -v 2500000\n", done.stderr
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="the limit of addresses")
-def test_what_starts_no_jax_needs_little():
-    done = subprocess.run([sys.executable, "-c", COMMAND, "list", "encodings"], capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr

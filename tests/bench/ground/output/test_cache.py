@@ -16,7 +16,11 @@ from normalbench.bench.ground.output.errors import MissingError
 from normalbench.bench.shaders.isa import null_device
 
 ELSE = 12345
+
+
 FOLDERS = ("native", "programs", "translated")
+
+
 as_root = pytest.mark.skipif(os.geteuid() != 0, reason="only root gives files to another user")
 
 
@@ -41,6 +45,8 @@ def is_anothers(path):
 
 
 WAYS = [is_open_to_others, pytest.param(is_anothers, marks=as_root)]
+
+
 KEY = "ab" + "0" * 62
 
 
@@ -239,15 +245,3 @@ def test_what_is_no_folder_keeps_nothing_and_is_left_as_it_is(folder, put):
     with pytest.raises(MissingError, match="XDG_CACHE_HOME names another one"):
         cache.require_folder()
     assert cache.read(KEY) is None and folder.lstat().st_mode == before.st_mode
-
-
-@as_root
-def test_a_cache_of_another_user_is_not_used_and_doctor_says_so(run, folder):
-    folder.mkdir(parents=True)
-    os.chown(folder, ELSE, ELSE)
-    cache.write(KEY, {})
-    assert not [*folder.iterdir()]
-    with pytest.raises(null_device.NullDeviceError, match="another user's folder; XDG_CACHE_HOME names another one"):
-        null_device.library()
-    _, out, _ = run("doctor", "--format", "csv")
-    assert f"no: another user's folder: {folder}; XDG_CACHE_HOME names another one" in out

@@ -1,7 +1,6 @@
 """What a page's laboratory is given of a run: programs of codecs, their files, scenes, and damaged files."""
 
 import json
-import re
 
 import numpy as np
 import pytest
@@ -9,39 +8,8 @@ from directions import hard_directions
 
 from normalbench.bench.measures.live import kept, programs, scenes
 from normalbench.bench.subjects.codecs.names import codecs_named
-from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.normals.octahedral import decode
-from normalbench.encodings.storages.storage import STORAGES
 from normalbench.encodings.vec import Vec2
-
-# Of GLSL ES 3.10 and later: a browser's 3.00 has none of them.
-LATER = re.compile(r"\b(bitfield\w+|fma|frexp|ldexp|(un)?pack[US]norm4x8|findMSB|findLSB|textureGather)\(")
-
-
-MINE = "vec2 mine_encode(vec3 n) { return n.xy; }\nvec3 mine_decode(vec2 e) { return vec3(e, 0.5); }\n"
-
-
-def test_every_codec_is_written_in_what_browsers_know():
-    found = {}
-    for encoding in ENCODINGS.values():
-        codec = Codec(encoding, STORAGES["rgba8"], "nearest")
-        try:
-            found[encoding.name] = programs.program(codec)
-        except programs.NotLiveError as error:
-            assert str(error) == programs.TABLES_TOO_LARGE, encoding.name
-    assert set(ENCODINGS) - set(found) == {"best_fit", "spherical_lut"}
-    for name, record in found.items():
-        assert not LATER.search(record["source"]), name
-        kept.KEPT.validate_python({**record, "checks": None})
-
-
-def test_a_users_encoding_brings_its_text(tmp_path):
-    (tmp_path / "mine.glsl").write_text(MINE)
-    (codec,) = codecs_named(str(tmp_path / "mine.glsl"), "rg16f", "nearest")
-    record = programs.program(codec)
-    assert (record["text"], record["size"], record["title"]) == (MINE, 2, "RG16F")
-    assert "vec2 codec_encode(vec3 n)" in record["source"]
 
 
 def test_files_are_read_as_they_were_written(tmp_path):

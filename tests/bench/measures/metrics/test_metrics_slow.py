@@ -5,11 +5,100 @@ import subprocess
 import sys
 
 import jax
+import numpy as np
 import pytest
-from test_metrics import rows_of
+from directions import random_directions
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from speed.numpy_baseline import whole_row
+from test_metrics import DECODED, measured, rows_of, turned
 
+from normalbench.bench.ground.machine.cores import cores
 from normalbench.bench.measures.metrics import meter as metrics
-from normalbench.bench.subjects.normals.normal_sets import CHUNK, sphere
+from normalbench.bench.measures.metrics.meter import Meter
+from normalbench.bench.subjects.normals.normal_sets import CHUNK, from_arrays, sphere
+from normalbench.bench.tables.quality import measure as quality
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(1, 3 * CHUNK // 2), st.floats(0.01, 60))
+def test_a_row_equals_numpys(count, degrees):
+    """Sums and largest to float32's precision, the percentile to 0.1 %; for any count, whole chunks or not."""
+    count = min(count, 40_000) if count % 2 else count
+    n = random_directions(count, seed=count)
+    spread = np.random.default_rng(count).uniform(0.1, 1, count) * degrees
+    other = turned(n, spread, seed=count + 1).astype(np.float32)
+    got = measured(DECODED, from_arrays("", "", n, other, np.ones(count, bool)))
+    mse, article_mse, mean, rms, p99, largest = whole_row(n, other)
+    assert got.count == got.pixels == count
+    assert got.mse == pytest.approx(mse, rel=1e-6)
+    assert got.article_mse == pytest.approx(article_mse, rel=1e-5, abs=1e-12)
+    assert got.angle_mean_deg == pytest.approx(mean, rel=1e-6)
+    assert got.angle_rms_deg == pytest.approx(rms, rel=1e-6)
+    assert got.angle_max_deg == pytest.approx(largest, rel=1e-6)
+    if count > 10_000:
+        assert got.angle_p99_deg == pytest.approx(p99, rel=1e-3)
+
+
+@pytest.mark.parametrize("at", [7, CHUNK + 7])
+def test_the_largest_angle_is_that_of_all_chunks(at):
+    """Whichever of two chunks has it."""
+    n = random_directions(CHUNK + 99)
+    degrees = np.where(np.arange(len(n)) == at, 20.0, 1.0)
+    got = measured(DECODED, from_arrays("", "", n, turned(n, degrees).astype(np.float32), np.ones(len(n), bool)))
+    assert got.angle_max_deg == pytest.approx(20.0, rel=1e-5)
+    np.testing.assert_array_equal(got.worst.normal, n[at])
+
+
+def test_codecs_measured_together_are_as_measured_alone():
+    """Each chunk is made once for all of them; nothing else changes, in whatever order and company."""
+    normals = sphere(3 * CHUNK + 5)
+    alone = [
+        quality.measure(case)
+        for case in quality.cases(
+            [Codec(ENCODINGS[name], STORAGES["rgba8"]) for name in ("octahedral", "spherical", "xyz")],
+            [normals],
+            ["jax"],
+        )
+    ]
+    assert rows_of(normals) == alone
+    assert list(reversed(rows_of(normals, ("xyz", "spherical", "octahedral")))) == alone
+
+
+def test_any_count_is_constant_memory():
+    """Of a million chunks of a set none is kept: those that are done are gone."""
+    import gc
+    import weakref
+
+    class Load:
+        def __init__(self, chunk):
+            self.chunk = chunk
+
+        def __call__(self):
+            return self.chunk
+
+    chunk, seen, most = sphere(CHUNK).chunk(0), [], 0
+    # What other tests have left need not be looked through.
+    gc.collect()
+    gc.freeze()
+
+    def loads():
+        nonlocal most
+        for _ in range(40):
+            load = Load(chunk)
+            seen.append(weakref.ref(load))
+            gc.collect()
+            most = max(most, sum(ref() is not None for ref in seen))
+            yield load
+            del load
+
+    Meter(jax.jit(lambda block: block.n)).measure(loads(), CHUNK)
+    gc.unfreeze()
+    # Two for each thread, and those that one hands on.
+    assert most <= 2 * cores() + 4
 
 
 def test_rows_do_not_depend_on_how_the_work_is_cut_up(monkeypatch):

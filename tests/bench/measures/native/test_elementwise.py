@@ -9,19 +9,26 @@ import numpy as np
 import pytest
 
 from normalbench.bench.ground.compilers.text import judged, own
-from normalbench.bench.ground.native.elementwise import INFIX, OTHERS, NotElementwiseError, c_function, c_type
+from normalbench.bench.ground.native.elementwise import NotElementwiseError, c_function, c_type
 from normalbench.bench.ground.native.library import HEAD, address, library
-from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.vec import floor_log2, maximum, minimum, power_of_two, sign_not_zero
 
 needs_c = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+
+
 FLOAT = np.dtype(np.float32)
+
+
 LOOP = """
 void each(size_t count, const FROM *a, const FROM *b, TO *to) {
     for (size_t k = 0; k < count; k++) function(a[k], b[k], to + k);
 }
 """
+
+
 TINY = float(np.finfo(np.float32).tiny)
+
+
 FLOATS = np.array(
     [
         *(0.0, -0.0, 0.5, -0.5, 1.5, 2.5, -2.5, 1.0, -1.0, 0.3, 1e-3, TINY, 65504.0, 65520.0, 7e-8, 1e9, -3e9, 3e38),
@@ -29,6 +36,8 @@ FLOATS = np.array(
     ],
     np.float32,
 )
+
+
 WORDS = np.array([0, 1, 2, 3, 31, 255, 2**16 + 1, 2**31 - 1, 2**31, 2**32 - 1, 0x9E3779B9], np.uint32)
 
 
@@ -131,29 +140,3 @@ def test_what_has_no_line_of_c_is_named(function, said):
     """An operation that mixes elements, that C rounds otherwise, or that nobody has written."""
     with pytest.raises(NotElementwiseError, match=said):
         c_function("function", function, FLOAT)
-
-
-def test_every_operation_is_one_that_something_uses():
-    """Each line that can be written is written by a codec of the catalogue, by the errors or by a set of normals."""
-    from normalbench.bench.measures.native import meter
-    from normalbench.bench.subjects.normals import normal_sets
-
-    seen: set[str] = set()
-
-    def note(jaxpr):
-        for equation in jaxpr.eqns:
-            seen.add(equation.primitive.name)
-            for inner in equation.params.values():
-                if hasattr(inner, "jaxpr"):
-                    note(inner.jaxpr)
-
-    ones = jnp.ones(4, jnp.float32)
-    three = meter.Vec3(ones, ones, ones)
-    for encoding in ENCODINGS.values():
-        note(jax.make_jaxpr(lambda n, e=encoding: e.decode(e.encode(n, n), n))(three).jaxpr)
-    note(jax.make_jaxpr(lambda n: meter.errors(n, n, True))(three).jaxpr)
-    note(jax.make_jaxpr(lambda a: meter.bins_of(a, True))(ones).jaxpr)
-    words = jnp.ones(4, jnp.uint32)
-    with jax.enable_x64(True):
-        note(jax.make_jaxpr(lambda w: normal_sets._direction(w, w, w, w, whole=True))(words).jaxpr)
-    assert {*INFIX, *OTHERS} - seen <= {"le", "shift_right_arithmetic"}, {*INFIX, *OTHERS} - seen

@@ -4,7 +4,9 @@ import pytest
 import test_native_rows_slow
 from test_native_rows_slow import NATIVE
 
-pytestmark = test_native_rows_slow.pytestmark
+from normalbench.bench.ground.native import library
+
+pytestmark = pytest.mark.skipif(not library.compiler(), reason="no C compiler")
 
 
 @pytest.mark.parametrize("name", NATIVE)

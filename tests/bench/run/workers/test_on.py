@@ -1,8 +1,6 @@
 """What `--on` takes and refuses, and what is left behind."""
 
 import importlib.util
-import subprocess
-import sys
 
 import pytest
 
@@ -43,14 +41,3 @@ def test_without_dask_it_says_what_to_install(run, monkeypatch):
 def test_the_worker_command_refuses_a_bad_address(run):
     status, _, err = run("worker", "local:2")
     assert status == 2 and "worker local:2: say tcp://HOST:PORT" in err
-
-
-def test_the_start_imports_neither_dask_nor_jax():
-    done = subprocess.run(
-        [sys.executable, "-X", "importtime", "-m", "normalbench", "quality", "--help"],
-        capture_output=True,
-        text=True,
-    )
-    loaded = {line.rpartition("|")[2].strip().partition(".")[0] for line in done.stderr.splitlines()}
-    assert done.returncode == 0 and "--on" in done.stdout
-    assert not loaded & {"dask", "distributed", "tornado", "jax", "moderngl"}

@@ -16,6 +16,18 @@ from test_on import SMALL
 
 from normalbench.bench.run import piped
 
+
+def test_the_start_imports_neither_dask_nor_jax():
+    done = subprocess.run(
+        [sys.executable, "-X", "importtime", "-m", "normalbench", "quality", "--help"],
+        capture_output=True,
+        text=True,
+    )
+    loaded = {line.rpartition("|")[2].strip().partition(".")[0] for line in done.stderr.splitlines()}
+    assert done.returncode == 0 and "--on" in done.stdout
+    assert not loaded & {"dask", "distributed", "tornado", "jax", "moderngl"}
+
+
 # EGL finds no driver under it.
 NO_GL = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent"}
 
@@ -66,6 +78,8 @@ def is_there(pid: int) -> bool:
 
 # Rows by JAX and GLSL, a few to each task of a worker.
 MANY = ("quality", "--storage", "rgba8", "--normals", "sphere", "--count", "16384", "--encoding")
+
+
 MANY += (
     "octahedral,octahedral_precise,equal_area_octahedral,equal_area_octahedral_precise,hemi_octahedral,signed_octahedral,"
     "latitude_longitude,spherical,spheremap,spheremap_classic,cryengine3,stereographic,per_pixel_view,xy,xy_sign,"

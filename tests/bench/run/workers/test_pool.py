@@ -3,7 +3,6 @@
 import pickle
 import random
 from collections import Counter
-from concurrent.futures import CancelledError
 from threading import Event
 
 import pytest
@@ -229,29 +228,6 @@ def test_without_a_worker_for_long_this_process_measures(monkeypatch, capsys):
         f"quality: {len(JAX)} steps are measured by this process: no worker has all of this: {BASE}"
         in capsys.readouterr().err
     )
-
-
-def test_what_becomes_of_a_schedulers_task():
-    """A task that dask gives up is lost, one that went with its scheduler is sent again; any other error is raised."""
-    from distributed import KilledWorker
-
-    from normalbench.bench.run.workers.scheduled import _answer
-
-    class Future:
-        def __init__(self, status, error):
-            self.status, self._error = status, error
-
-        def exception(self, timeout):  # noqa: ARG002
-            return self._error
-
-        def result(self, timeout):  # noqa: ARG002
-            raise self._error
-
-    assert _answer(Future("error", KilledWorker("task", None, 3))) == Answer(lost=4)
-    assert _answer(Future("cancelled", CancelledError())) is None
-    assert _answer(Future("finished", TimeoutError())) is None
-    with pytest.raises(OSError, match="no space"):
-        _answer(Future("error", OSError("no space")))
 
 
 def test_every_table_whose_rows_have_times_says_so_in_its_keys():

@@ -12,8 +12,104 @@ from test_code import codec_of, written
 from normalbench.bench.door import code_command
 from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.shaders.code.verify import agreement
+from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.bench.subjects.codecs.user_encodings import encodings_named
 from normalbench.bench.tables.cost import measure as cost
+
+# What is changed in the text of octahedral/rgb10a2 in C, and what must notice.
+MUTANTS = {
+    "scale": ("* 1023.0f)", "* 1022.0f)"),
+    "rounding": ("rintf(", "floorf("),
+    "order": ("x | (y << 10)", "y | (x << 10)"),
+    "shift": ("y << 10", "y << 11"),
+    "mask": ("(texel >> 10) & 1023u", "(texel >> 10) & 511u"),
+    "bias": ("code.x * 0.5f + 0.5f, 0.0f", "code.x * 0.5f + 0.499f, 0.0f"),
+    "fold": ("n.z < 0.0f", "n.z < 0.01f"),
+    "target": ("{code.x * 0.5f + 0.5f, code.y", "{code.y * 0.5f + 0.5f, code.y"),
+    "from target": ("texel.y * 2.0f - 1.0f", "texel.y * 2.0f"),
+    "unpack": ("(1.0f / 1023.0f) * 2.0f - 1.0f;\n    float y", "(1.0f / 1024.0f) * 2.0f - 1.0f;\n    float y"),
+    "decode": ("fabsf(e.x) - fabsf(e.y)", "fabsf(e.x) + fabsf(e.y)"),
+}
+
+
+@pytest.mark.parametrize("fault", MUTANTS)
+def test_a_wrong_constant_or_a_swapped_number_is_noticed(fault, tmp_path):
+    """Each fault alone makes the comparison fail."""
+    codec = codec_of("octahedral/rgb10a2")
+    code = code_of(codec, "c", "p")
+    old, new = MUTANTS[fault]
+    assert old in code.body, code.body
+    found = agreement(codec, "c", written(tmp_path, code, code.body.replace(old, new)), code.interface)
+    assert not found.holds, found.says
+
+
+MANY_WORDS = """
+#define SCALE 0.75
+float halves(float x) { return mod(x + 3.0, 2.0) - 1.0; }
+vec2 many_encode(vec3 n, vec3 view) {
+    vec2 p = mix(n.xy, n.xy * SCALE, 0.25) * step(-2.0, n.z) + fract(vec2(0.0)) + vec2(sign(0.0));
+    p /= max(length(vec3(p, n.z)), 0.001);
+    p = mix(p, -p, lessThan(n.zz, vec2(-2.0)));
+    for (int i = 0; i < 2; ++i) p[i] = clamp(p[i], -1.0, 1.0);
+    if (n.z > 2.0) return vec2(halves(p.x), p.y); else if (n.z > 3.0) { return p.yx; }
+    return p;
+}
+vec3 many_decode(vec2 e, vec3 view) {
+    float z = sqrt(max(1.0 - dot(e, e), 0.0)), a = atan(e.y, e.x + 4.0);
+    return vec3(e.x, e.y + 0.0 * a, z);
+}
+"""
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize("language", ["hlsl", "essl", "wgsl", "c"])
+def test_a_users_glsl_is_written_in_every_language(language, tmp_path):
+    """Functions that the catalogue does not use mean the same: mod of negatives, mix, step, sign, length, atan."""
+    require_runner(language)
+    (tmp_path / "many.glsl").write_text(MANY_WORDS)
+    (codec,) = codecs_named(str(tmp_path / "many.glsl"), "rgb10a2", "nearest")
+    code = code_of(codec, language, "p")
+    found = agreement(codec, language, written(tmp_path, code), code.interface)
+    assert found.holds, found.says
+
+
+def test_code_of_a_user_is_the_users(run, tmp_path):
+    """Its head names no licence for encode and decode, and the command that was typed."""
+    (tmp_path / "many.glsl").write_text(MANY_WORDS)
+    path, made = str(tmp_path / "many.glsl"), tmp_path / "made"
+    status, _, err = run("code", path, "--storage", "rg8", "--to", "glsl", "-o", str(made))
+    assert status == 0 and "left out: " not in err and "normal_halves(" in (made / "many_rg8.glsl").read_text()
+    text = " ".join((made / "many_rg8.glsl").read_text().replace("//", "").split())
+    assert "Encode and decode are yours." in text and f"normalbench code {path}" in text
+    assert "the catalogue's" not in text
+
+
+@pytest.mark.usefixtures("gl")
+def test_check_says_of_every_language_how_many_texels_differ(run):
+    """A row of each codec, a column of each language."""
+    status, out, _ = run("code", "--check", "octahedral,spheremap", "--storage", "rgb10a2", "--to", "glsl,c")
+    assert status == 0
+    assert re.search(r"octahedral\s+rgb10a2\s+equal\s+equal", out) or "equal" in out
+    assert re.search(r"spheremap\s.*\d+ of 65536", out)
+
+
+@pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize(("languages", "wrong_in"), [("msl", "c"), ("glsl,msl", "glsl")])
+def test_what_is_wrong_in_one_language_is_written_in_none(run, tmp_path, monkeypatch, languages, wrong_in):
+    """All are written from one tree; Metal alone has C as its witness."""
+    seen, own = [], code_command.verified
+
+    def verified(code):
+        seen.append(code.language)
+        return own(code) | (
+            {"verdict": code_command.DIFFERS, "says": "texels differ"} if code.language == wrong_in else {}
+        )
+
+    monkeypatch.setattr(code_command, "verified", verified)
+    status, out, err = run("code", "octahedral", "--storage", "rg8", "--to", languages, "-o", str(tmp_path / "made"))
+    assert (status, out) == (1, "") and "msl: its translation is seen to be wrong in" in err, err
+    assert not list((tmp_path / "made").glob("*")) and wrong_in in seen
+
 
 # One of each that is made otherwise: plain, precise, with a view, a sign, tables, levels, polynomials, an axis, a
 # parameter, floats of each size, numbers across bytes, signed ones, the ways to round, centred numbers, floats of any

@@ -1,7 +1,7 @@
 """Shaders as people write them: read, and meant the same in every language."""
 
 import pytest
-import test_everyday
+import test_everyday_slow
 from everyday import GLSL
 from test_everyday_slow import OTHERS
 
@@ -11,9 +11,9 @@ pytestmark = pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("name", GLSL)
 @pytest.mark.parametrize("language", ["slang", "essl"])
 def test_everyday_glsl_is_read_and_means_the_same_in_two_others(language, name, tmp_path):
-    test_everyday.test_everyday_glsl_is_read_and_means_the_same(language, name, tmp_path)
+    test_everyday_slow.test_everyday_glsl_is_read_and_means_the_same(language, name, tmp_path)
 
 
 @pytest.mark.parametrize("language, name", OTHERS)
 def test_all_everyday_glsl_is_read_and_means_the_same_in_two_more(language, name, tmp_path):
-    test_everyday.test_everyday_glsl_is_read_and_means_the_same(language, name, tmp_path)
+    test_everyday_slow.test_everyday_glsl_is_read_and_means_the_same(language, name, tmp_path)

@@ -2,17 +2,14 @@
 
 import re
 
-import numpy as np
 import pytest
 from pasted import LONGEST, loops_without_unrolling, names_in
 
-from normalbench.bench.door import code_command
 from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.shaders.code.fold import WIDTH
-from normalbench.bench.shaders.code.tables import dds, header, kept, texels_of
 from normalbench.bench.subjects.codecs.kinds.codecs import codecs_of_kind
 from normalbench.bench.subjects.codecs.names import codecs_named
-from normalbench.encodings.catalogue import BY_KIND, ENCODINGS
+from normalbench.encodings.catalogue import BY_KIND
 from normalbench.encodings.codecs.kind import KINDS, NORMAL
 from normalbench.encodings.storages.storage import (
     STORAGES,
@@ -75,18 +72,6 @@ def test_an_arc_tangent_has_the_octants_that_it_needs(name, has, has_not):
     assert {f"normal_{one}" for one in has} <= names and not {f"normal_{one}" for one in has_not} & names
 
 
-def test_the_table_of_best_fit_takes_a_byte_a_texel():
-    """Its scales are k / 255: 8 bits are the same numbers as floats of 32 are, a megabyte in place of four."""
-    (table,) = ENCODINGS["best_fit"].tables().values()
-    texels = texels_of(table)
-    assert texels.is_bytes and texels.format == "R8_UNORM" and texels.bytes == 2**20
-    assert np.array_equal(kept(table) / np.float32(255), table)
-    assert len(dds(table)) == 148 + 2**20
-    assert "static const unsigned char t[1048576] = {" in header({"t": table})
-    (angles,) = (one for name, one in ENCODINGS["spherical_lut"].tables().items() if name.endswith("angle"))
-    assert texels_of(angles).format == "R32_FLOAT"
-
-
 DECLARED = {
     "hlsl": "Texture2D<float4> normal_scale : register(t0);",
     "slang": "Texture2D<float4> normal_scale : register(t0);",
@@ -111,19 +96,6 @@ def test_a_texture_is_declared_with_its_binding_and_what_it_holds(language):
 def test_two_tables_are_bound_in_the_order_of_their_names():
     body = code_of(codecs_of(NORMAL, "spherical_lut", "rg8")[0], "hlsl").body
     assert re.findall(r"> (\w+) : register\((t\d)\);", body) == [("normal_angle", "t0"), ("normal_xy", "t1")]
-
-
-def test_codes_of_one_kind_have_names_of_their_own(run, tmp_path, monkeypatch):
-    """They lie in one folder and may be used together; the command in each says how it is made alone."""
-    # Errors take a search for the worst case; test_code.py has a file that says them.
-    monkeypatch.setattr(code_command, "figures", lambda _: [])
-    status, _, _ = run("code", "xy,octahedral,cube_root", "--storage", "rg16_snorm", "--to", "c", "-o", str(tmp_path))
-    assert status == 0
-    assert "octahedral_rg16_snorm_encode(" in (tmp_path / "octahedral_rg16_snorm.h").read_text()
-    text = (tmp_path / "xy_rg16_snorm.h").read_text()
-    assert "xy_rg16_snorm_encode(" in text
-    assert "--prefix xy_rg16_snorm" in " ".join(text.replace("//", "").split())
-    assert " motion_encode(" in (tmp_path / "motion_cube_root_rg16_snorm.h").read_text()
 
 
 def test_two_files_with_the_same_names_are_both_read():

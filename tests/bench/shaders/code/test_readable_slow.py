@@ -1,9 +1,13 @@
 """Code of every codec as an engine programmer would paste it: short names and lines, and loops over tables unrolled."""
 
+import numpy as np
 import pytest
 from test_readable import EVERY, check, codecs_of
 
+from normalbench.bench.door import code_command
 from normalbench.bench.shaders.code.emit import LANGUAGES
+from normalbench.bench.shaders.code.tables import dds, header, kept, texels_of
+from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.kind import NORMAL
 from normalbench.encodings.storages.storage import (
     CURVE_STORAGES,
@@ -11,6 +15,32 @@ from normalbench.encodings.storages.storage import (
     LIGHT_STORAGES,
     MOTION_STORAGES,
 )
+
+
+def test_the_table_of_best_fit_takes_a_byte_a_texel():
+    """Its scales are k / 255: 8 bits are the same numbers as floats of 32 are, a megabyte in place of four."""
+    (table,) = ENCODINGS["best_fit"].tables().values()
+    texels = texels_of(table)
+    assert texels.is_bytes and texels.format == "R8_UNORM" and texels.bytes == 2**20
+    assert np.array_equal(kept(table) / np.float32(255), table)
+    assert len(dds(table)) == 148 + 2**20
+    assert "static const unsigned char t[1048576] = {" in header({"t": table})
+    (angles,) = (one for name, one in ENCODINGS["spherical_lut"].tables().items() if name.endswith("angle"))
+    assert texels_of(angles).format == "R32_FLOAT"
+
+
+def test_codes_of_one_kind_have_names_of_their_own(run, tmp_path, monkeypatch):
+    """They lie in one folder and may be used together; the command in each says how it is made alone."""
+    # Errors take a search for the worst case; test_code.py has a file that says them.
+    monkeypatch.setattr(code_command, "figures", lambda _: [])
+    status, _, _ = run("code", "xy,octahedral,cube_root", "--storage", "rg16_snorm", "--to", "c", "-o", str(tmp_path))
+    assert status == 0
+    assert "octahedral_rg16_snorm_encode(" in (tmp_path / "octahedral_rg16_snorm.h").read_text()
+    text = (tmp_path / "xy_rg16_snorm.h").read_text()
+    assert "xy_rg16_snorm_encode(" in text
+    assert "--prefix xy_rg16_snorm" in " ".join(text.replace("//", "").split())
+    assert " motion_encode(" in (tmp_path / "motion_cube_root_rg16_snorm.h").read_text()
+
 
 # Storages whose functions are the longest: bytes, bits across channels, floats, signed numbers, two words.
 SOME = "rg8,rgba8,rgb8_12_12,rg16f,rgba8_10_10_10_snorm"

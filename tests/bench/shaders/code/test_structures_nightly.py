@@ -1,7 +1,7 @@
 """Structures, and parameters that functions change, in the code of every language; tangent frames are such."""
 
 import pytest
-import test_structures
+import test_structures_slow
 from test_structures_slow import OWN_REST, REST
 
 pytestmark = pytest.mark.usefixtures("gl")
@@ -9,7 +9,7 @@ pytestmark = pytest.mark.usefixtures("gl")
 
 @pytest.mark.parametrize("name, storage, rounding, language", REST)
 def test_the_code_of_all_tangent_frames_gives_the_catalogues_texels(name, storage, rounding, language, tmp_path):
-    test_structures.test_the_code_of_tangent_frames_gives_the_catalogues_texels(
+    test_structures_slow.test_the_code_of_tangent_frames_gives_the_catalogues_texels(
         name, storage, rounding, language, tmp_path
     )
 
@@ -17,4 +17,4 @@ def test_the_code_of_all_tangent_frames_gives_the_catalogues_texels(name, storag
 @pytest.mark.usefixtures("slang")
 @pytest.mark.parametrize("ending, language", OWN_REST)
 def test_all_code_of_tangent_frames_of_users_is_written(ending, language, tmp_path):
-    test_structures.test_a_users_code_of_tangent_frames_is_written(ending, language, tmp_path)
+    test_structures_slow.test_a_users_code_of_tangent_frames_is_written(ending, language, tmp_path)

@@ -2,7 +2,6 @@
 
 import contextlib
 import io
-import json
 import shutil
 import sys
 
@@ -13,7 +12,6 @@ from normalbench.bench.door.run_options import RunOptions
 from normalbench.bench.ground.options.option import fields_of
 from normalbench.bench.ground.output import cache
 from normalbench.bench.shaders.isa import compiler, driver_files, isa
-from normalbench.bench.shaders.isa import process as isa_process
 
 EVERY = ["--isa", "--format", "json"]
 
@@ -41,28 +39,6 @@ def first(compiled_once, own_cache):
     folder, printed = compiled_once
     shutil.copytree(folder, own_cache)
     return printed
-
-
-SAYS = "import json; print(json.dumps({'loaded': json.loads(%r)}))"
-
-
-def test_a_driver_is_known_by_what_is_loaded_of_it(monkeypatch, tmp_path):
-    """Its own library's fingerprint, and LLVM's, which disassembles; where nothing is told nothing is kept."""
-    found = []
-    for files in (
-        {"/lib/libvulkan_radeon.so": "a", "/lib/libLLVM.so": "b"},
-        {"/lib/libLLVM.so": "b", "/lib/libvulkan_radeon.so": "a"},
-        {"/lib/libvulkan_radeon.so": "a2", "/lib/libLLVM.so": "b"},
-        {"/lib/libvulkan_radeon.so": "a", "/lib/libLLVM.so": "b2"},
-        {"/lib/libLLVM.so": "b"},
-        {},
-    ):
-        monkeypatch.setattr(isa_process, "CHILD", [sys.executable, "-c", SAYS % json.dumps(files)])
-        isa._loaded.cache_clear()
-        found.append(isa._loaded(tmp_path / "radeon.json"))
-    isa._loaded.cache_clear()
-    first, same, driver, llvm, *unknown = found
-    assert first == same and len({first, driver, llvm}) == 3 and unknown == ["", ""]
 
 
 def test_a_fingerprint_is_of_the_builds_id_and_the_size(tmp_path):

@@ -30,6 +30,28 @@ compiled_once = test_cost_failures.compiled_once
 first = test_cost_failures.first
 
 
+SAYS = "import json; print(json.dumps({'loaded': json.loads(%r)}))"
+
+
+def test_a_driver_is_known_by_what_is_loaded_of_it(monkeypatch, tmp_path):
+    """Its own library's fingerprint, and LLVM's, which disassembles; where nothing is told nothing is kept."""
+    found = []
+    for files in (
+        {"/lib/libvulkan_radeon.so": "a", "/lib/libLLVM.so": "b"},
+        {"/lib/libLLVM.so": "b", "/lib/libvulkan_radeon.so": "a"},
+        {"/lib/libvulkan_radeon.so": "a2", "/lib/libLLVM.so": "b"},
+        {"/lib/libvulkan_radeon.so": "a", "/lib/libLLVM.so": "b2"},
+        {"/lib/libLLVM.so": "b"},
+        {},
+    ):
+        monkeypatch.setattr(isa_process, "CHILD", [sys.executable, "-c", SAYS % json.dumps(files)])
+        isa._loaded.cache_clear()
+        found.append(isa._loaded(tmp_path / "radeon.json"))
+    isa._loaded.cache_clear()
+    first, same, driver, llvm, *unknown = found
+    assert first == same and len({first, driver, llvm}) == 3 and unknown == ["", ""]
+
+
 def test_instructions_from_the_cache_wait_for_no_import_of_jax_or_pandas(first):
     """The table is there in two seconds, of which JAX would take one more."""
     program = (

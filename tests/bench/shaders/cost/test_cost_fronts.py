@@ -95,11 +95,17 @@ def test_what_is_no_difference_beats_nobody():
 
 
 COSTS = (2, 4, 3, 3, 26, 17, 9, 12, 15, 10, 30, 16, 68)
+
+
 DECIBELS = (18.5, 44.4, 52.7, 54.4, 41.6, 41.5, 48.5, 48.5, 48.5, 43.6, 37.6, 49.9, 61.8)
+
+
 NAMES = (
     *("xy", "xy_sign", "xyz", "xyz_renormalised", "spherical", "spherical_lut", "spheremap", "spheremap_classic"),
     *("cryengine3", "stereographic", "per_pixel_view", "octahedral", "best_fit"),
 )
+
+
 # Of codecs as near each other as the default plot's, and one where the legend used to stand.
 POINTS = [Point(*values, 16) for values in zip(NAMES, COSTS, DECIBELS, strict=True)] + [Point("last", 68, 18.5, 24)]
 
@@ -126,17 +132,6 @@ def test_labels_lie_over_no_point_line_or_other_label(drawn):
         corners = axis.transData.transform(corners)
         steps = [step for a, b in itertools.pairwise(corners) for step in labels.along(a, b, 0)]
         assert not [1 for box, step in itertools.product(boxes, steps) if box.overlaps(step)]
-
-
-def test_no_point_lies_within_the_legends_box(drawn):
-    """Nor does the legend cover any of an axis."""
-    figure = drawn(Panel("encode", POINTS), Panel("decode", POINTS[::-1]))
-    ((legend,),) = [part.legends for part in figure.subfigs]
-    box = legend.get_window_extent()
-    for axis in figure.axes:
-        assert axis.get_legend() is None and not box.overlaps(axis.get_window_extent())
-        assert not [1 for x, y in axis.transData.transform([(p.cost, p.psnr) for p in POINTS]) if box.contains(x, y)]
-    assert [text.get_text() for text in legend.get_texts()] == ["16 bits", "24 bits"]
 
 
 def test_one_point_is_a_plot_without_a_warning(drawn):

@@ -1,13 +1,11 @@
 """Cost by the clock: the arithmetic against clocks that a test makes up, and the rows of a device and of JAX."""
 
-import json
 import math
 from contextlib import ExitStack
 
 import numpy as np
 import pytest
 
-from normalbench.bench.ground.machine.devices import require_device
 from normalbench.bench.tables.cost import clocks as cost_clocks
 from normalbench.bench.tables.cost.clocks import LEAST_TURNS, MOST_TURNS, Field, Pair, Passes, median_interval, summary
 from normalbench.encodings.catalogue import ENCODINGS
@@ -75,13 +73,3 @@ def test_each_turn_computes_again(gl):
             made = read_pixels(field.targets[0])
         expected = turns * given[..., :numbers] + nothing * sum(range(turns))
         assert np.allclose(made[..., :numbers], expected, atol=1e-5)
-
-
-@pytest.mark.usefixtures("gl")
-def test_a_software_rasteriser_draws_one_tile(run):
-    status, out, _ = run(
-        "cost", "--time", "--encoding", "xy", "--storage", "rgba8", "--repeats", "2", "--format", "json"
-    )
-    assert status == 0
-    for row in json.loads(out):
-        assert row["size"] == ("64x64" if require_device().is_software else "1024x1024")

@@ -4,6 +4,18 @@ import json
 
 import pytest
 
+from normalbench.bench.ground.machine.devices import require_device
+
+
+@pytest.mark.usefixtures("gl")
+def test_a_software_rasteriser_draws_one_tile(run):
+    status, out, _ = run(
+        "cost", "--time", "--encoding", "xy", "--storage", "rgba8", "--repeats", "2", "--format", "json"
+    )
+    assert status == 0
+    for row in json.loads(out):
+        assert row["size"] == ("64x64" if require_device().is_software else "1024x1024")
+
 
 @pytest.mark.usefixtures("gl")
 def test_every_operation_and_packing_has_a_row_that_says_what_it_is(run):

@@ -2,21 +2,107 @@
 
 import json
 import re
+import subprocess
 
 import numpy as np
 import pytest
-import test_nvidia
-from test_nvidia import PLAIN
 from vendors import NVIDIA
 
 from normalbench.bench.ground.options.gpu_families import FAMILIES
 from normalbench.bench.ground.output.errors import MissingError
 from normalbench.bench.keep.machine import require_nvidia
 from normalbench.bench.shaders.isa import isa
-from normalbench.bench.shaders.isa.nvidia import tools
+from normalbench.bench.shaders.isa.nvidia import source, tools
+from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.vec import Vec2, Vec3
+from normalbench.gbuffer.defines import kernels
+from normalbench.gbuffer.defines.packings import PACKINGS
 
-called = test_nvidia.called
+# The machine's own C++ in place of CUDA's: what glsl.cuh takes from CUDA, less what is written in machine code.
+HOST = """
+#include <cmath>
+#include <cstring>
+#define __forceinline__ inline
+#define __constant__ static
+static inline float rsqrtf(float x) { return 1.0f / sqrtf(x); }
+static inline int __float_as_int(float x) { int y; memcpy(&y, &x, 4); return y; }
+static inline unsigned __float_as_uint(float x) { unsigned y; memcpy(&y, &x, 4); return y; }
+static inline float __int_as_float(int x) { float y; memcpy(&y, &x, 4); return y; }
+static inline float __uint_as_float(unsigned x) { float y; memcpy(&y, &x, 4); return y; }
+static inline int min(int a, int b) { return a < b ? a : b; }
+static inline int max(int a, int b) { return a > b ? a : b; }
+static inline unsigned umin(unsigned a, unsigned b) { return a < b ? a : b; }
+static inline unsigned umax(unsigned a, unsigned b) { return a > b ? a : b; }
+"""
+
+
+CALL = """
+extern "C" void call_{at}(const float *given, const float *beside, float *made, int count) {{
+    for (int i = 0; i < count; ++i) {{
+        glsl::vec{given} g;
+        glsl::vec{beside} b;
+        for (int k = 0; k < {given}; ++k) g[k] = given[i * {given} + k];
+        for (int k = 0; k < {beside}; ++k) b[k] = beside[i * {beside} + k];
+        auto m = glsl::own_{at}::kernel_operation(g, b);
+        for (int k = 0; k < {made}; ++k) made[i * {made} + k] = m[k];
+    }}
+}}
+"""
+
+
+# Encodings that read no texture, which the machine's C++ has none of.
+PLAIN = [encoding for encoding in ENCODINGS.values() if not encoding.tables()]
+
+
+PACKED = ("rgba8", "12:12", "16:16", "11:10:11", "11:11", "rgba8_snorm")
+
+
+@pytest.fixture(scope="module")
+def called(shared):
+    """Every operation's CUDA as the machine's own C++ compiles it: (operation, given, beside) to what is made."""
+    import ctypes
+
+    operations = [kernels.encode(e) for e in PLAIN] + [kernels.decode(e) for e in PLAIN]
+    operations += [made for name in PACKED for p in PACKINGS[name] for made in (p.pack(), p.unpack())]
+    language = source.LANGUAGE.read_text().replace('asm("abs.f32 %0, %1;" : "=f"(made) : "f"(x));', "made = fabsf(x);")
+    text = HOST + re.sub(r"    asm\(.*?\);\n", "", language, flags=re.S)
+    for at, operation in enumerate(operations):
+        text += f"namespace own_{at} {{\n{source.functions_of(operation)}}}\n"
+    text += "}\n"
+    sizes = [{"at": at, "given": o.given, "beside": o.beside, "made": o.made} for at, o in enumerate(operations)]
+    text += "".join(CALL.format(**size) for size in sizes)
+    command = ["c++", "-std=c++17", "-O1", "-w", "-ffp-contract=off", "-shared", "-fPIC", "-o", "all.so", "all.cpp"]
+    with shared("cuda") as folder:
+        if not (folder / "all.so").exists():
+            (folder / "all.cpp").write_text(text)
+            try:
+                done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+            except FileNotFoundError:
+                pytest.skip("no C++ compiler: c++ is not on the path")
+            assert done.returncode == 0, done.stderr[:2000]
+    library = ctypes.CDLL(str(folder / "all.so"))
+
+    def call(at: int, given: np.ndarray, beside: np.ndarray) -> np.ndarray:
+        made = np.zeros((len(given), sizes[at]["made"]), np.float32)
+        kept = [np.ascontiguousarray(a, np.float32) for a in (given, beside)]
+        pointers = [a.ctypes.data_as(ctypes.c_void_p) for a in kept]
+        getattr(library, f"call_{at}")(*pointers, made.ctypes.data_as(ctypes.c_void_p), len(given))
+        return made
+
+    return call
+
+
+@pytest.mark.parametrize("name", PACKED)
+def test_the_cuda_of_a_packing_brings_numbers_back(called, name):
+    """To a step of the channel that has the fewest bits, 8."""
+    first = 2 * len(PLAIN) + 2 * sum(len(PACKINGS[other]) for other in PACKED[: PACKED.index(name)])
+    random = np.random.default_rng(7)
+    for at, packing in enumerate(PACKINGS[name]):
+        size = packing.unpack().made
+        given = random.uniform(-1, 1, (500, size)).astype(np.float32)
+        texels = called(first + 2 * at, given, np.zeros((500, 3)))
+        back = called(first + 2 * at + 1, texels, np.zeros((500, 3)))
+        assert np.abs(back - given).max() < 1 / 127, packing.name
 
 
 EVERY = ["cost", "--isa", "--format", "json", "--encoding", "spheremap", "--storage", "rgba8"]

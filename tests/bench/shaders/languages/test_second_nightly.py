@@ -5,7 +5,7 @@ import test_second
 import test_second_slow
 from test_second_slow import DIVISIONS, FEW
 
-pytestmark = test_second.pytestmark
+pytestmark = pytest.mark.usefixtures("gl", "in_this_process")
 empty_cache = test_second.empty_cache
 
 

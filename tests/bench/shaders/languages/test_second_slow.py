@@ -8,7 +8,6 @@ import pytest
 import test_second
 from everyday import WGSL
 from languages import require_runner
-from test_second import DECODE, MATRICES, SUM, codes, hlsl_of
 
 from normalbench.bench.ground.directions import directions
 from normalbench.bench.ground.output import cache as kept
@@ -17,9 +16,41 @@ from normalbench.bench.shaders.languages.translated import translated
 from normalbench.bench.shaders.translator.wgsl_parser import WgslParser
 from normalbench.bench.subjects.codecs import second_look
 from normalbench.bench.subjects.codecs.first_look import first_look
+from normalbench.bench.subjects.codecs.user_encodings import read_encoding
+from normalbench.gbuffer.codecs.codec_passes import exact_values
+from normalbench.gbuffer.gl.device import device
 
-pytestmark = test_second.pytestmark
+pytestmark = pytest.mark.usefixtures("gl", "in_this_process")
 empty_cache = test_second.empty_cache
+
+
+DECODE = "float3 MineDecode(float2 e) { return normalize(float3(e, 1.0 - abs(e.x) - abs(e.y))); }"
+
+
+SUM = "n /= abs(n.x) + abs(n.y) + abs(n.z);"
+
+
+MATRICES = "static const float2x2 A = { 1, 5, 5, 1 };\nstatic const float2x2 B = { 1, 0, 0, 0.5 };\n"
+
+
+def codes(path, by=""):
+    n = np.pad(directions(), ((0, 0), (0, 1)))
+    return exact_values(device(), read_encoding(path, "", by=by), n, n, n)[0][:, :2]
+
+
+def hlsl_of(folder, name, body):
+    path = folder / f"{name}.hlsl"
+    path.write_text(f"{MATRICES}float2 MineEncode(float3 n) {{ {SUM} {body} }}\n{DECODE}\n")
+    return path
+
+
+UNDEFINED = "it divides a whole number by 0, of some normal; its language does not define that"
+
+
+@pytest.mark.usefixtures("hlsl", "slang")
+def test_a_whole_number_divided_by_zero_is_refused_in_a_line(tmp_path):
+    said = first_look(hlsl_of(tmp_path, "mine", "int k = int(n.x * 0.0); return n.xy + (7 / k) * 1e-12;"))["error"]
+    assert said.endswith(UNDEFINED)
 
 
 # HLSL that glslang reads otherwise than HLSL defines, beside the same written out.

@@ -9,21 +9,15 @@ from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.shaders.languages.source import Source
 from normalbench.bench.shaders.languages.translated import translated
 from normalbench.bench.shaders.languages.words import file_of, files_in, functions_of, settings_of, with_settings
-from normalbench.bench.subjects.codecs.layout_names import layouts_named
 from normalbench.bench.tables.quality.table import QualityOptions
 from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.codecs.variants import settings_in
 
 pytestmark = pytest.mark.usefixtures("in_this_process")
 
+
 PAIR = """float2 PackDir(float3 n) { return n.xy * SCALE; }
 float3 UnpackDir(float2 e) { return float3(e, sqrt(saturate(1.0 - dot(e, e)))); }
-"""
-
-
-OWN_LAYOUT = """
-encoding = "octahedral"
-targets = [{ format = "rg8", holds = "normal.x normal.y" }]
 """
 
 
@@ -98,20 +92,6 @@ def test_includes_are_read_from_the_folders_that_are_given(tmp_path, mine, name,
 
 
 @pytest.mark.usefixtures("slang")
-def test_macros_and_preludes_are_read_first(tmp_path, mine):
-    with pytest.raises(UsageError, match=r"SCALE.*; a macro that is not there is given by -D or --prelude"):
-        translated(mine)
-    (tmp_path / "pre.hlsl").write_text("#define SCALE 1.0\n")
-    by_macro = translated(with_settings(str(mine), define="SCALE=1.0"))
-    by_prelude = translated(with_settings(str(mine), prelude=str(tmp_path / "pre.hlsl")))
-    assert [by_macro.name, by_prelude.name] == ["mine.hlsl:SCALE=1.0", "mine.hlsl"]
-    assert "it is read with -D SCALE=1.0" in by_macro.notes
-    assert f"it is read with {tmp_path / 'pre.hlsl'}" in by_prelude.notes
-    with pytest.raises(UsageError, match=r"--define:1:.*oops.*-D or --prelude"):
-        translated(with_settings(str(mine), define="SCALE=oops"))
-
-
-@pytest.mark.usefixtures("slang")
 def test_a_file_is_read_in_the_language_that_is_said(tmp_path):
     path = tmp_path / "mine.h"
     path.write_text("func PackDir(n : float3) -> float2 { return n.xy; }\n" + PAIR.split("\n")[1])
@@ -137,19 +117,6 @@ def test_gates_name_files_and_folders_from_where_they_lie(tmp_path, mine):
         "include": {mine.parent / "library", tmp_path},
     }
     assert found["include"].startswith("Packages=")
-
-
-@pytest.mark.usefixtures("gl", "slang")
-def test_a_layout_says_it_behind_the_name(mine):
-    """Its files lie in the layout's folder or below it."""
-    (mine.parent / "pre.hlsl").write_text("#define SCALE 1.0\n")
-    layout, text = mine.parent / "mine.toml", OWN_LAYOUT.replace('"octahedral"', '"mine.hlsl:prelude=pre.hlsl"')
-    layout.write_text(text)
-    (found,) = layouts_named(str(layout))
-    assert found.encoding.name == "mine.hlsl"
-    layout.write_text(text.replace("=pre", "=../pre"))
-    with pytest.raises(UsageError, match="is not in the folder of the layout"):
-        layouts_named(str(layout))
 
 
 def test_a_path_of_windows_has_a_drive():

@@ -6,6 +6,7 @@ import pytest
 import test_source_options
 from test_source_options_slow import rows_by_macros
 
+pytestmark = pytest.mark.usefixtures("in_this_process")
 mine = test_source_options.mine
 
 

@@ -3,16 +3,53 @@
 import itertools
 import json
 import re
+from pathlib import Path
 
 import pytest
 import test_translated
 from test_translated import MINE, QUICK, changed, written
 
+from normalbench.bench.ground.compilers import tools
+from normalbench.bench.shaders.languages import translated
 from normalbench.encodings import vec
 from normalbench.encodings.catalogue import ENCODINGS
 
 pytestmark = pytest.mark.usefixtures("gl")
 _here = test_translated._here
+
+
+def test_a_missing_compiler_is_said_with_what_to_install(run, tmp_path, monkeypatch):
+    monkeypatch.setattr(tools, "path_of", lambda tool: (_ for _ in ()).throw(tools.MissingError(tools.MISSING[tool])))
+    for ending in ("hlsl", "slang"):
+        status, out, err = run("quality", "--encoding", written(tmp_path, MINE, f"mine.{ending}"), *QUICK)
+        assert (status, out) == (3, "") and err.count("\n") == 1 and "pip install slangpy" in err, err
+    assert run("quality", "--encoding", f"{tmp_path / 'mine.hlsl'},xy", *QUICK)[0] == 0
+
+
+@pytest.mark.usefixtures("hlsl")
+def test_where_the_cache_cannot_be_written_a_folder_of_the_process_serves(run, tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / written(tmp_path, "a file", "cache")))
+    status, out, _ = run("quality", "--encoding", written(tmp_path, MINE, "mine.hlsl"), *QUICK)
+    assert status == 0 and json.loads(out)[0]["angle_mean_deg"]
+
+
+@pytest.mark.usefixtures("hlsl")
+def test_a_damaged_translation_is_made_again(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    made = translated.translated(written(tmp_path, MINE, "mine.hlsl")).glsl(False)
+    text = made.read_text()
+    made.write_text("damaged")
+    assert translated.translated(tmp_path / "mine.hlsl").glsl(False).read_text() == text
+
+
+def test_hints_to_compilers_keep_nothing_from_being_written(run, ending):
+    """[unroll] and [branch], which SPIRV-Cross writes as macros under a condition."""
+    loop = "float s = 0; [unroll] for (int i = 0; i < 2; i++) s += p[i];"
+    Path(f"mine.{ending}").write_text(changed(f"{loop} [branch] if (n.z < 2) return float2(s, p.x - p.y); return p;"))
+    status, out, err = run(
+        "code", "--check", f"mine.{ending}", "--storage", "rg16", "--to", "c,hlsl", "--format", "json"
+    )
+    assert status == 0 and [row["verdict"] for row in json.loads(out)] == ["verified"] * 2, err
 
 
 BOMB = "#define A0 s += sin(s);\n" + "".join(f"#define A{i + 1} A{i} A{i} A{i} A{i}\n" for i in range(14))

@@ -5,7 +5,6 @@ import pytest
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.run.measuring import files_of
 from normalbench.bench.shaders.languages.source import Source
-from normalbench.bench.shaders.languages.translated import translated
 from normalbench.bench.shaders.languages.words import files_in, functions_of, settings_of, split_names, with_files
 from normalbench.bench.tables.quality.table import QualityOptions
 
@@ -44,15 +43,6 @@ def test_both_files_are_fingerprinted(two, tmp_path):
     before = files_of(options)
     (tmp_path / "dec.hlsl").write_text(DEC + "\n")
     assert list(before["files"]) == [two] and files_of(options) != before
-
-
-@pytest.mark.usefixtures("slang")
-def test_what_both_define_does_not_clash(two):
-    found = translated(two)
-    assert found.name == "enc.hlsl:PackDir:dec.hlsl" and found.components == 2
-    assert [name for name, _ in found.functions] == ["PackDir", "UnpackDir"]
-    places = {line.path.name for line in Source(two).lines}
-    assert places == {"enc.hlsl", "dec.hlsl", "common.hlsl"}
 
 
 def test_one_name_for_both_is_refused(two):

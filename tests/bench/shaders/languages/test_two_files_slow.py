@@ -5,7 +5,19 @@ import json
 import pytest
 import test_two_files
 
+from normalbench.bench.shaders.languages.source import Source
+from normalbench.bench.shaders.languages.translated import translated
+
 two = test_two_files.two
+
+
+@pytest.mark.usefixtures("slang")
+def test_what_both_define_does_not_clash(two):
+    found = translated(two)
+    assert found.name == "enc.hlsl:PackDir:dec.hlsl" and found.components == 2
+    assert [name for name, _ in found.functions] == ["PackDir", "UnpackDir"]
+    places = {line.path.name for line in Source(two).lines}
+    assert places == {"enc.hlsl", "dec.hlsl", "common.hlsl"}
 
 
 @pytest.mark.usefixtures("gl", "slang", "two")

@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 from languages import require_runner
 
-from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.shaders.code.verify import agreement
-from normalbench.bench.shaders.languages.translated import translated
 from normalbench.bench.subjects.codecs.names import codecs_named
+
+pytestmark = pytest.mark.usefixtures("gl")
+
 
 MINE = """
 alias Code = vec2f;
@@ -31,10 +32,12 @@ fn DecodeNormal(e: Code) -> vec3f {
     return normalize(n);
 }
 """
-QUICK = ("--storage", "rgb10a2", "--normals", "sphere", "--backend", "glsl", "--count", "65536", "--format", "json")
-FIGURES = ("mse", "angle_mean_deg", "angle_max_deg")
 
-pytestmark = pytest.mark.usefixtures("gl")
+
+QUICK = ("--storage", "rgb10a2", "--normals", "sphere", "--backend", "glsl", "--count", "65536", "--format", "json")
+
+
+FIGURES = ("mse", "angle_mean_deg", "angle_max_deg")
 
 
 def written(folder, text, name="mine.wgsl"):
@@ -49,78 +52,6 @@ def test_an_encoder_in_wgsl_has_the_figures_of_the_catalogues(run, tmp_path):
     mine, ours = sorted(json.loads(out), key=lambda row: row["encoding"] == "octahedral")
     assert mine["encoding"] == "mine.wgsl"
     assert [mine[name] for name in FIGURES] == pytest.approx([ours[name] for name in FIGURES], rel=1e-6)
-
-
-# Where an array stands, how it is declared, and how its two signs are read.
-ARRAYS = {
-    "vectors": ("module", "const A = array(vec2f(9.0, 1.0), vec2f(9.0, -1.0));", "A[{}].y"),
-    "vectors of a type": ("module", "const A = array<vec2f, 2>(vec2f(9.0, 1.0), vec2f(9.0, -1.0));", "A[{}].y"),
-    "a declared type": ("module", "const A: array<vec3f, 2> = array(vec3f(1.0), vec3f(-1.0));", "A[{}].zyx.x"),
-    "mixed numbers": ("module", "const A = array(vec2(9, 1), vec2(9.5, -1));", "A[{}].y"),
-    "a value": ("function", "let A = array(vec4f(1.0), vec4f(-1.0));", "A[{}].w"),
-    "a variable": ("function", "var A = array(vec3f(), vec3f(-1.0)); A[0].y = 1.0;", "A[{}].y"),
-    "a constant": ("function", "const A = array<vec2<f32>, 2u>(vec2f(1.0), vec2f(-1.0),);", "A[{}].x"),
-    "matrices": ("module", "const A = array(mat2x2f(0, 1, 9, 9), mat2x2f(0, -1, 9, 9));", "A[{}][0].y"),
-    "typed matrices": (
-        "module",
-        "const A = array<mat2x2f, 2>(mat2x2f(0, 1, 9, 9), mat2x2f(0, -1, 9, 9));",
-        "A[{}][0][1]",
-    ),
-    "structures": (
-        "module",
-        "struct S { a: f32, b: vec2f }\nconst A = array(S(9, vec2f(1)), S(9, vec2f(-1)));",
-        "A[{}].b.x",
-    ),
-    "whole numbers": ("module", "const A = array(vec2i(1, 9), vec2i(-1, 9));", "f32(A[{}].x)"),
-    "no name": ("module", "", "array(vec2f(9.0, 1.0), vec2f(9.0, -1.0))[{}].y"),
-}
-
-
-def with_array(where, declared, read):
-    """MINE, with its two signs in an array."""
-    text = MINE
-    for axis in "xy":
-        text = text.replace(f"select(t, -t, n.{axis} >= 0.0)", "t * " + read.format(f"u32(n.{axis} >= 0.0)"))
-    if where == "module":
-        return f"{declared}\n{text}"
-    return text.replace("-> vec3f {", f"-> vec3f {{ {declared}")
-
-
-def test_an_array_in_wgsl_has_elements_of_any_type(run, tmp_path):
-    """Wherever it stands, and with its type written or not: the figures of the octahedral map."""
-    files = [written(tmp_path, with_array(*how), f"{name}.wgsl") for name, how in ARRAYS.items()]
-    status, out, err = run("quality", "--encoding", ",".join([*files, "octahedral"]), *QUICK)
-    rows = json.loads(out)
-    assert (status, len(rows)) == (0, len(files) + 1), err
-    ours = next(row for row in rows if row["encoding"] == "octahedral")
-    for row in rows:
-        assert [row[name] for name in FIGURES] == pytest.approx([ours[name] for name in FIGURES], rel=1e-6), row
-
-
-@pytest.mark.parametrize(
-    "array, said",
-    [
-        ("array(vec2f(1), 1.0)", "an array of float, vec2; its elements have one type"),
-        ("array()", "an array of nothing; its elements have one type"),
-        ("array<vec2f, 3>(vec2f(1), vec2f(1))", "2 values of an array of 3"),
-        ("array(array(1.0, 2.0), array(1.0, 2.0))", "an array of arrays is not read"),
-        ("array<array<f32, 2>, 2>()", "an array of arrays is not read"),
-    ],
-)
-def test_an_array_that_is_not_read_says_why(array, said, tmp_path):
-    with pytest.raises(UsageError, match=said):
-        translated(written(tmp_path, with_array("module", f"const A = {array};", "A[{}].y")))
-
-
-@pytest.mark.parametrize("language", ["wgsl", "hlsl", "c"])
-def test_an_encoder_in_wgsl_can_be_written_in_every_language(language, tmp_path):
-    """Its own WGSL by wgpu gives the texels that its translation gives by OpenGL: two translations that agree."""
-    require_runner(language)
-    (codec,) = codecs_named(written(tmp_path, MINE), "rgb10a2", "nearest")
-    code = code_of(codec, language, "p")
-    (tmp_path / code.name).write_text(code.body)
-    found = agreement(codec, language, tmp_path / code.name, code.interface)
-    assert found.holds and not found.differing, found.says
 
 
 def test_the_users_own_text_by_wgpu_gives_the_codes_of_its_translation(tmp_path):
@@ -179,17 +110,3 @@ def test_a_wrong_file_loses_its_own_rows_alone(run, tmp_path):
     status, out, err = run("quality", "--encoding", f"{wrong},{written(tmp_path, MINE)}", *QUICK)
     assert status == 0 and [row["encoding"] for row in json.loads(out)] == ["mine.wgsl"]
     assert err.count("left out: ") == 1 and np.isfinite(json.loads(out)[0]["mse"])
-
-
-def test_a_variable_without_a_value_is_zero(tmp_path):
-    """GLSL leaves it undefined, so that each is written with its zero: of numbers, vectors, arrays and structures."""
-    (tmp_path / "mine.wgsl").write_text(
-        "struct S { a: f32, b: vec2f }\n"
-        "fn encode_normal(n: vec3f) -> vec2f { var s: S; var f: f32; var l: array<f32, 2>; var v: vec2f;\n"
-        "    v.x = n.x; return v + s.b + vec2f(f + l[1] + s.a, n.y); }\n"
-        "fn decode_normal(e: vec2f) -> vec3f { return vec3f(e, sqrt(max(1.0 - dot(e, e), 0.0))); }\n"
-    )
-    text = translated(tmp_path / "mine.wgsl").texts[0]
-    # A structure's fields stand before the function.
-    body = re.search(r"^vec2 user_mine_wgsl_e_wgsl_\d+\(.*?^}", text, re.S | re.M)
-    assert body and len(re.findall(r"^    [^=;\n.]+ = [^;]*\b0\.0\b[^;]*;", body[0], re.M)) == 4, text

@@ -1,8 +1,8 @@
-"""What an encoder does with numbers between codes: rounding by itself is no mistake, in any bits."""
+"""What makes a pair of two functions is named; an encoder that rounds rightly by itself raises nothing."""
 
 import pytest
-import test_between
-from test_between import ROUNDED
+import test_between_slow
+from test_between_slow import ROUNDED
 
 pytestmark = pytest.mark.usefixtures("gl")
 
@@ -10,4 +10,4 @@ pytestmark = pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("bits", [10, 16])
 @pytest.mark.parametrize("rounds", ROUNDED)
 def test_an_encoder_that_rounds_rightly_to_other_bits_raises_nothing(tmp_path, rounds, bits):
-    test_between.test_an_encoder_that_rounds_rightly_raises_nothing(tmp_path, rounds, bits)
+    test_between_slow.test_an_encoder_that_rounds_rightly_raises_nothing(tmp_path, rounds, bits)

@@ -18,6 +18,8 @@ ENCODE = """vec2 mine_encode(vec3 n, vec3 view) {
     return CODE;
 }
 """
+
+
 DECODE = """vec3 mine_decode(vec2 e, vec3 view) {
     BEFORE
     vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
@@ -26,14 +28,22 @@ DECODE = """vec3 mine_decode(vec2 e, vec3 view) {
     return RESULT;
 }
 """
+
+
 PI = "3.14159265358979"
+
+
 BY_ANGLES = f"""vec3 mine_decode(vec2 e, vec3 view) {{
     BEFORE
     float a = e.x * {PI}, s = sqrt(max(0.0, 1.0 - e.y * e.y));
     return vec3(cos(a) * s, sin(a) * s, e.y);
 }}
 """
+
+
 ANGLES = f"vec2 mine_encode(vec3 n, vec3 view) {{ return vec2(atan(n.y, n.x) / {PI}, n.z); }}\n"
+
+
 INCLINED = f"""vec2 mine_encode(vec3 n, vec3 view) {{
     return vec2(atan(n.y, n.x), 2.0 * acos(clamp(n.z, -LARGEST, LARGEST)) - {PI}) / {PI};
 }}
@@ -42,12 +52,18 @@ vec3 mine_decode(vec2 e, vec3 view) {{
     return vec3(cos(a) * sin(t), sin(a) * sin(t), cos(t));
 }}
 """
+
+
 ALL_THREE = """vec3 mine_encode(vec3 n, vec3 view) { return n; }
 vec3 mine_decode(vec3 e, vec3 view) { return RESULT; }
 """
+
+
 FLAT = """vec2 mine_encode(vec3 n, vec3 view) { return n.xy; }
 vec3 mine_decode(vec2 e, vec3 view) { return vec3(e, sqrt(max(0.0, 1.0 - dot(e, e)))); }
 """
+
+
 HALF = """vec2 mine_encode(vec3 n, vec3 view) {
     vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
     return vec2(p.x + p.y, p.x - p.y);
@@ -57,9 +73,13 @@ vec3 mine_decode(vec2 e, vec3 view) {
     return normalize(vec3(p, 1.0 - abs(p.x) - abs(p.y)));
 }
 """
+
+
 DISC = """vec2 mine_encode(vec3 n, vec3 view) { return n.xy / sqrt(1.0 + max(n.z, 0.0)); }
 vec3 mine_decode(vec2 e, vec3 view) { float f = dot(e, e); return vec3(e * sqrt(max(0.0, 2.0 - f)), 1.0 - f); }
 """
+
+
 STEREO = """vec2 mine_encode(vec3 n, vec3 view) { return n.xy / (1.0 + max(n.z, 0.0)); }
 vec3 mine_decode(vec2 e, vec3 view) { float d = 1.0 + dot(e, e); return vec3(2.0 * e, 2.0 - d) / d; }
 """
@@ -108,6 +128,8 @@ OF_THE_SPHERE = {
         "float z = dot(e, e) * 2.0 - 1.0; return vec3(normalize(e + vec2(1e-20)) * sqrt(max(0.0, 1.0 - z * z)), z);",
     ),
 }
+
+
 OF_A_HALF = {
     "two of three in [0, 1]": (
         "vec2",
@@ -218,6 +240,8 @@ WRONG = {
     ),
     "a lost pole": (INCLINED.replace("LARGEST", "0.9999"), "the pole +z loses its neighbourhood: directions 0.057"),
 }
+
+
 RIGHT = {
     "octahedral": (octahedral(), "sphere"),
     "angle and z": (ANGLES + BY_ANGLES.replace("BEFORE", ""), "sphere"),
@@ -266,24 +290,6 @@ def test_of_the_catalogue_nothing_is_said(gl, name):
     assert (found.domain, found.wrong) == (Domain(encoding.domain), [])
 
 
-@pytest.mark.usefixtures("gl")
-def test_doctor_names_it_and_draws_the_sphere(run, tmp_path):
-    path, picture = tmp_path / "mine.glsl", tmp_path / "sphere.png"
-    path.write_text(octahedral(result="normalize(n.yxz)"))
-    status, out, err = run("doctor", str(path), "--plot", str(picture), "--format", "json")
-    assert status == 1 and "x and y swapped" in out and str(picture) in err
-    assert picture.read_bytes().startswith(b"\x89PNG")
-    path.write_text(octahedral())
-    status, out, err = run("doctor", str(path))
-    assert (status, err) == (0, "") and "nothing is likely wrong" in out
-    path.write_text(octahedral().replace("mine_", "spherical_"))
-    status, out, err = run("doctor", str(path))
-    assert (status, err) == (0, "") and "there is an encoding named spherical already" in " ".join(out.split())
-    path.write_text(FLAT)
-    status, out, err = run("doctor", str(path))
-    assert (status, err) == (0, "") and "taken to be made for normals with z >= 0" in " ".join(out.split())
-
-
 # A number for the face of a cube, which needs few values: its encode of face f, and its decode of number e.z.
 FACES = """vec3 mine_encode(vec3 n) {
     vec3 a = abs(n);
@@ -318,12 +324,6 @@ def test_a_number_of_few_values_need_not_fill_its_range(run, tmp_path, steps, re
 
 
 @pytest.mark.usefixtures("gl")
-def test_a_wrong_number_of_few_values_blames_no_other_number(tmp_path):
-    found = looked_at(tmp_path, faces("f / 6.0", "e.z * 5.0"))
-    assert found["is_unit"] and len(found["wrong"]) == 1 and "are not a pair" in found["wrong"][0]
-
-
-@pytest.mark.usefixtures("gl")
 def test_an_encoder_that_rounds_for_another_storage_is_not_wrong(run, tmp_path):
     """What it loses in a storage of other steps is a note, with the storage that has its steps."""
     path = tmp_path / "mine.glsl"
@@ -335,28 +335,6 @@ def test_an_encoder_that_rounds_for_another_storage_is_not_wrong(run, tmp_path):
     assert note["finding"].endswith("; encode rounds to 1/127 itself: try --storage rg8_snorm")
     status, out, _ = run("doctor", str(path), "--storage", "rg8_snorm", "--format", "json")
     assert status == 0 and len(json.loads(out)) == 1
-
-
-@pytest.mark.usefixtures("gl")
-def test_doctor_says_its_verdict_first_and_notes_apart(run, tmp_path):
-    """A note, such as a guess about the range of codes, is not a finding."""
-    path = tmp_path / "mine.glsl"
-    path.write_text(octahedral("p * 0.5 + 0.5", "e = e * 2.0 - 1.0;"))
-    status, out, _ = run("doctor", str(path))
-    verdict, about, notes, note = out.rstrip("\n").split("\n\n")
-    assert (status, verdict, notes) == (0, "nothing is likely wrong", "notes:")
-    assert about == "file mine.glsl, encoding mine, domain sphere, functions mine_encode:mine_decode"
-    assert note.startswith("- its codes are in [0, 1]")
-    rows = json.loads(run("doctor", str(path), "--format", "json")[1])
-    assert [row["kind"] for row in rows] == ["verdict", "note"] and rows[0]["finding"] == "nothing is likely wrong"
-    path.write_text(octahedral("p * 0.5 + 0.5", "e = e * 2.0 - 1.0;", "normalize(n.yxz) * 1.5"))
-    status, out, _ = run("doctor", str(path))
-    verdict, about, findings, notes, note = out.rstrip("\n").split("\n\n")
-    assert (status, verdict, notes) == (1, "2 findings", "notes:") and findings.count("\n- ") == 1, out
-    rows = json.loads(run("doctor", str(path), "--format", "json")[1])
-    assert [row["kind"] for row in rows] == ["finding", "finding", "note"]
-    written = tmp_path / "said.md"
-    assert run("doctor", str(path), "-o", str(written))[0] == 1 and written.read_text().startswith("2 findings\n\n")
 
 
 @pytest.mark.usefixtures("gl")

@@ -2,13 +2,15 @@
 
 import pytest
 import test_halves
-from test_halves import HALVES, OPEN, TWO
+import test_halves_slow
+from test_halves import HALVES, OPEN
+from test_halves_slow import TWO
 
-pytestmark = test_halves.pytestmark
+pytestmark = pytest.mark.usefixtures("gl")
 _here = test_halves._here
 
 
 @pytest.mark.parametrize("half", [half for half in HALVES if half not in TWO])
 @pytest.mark.parametrize("what", OPEN)
 def test_a_code_that_is_finite_on_any_half_alone_is_taken_for_it(tmp_path, monkeypatch, what, half):
-    test_halves.test_a_code_that_is_finite_on_its_half_alone_is_taken_for_it(tmp_path, monkeypatch, what, half)
+    test_halves_slow.test_a_code_that_is_finite_on_its_half_alone_is_taken_for_it(tmp_path, monkeypatch, what, half)

@@ -13,12 +13,20 @@ from normalbench.bench.tables.render.table import RenderOptions
 from normalbench.encodings.catalogue import ENCODINGS
 
 pytestmark = pytest.mark.usefixtures("gl")
+
+
 OWN = Path(__file__).parents[4] / "docs" / "bring-your-own.md"
+
+
 LAYOUT, *_ = re.findall(r"```toml\n(.*?)```", OWN.read_text(), re.S)
+
+
 THREE_NUMBERS = """
 encoding = "best_fit:table=scales.npy"
 targets = [{ format = "rgba8", holds = "normal.x normal.y normal.z power" }]
 """
+
+
 OCTAHEDRAL = """
 #include "wrap.glsl"
 vec2 mine_encode(vec3 n) {
@@ -30,6 +38,8 @@ vec3 mine_decode(vec2 e) {
     return normalize(vec3(n.z >= 0.0 ? n.xy : wrap(n.xy), n.z));
 }
 """
+
+
 WRAP = "vec2 wrap(vec2 v) { return (1.0 - abs(v.yx)) * vec2(v.x >= 0.0 ? 1.0 : -1.0, v.y >= 0.0 ? 1.0 : -1.0); }\n"
 
 
@@ -40,18 +50,6 @@ def written(folder: Path, encoding: str, name: str = "own.toml") -> str:
     (folder / "code" / "wrap.glsl").write_text(WRAP)
     (folder / name).write_text(LAYOUT.replace('"octahedral"', json.dumps(encoding)))
     return str(folder / name)
-
-
-def test_a_layout_takes_a_users_encoder(run, tmp_path, monkeypatch):
-    """The octahedron in a user's words loses what the catalogue's loses; its file is sought where the layout lies."""
-    monkeypatch.chdir(tmp_path)
-    layouts = f"{written(Path('here'), 'code/mine.glsl')},{written(Path('here'), 'octahedral', 'other.toml')}"
-    words = ("--scene", "room", "--size", "96x64", "--repeats", "0", "--format", "json")
-    status, out, err = run("render", "--layout", layouts, *words)
-    assert (status, err) == (0, "")
-    own, other = json.loads(out)
-    assert (own["encoding"], other["encoding"]) == ("mine", "octahedral")
-    assert own["normal_psnr_db"] == pytest.approx(other["normal_psnr_db"], abs=0.1)
 
 
 def test_a_layout_takes_a_tuned_table(tmp_path):

@@ -11,11 +11,7 @@ from pathlib import Path
 import pytest
 from mistakes import MISTAKES, OCTAHEDRAL, TEXTS, program, said
 
-from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.subjects.codecs.first_look import first_look
-from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.codecs.codec import Codec
-from normalbench.encodings.storages.storage import STORAGES
 
 pytestmark = pytest.mark.usefixtures("gl")
 
@@ -91,21 +87,3 @@ def test_each_mistake_changes_the_text():
     for mistake in MISTAKES:
         made = [program(text, mistake, 8) for text in OCTAHEDRAL]
         assert any(one and one != program(text, "", 8) for text, one in zip(OCTAHEDRAL, made, strict=True)), mistake
-
-
-SOME = {("octahedral", "glsl"), ("cube", "wgsl"), ("xy", "glsl"), ("spheremap", "wgsl")}
-
-
-def check_written(folder: Path, name: str, language: str) -> None:
-    codec = Codec(ENCODINGS[name], STORAGES["rgba16"])
-    path = folder / f"mine.{language}"
-    path.write_text(code_of(codec, language).text([]))
-    found = first_look(path)
-    assert found.get("wrong") == [], found
-    assert found["domain"] == ENCODINGS[name].domain
-
-
-@pytest.mark.parametrize("name, language", sorted(SOME))
-def test_code_of_the_catalogue_raises_nothing(tmp_path, monkeypatch, name, language):
-    monkeypatch.chdir(tmp_path)
-    check_written(Path(), name, language)

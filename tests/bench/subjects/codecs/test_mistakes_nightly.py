@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 from mistakes import MISTAKES, TEXTS
-from test_mistakes import QUICK, check, check_written
+from test_mistakes import QUICK, check
+from test_mistakes_slow import check_written
 
 from normalbench.encodings.catalogue import ENCODINGS
 

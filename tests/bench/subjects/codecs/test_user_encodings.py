@@ -19,62 +19,12 @@ pytestmark = pytest.mark.usefixtures("gl")
 (MINE,) = re.findall(r"```glsl\n(.*?)```", (Path(__file__).parents[4] / "README.md").read_text(), re.S)
 
 
-TWIN = """
-from normalbench.encodings.vec import Vec2, Vec3, normalize
-
-
-def encode(n, view):
-    s = abs(n.x) + abs(n.y) + abs(n.z)
-    return Vec2((n.x + n.y) / s, (n.x - n.y) / s)
-
-
-def decode(e, view):
-    x, y = (e.x + e.y) * 0.5, (e.x - e.y) * 0.5
-    return normalize(Vec3(x, y, 1.0 - abs(x) - abs(y)))
-"""
-
-
 QUICK = ("--normals", "hemisphere", "--count", "65536", "--format", "json")
 
 
 def written(folder: Path, text: str = MINE, name: str = "mine.glsl") -> str:
     (folder / name).write_text(text)
     return str(folder / name)
-
-
-def test_two_functions_are_measured_like_any_other(run, tmp_path):
-    """Half the sphere in the whole square: about a bit more than the octahedron is worth there."""
-    path = written(tmp_path)
-    status, out, err = run("quality", "--encoding", f"{path},octahedral", "--backend", "glsl", *QUICK)
-    rows = {row["encoding"]: row for row in json.loads(out)}
-    assert status == 0 and err.endswith(
-        "mine.glsl: taken to be made for normals with z >= 0 alone: no others come back\n"
-    )
-    assert err.count("\n") == 1
-    assert 0.8 < rows["mine"]["effective_bits"] - rows["octahedral"]["effective_bits"] < 1.2, rows
-    status, out, _ = run("render", "--encoding", path, "--size", "64x48", "--repeats", "1", "--format", "json")
-    assert status == 0 and json.loads(out)[0]["encoding"] == "mine"
-
-
-def test_without_a_twin_the_jax_row_says_so_and_with_one_it_agrees(run, tmp_path):
-    path = written(tmp_path)
-    status, out, err = run("quality", "--encoding", path, *QUICK)
-    jax_row, gl_row = json.loads(out)
-    said = "mine has no Python twin; mine.py next to it would add rows by JAX"
-    assert status == 0 and jax_row["skipped"] == said
-    assert f"normalbench: measured by OpenGL alone: {said}\n" in err and "without figures" not in err
-    _, out, _ = run("quality", "--encoding", path, *QUICK[:-1], "markdown")
-    assert "| mine " in out and "jax" not in out.partition("- by OpenGL")[0], "a row by GLSL alone"
-    assert f"by OpenGL alone: mine/rgba8 on hemisphere ({jax_row['skipped']})" in out
-    (tmp_path / "mine.py").write_text(TWIN)
-    _, out, err = run("quality", "--encoding", path, *QUICK)
-    by_jax, by_gl = json.loads(out)
-    assert err.count("\n") == 1 and by_jax["psnr_db"] == pytest.approx(by_gl["psnr_db"], abs=0.02)
-    assert by_gl["psnr_db"] == gl_row["psnr_db"]
-    # The twin's functions are encode and decode; those of the shader may be, too.
-    (tmp_path / "mine.glsl").write_text(MINE.replace("mine_", ""))
-    renamed = json.loads(run("quality", "--encoding", path, *QUICK)[1])
-    assert [row["psnr_db"] for row in renamed] == [by_jax["psnr_db"], by_gl["psnr_db"]], renamed
 
 
 @pytest.mark.parametrize("words", ["quality --normals axes --encoding", "depth --depth", "lights --light-buffer"])
@@ -162,12 +112,6 @@ def test_a_shader_that_does_not_end_or_kills_the_process_is_named(run, tmp_path,
     monkeypatch.setattr(user_encodings.sys, "executable", str(killer))
     status, _, err = run("quality", "--encoding", path, *QUICK)
     assert status == 2 and "killed the process (SIGSEGV)" in err
-
-
-def test_a_decoder_that_undoes_nothing_is_said_and_measured(run, tmp_path):
-    path = written(tmp_path, MINE.replace("vec3(p, 1.0", "vec3(p * p, 1.0"))
-    status, out, err = run("quality", "--encoding", path, "--backend", "glsl", *QUICK)
-    assert status == 0 and len(json.loads(out)) == 1 and "encode and decode are not a pair" in err
 
 
 def test_the_first_look_finds_the_domain(tmp_path):

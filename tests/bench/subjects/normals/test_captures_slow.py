@@ -1,23 +1,145 @@
 """Captured frames as sets of normals: channels, packing, spaces, masks, and what bad files get."""
 
+import struct
 import time
+import zlib
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
-from test_captures import all_of, capture, figures
+from test_captures import capture
 from written import (
+    chunk,
+    dds_bytes,
     given,
     packed,
     planes_of,
     png_bytes,
     some_normals,
     write_exr,
+    write_image,
 )
 
-from normalbench.bench.subjects.normals.captures import Reading
+from normalbench.bench.subjects.normals.captures import Reading, chosen_channels
 from normalbench.bench.subjects.normals.normal_sets import playground
+from normalbench.bench.subjects.normals.pixel_files import read_pixels
+from normalbench.bench.tables.quality.measure import Case, measure
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
+from normalbench.gbuffer.scenes.built_in.playground import CAMERA
 from normalbench.gbuffer.scenes.built_in.playground import playground as rendered
+
+RG8 = Codec(ENCODINGS["octahedral"], STORAGES["rg8"])
+
+
+def figures(made, codec: Codec = RG8) -> dict:
+    row = measure(Case(codec, made, "jax"))
+    hidden = ("normals", "not_finite", "code_space")
+    return {column: value for column, value in row.items() if column not in hidden}
+
+
+def test_rays_of_a_field_of_view_are_the_cameras(tmp_path):
+    """Per-pixel view space on the playground's normals with its field of view, within 0.01 dB of the playground's."""
+    np.save(tmp_path / "frame.npy", rendered().normals)
+    codec = Codec(ENCODINGS["per_pixel_view"], STORAGES["rg8"])
+    made = capture(tmp_path / "frame.npy", Reading(fov=CAMERA.fov))
+    own, parallel = figures(playground(), codec)["psnr_db"], figures(replace(made), codec)["psnr_db"]
+    assert parallel == pytest.approx(own, abs=0.01)
+    without = figures(capture(tmp_path / "frame.npy", Reading()), codec)["psnr_db"]
+    assert abs(without - own) > 5, "parallel rays are another matter"
+
+
+def test_normals_of_no_length_are_background(tmp_path):
+    """Zero, less than a code of 8 bits from zero, and a cleared packed target; never NaN."""
+    n = some_normals()
+    n[:5] = 0
+    np.save(tmp_path / "frame.npy", n)
+    stored = packed(n, np.uint8)
+    stored[2:4] = (127, 128, 127)
+    Image.fromarray(stored).save(tmp_path / "frame.png")
+    for name in ("frame.npy", "frame.png"):
+        made = capture(tmp_path / name, Reading())
+        n_made, covered = given(made)
+        assert made.background == 5 * 64 and not covered[: 5 * 64].any() and covered[5 * 64 :].all()
+        assert np.isfinite(n_made).all()
+
+
+def all_of(path: Path):
+    """Every channel of a file, (channels, height, width), and what stands for 1."""
+    made = read_pixels(path, lambda names: names)
+    return made.planes, made.full
+
+
+# Of each format: the type of its numbers, and how OpenImageIO is to write it.
+FORMATS = {
+    "a.png": (np.uint16, {}),
+    "b.png": (np.uint8, {}),
+    "a.tif": (np.uint8, {"compression": "lzw"}),
+    "b.tif": (np.uint16, {"compression": "zip"}),
+    "c.tif": (np.float16, {"compression": "zip"}),
+    "d.tiff": (np.float32, {"compression": "none"}),
+    "e.tiff": (np.float64, {"compression": "zip", "planarconfig": "separate"}),
+}
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_numbers_of_every_format_come_back_as_they_are(tmp_path, name):
+    """Colour is neither multiplied by alpha nor converted, and 16 bits stay 16."""
+    kind, how = FORMATS[name]
+    pixels = np.random.default_rng(0).integers(0, 2**16, (9, 7, 4))
+    pixels = pixels.astype(kind) if np.issubdtype(kind, np.integer) else (pixels / 2**16 - 0.5).astype(kind)
+    pixels[0, :, 3] = 0
+    planes, full = all_of(write_image(tmp_path / name, pixels, **how))
+    assert np.array_equal(planes, np.moveaxis(pixels, -1, 0)), abs(planes - np.moveaxis(pixels, -1, 0)).max()
+    assert full == (np.iinfo(kind).max if np.issubdtype(kind, np.integer) else None)
+    assert planes.dtype == (np.float64 if kind is np.float64 else np.float32)
+
+
+def test_dds_webp_and_radiance_files_are_read(tmp_path):
+    """Whole numbers to the last one, also under an alpha of 0; Radiance's to the 8 bits that it has."""
+    pixels = np.random.default_rng(0).integers(0, 256, (9, 7, 4), np.uint8)
+    (tmp_path / "a.dds").write_bytes(dds_bytes(pixels))
+    Image.fromarray(pixels).save(tmp_path / "a.webp", lossless=True, exact=True)
+    for name in ("a.dds", "a.webp"):
+        planes, full = all_of(tmp_path / name)
+        assert np.array_equal(planes, np.moveaxis(pixels, -1, 0)) and full == 255, name
+    exact = pixels[..., :3].astype(np.float32) / 256
+    exact[..., 2] = np.maximum(exact[..., 2], 0.5)
+    planes, full = all_of(write_image(tmp_path / "a.hdr", exact))
+    assert np.array_equal(planes, np.moveaxis(exact, -1, 0)) and full is None
+
+
+def test_pages_of_a_file_are_layers(tmp_path):
+    pages = [np.random.default_rng(seed).integers(1, 256, (9, 7, 3), np.uint8) for seed in range(2)]
+    Image.fromarray(pages[0]).save(tmp_path / "a.tif", save_all=True, append_images=[Image.fromarray(pages[1])])
+    seen = []
+    made = read_pixels(tmp_path / "a.tif", lambda names: seen.extend(names) or ["2.R", "G"])
+    assert seen == ["R", "G", "B", "2.R", "2.G", "2.B"]
+    assert np.array_equal(made.planes, [pages[1][..., 0], pages[0][..., 1]])
+    assert chosen_channels(tmp_path / "a.tif", seen, None) == ["R", "G", "B"]
+
+
+def test_whole_numbers_of_an_exr_are_not_scaled(tmp_path):
+    """An object's number is not a share of 2^32."""
+    objects = np.arange(63, dtype=np.uint32).reshape(9, 7)
+    planes, full = all_of(write_exr(tmp_path / "a.exr", {"id": objects}))
+    assert np.array_equal(planes, [objects]) and full is None
+
+
+@pytest.mark.parametrize("size", [(9, 13), (1, 1), (3, 2)])
+def test_an_interlaced_png_is_read(tmp_path, size):
+    """Its seven passes one after the other, each as an image of its own."""
+    pixels = np.random.default_rng(0).integers(0, 2**16, (*size, 3), np.uint16)
+    passes = [(0, 0, 8, 8), (0, 4, 8, 8), (4, 0, 8, 4), (0, 2, 4, 4), (2, 0, 4, 2), (0, 1, 2, 2), (1, 0, 2, 1)]
+    parts = [pixels[y::down, x::across].astype(">u2") for y, x, down, across in passes]
+    rows = b"".join(b"\0" + row.tobytes() for part in parts if part.size for row in part)
+    head = struct.pack(">IIBBBBB", size[1], size[0], 16, 2, 0, 0, 1)
+    body = chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
+    (tmp_path / "a.png").write_bytes(b"\x89PNG\r\n\x1a\n" + body)
+    assert np.array_equal(all_of(tmp_path / "a.png")[0], np.moveaxis(pixels, -1, 0))
 
 
 def test_the_playground_through_a_file_has_the_playgrounds_own_figures(tmp_path):

@@ -1,6 +1,5 @@
 """Clouds of points, which are sets of normals; and Git LFS pointers in place of any file."""
 
-import json
 import struct
 
 import numpy as np
@@ -12,6 +11,8 @@ from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.subjects.normals.normal_names import normal_sets_named
 
 CLOUD = ROOT / "tests" / "inputs" / "normals" / "points.ply"
+
+
 POINTER = f"version https://git-lfs.github.com/spec/v1\noid sha256:{'0' * 64}\nsize 12345\n"
 
 
@@ -20,15 +21,6 @@ def normals_of(path, **reading):
     (made,) = normal_sets_named(str(path), 0, 0, Reading(**reading))
     chunk = made.chunk(0)
     return np.stack([np.asarray(one) for one in chunk.n], axis=1)[np.asarray(chunk.covered)]
-
-
-def test_a_cloud_is_a_set_of_normals(run):
-    status, out, err = run(
-        *("quality", "--encoding", "octahedral", "--normals", str(CLOUD), "--backend", "jax", "--format", "json")
-    )
-    assert status == 0, err
-    (row,) = json.loads(out)
-    assert row["normals"] == "points.ply" and row["count"] == 2
 
 
 @pytest.mark.parametrize("order", ["<", ">"])

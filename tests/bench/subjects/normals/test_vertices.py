@@ -20,8 +20,12 @@ from normalbench.gbuffer.scenes.files.mesh_file import Rounding
 from normalbench.gbuffer.scenes.mesh import Mesh, sphere
 
 ROUND = sphere(1.0, 24, 16)
+
+
 # At a pole all slices have one normal, to the bit.
 BALL = replace(ROUND, positions=ROUND.positions.round(9), normals=ROUND.normals.round(9))
+
+
 CLOUD = ROOT / "tests" / "inputs" / "normals" / "points.ply"
 
 
@@ -53,9 +57,6 @@ def ball_of(normals: np.ndarray, normalized: bool = True) -> Document:
     document.node(mesh=mesh)
     document.json["extensionsRequired"] = ["KHR_mesh_quantization"]
     return document
-
-
-# Which there are
 
 
 @pytest.mark.parametrize("how", ["glb", "data"])
@@ -207,9 +208,6 @@ def test_python_has_them_too(tmp_path):
     assert row["count"] == 24 * 15 + 2 and row["normals"] == "a,b.glb#vertices"
 
 
-# What the file's own rounding has cost
-
-
 def turned_deg(exact: np.ndarray, found: np.ndarray) -> float:
     """The mean angle between unit normals."""
     return float(np.degrees(2 * np.arcsin(np.minimum(np.linalg.norm(exact - found, axis=1) / 2, 1))).mean())
@@ -251,39 +249,6 @@ def test_few_normals_and_those_along_axes_show_no_map():
     assert all_roundings(box, ()) == () and own_error_deg(box, [Rounding(127)]) == 0
     few = unit(np.array([(a, b, 7 - abs(a) - abs(b)) for a in range(-3, 4) for b in range(-3, 4)], float))
     assert len(few) < own_errors.DIFFERENT and all_roundings(few, ()) == ()
-
-
-def test_meshopts_map_is_read_from_the_file(tmp_path):
-    """8 bits of a map in bytes: neither number alone says all of the error."""
-    pytest.importorskip("meshoptimizer")
-    exact = directions(3000)
-    square = np.stack([*ENCODINGS["octahedral"].encode(Vec3(*exact.T), Vec3(*exact.T))], axis=1)
-    for bits, stride in ((8, 4), (6, 4), (10, 8)):
-        one = 2 ** (bits - 1) - 1
-        rows = np.concatenate([np.round(square * one), np.full((3000, 1), one), np.zeros((3000, 1))], axis=1)
-        stored = rows.astype(np.int8 if stride == 4 else np.int16)
-        made, found = vertices(meshopt(stored, stride).write(tmp_path / f"{bits}.glb"))
-        right = turned_deg(exact, found)
-        assert made.own_error_deg == pytest.approx(right, rel=0.06), (bits, made.own_error_deg, right)
-
-
-def meshopt(stored: np.ndarray, stride: int) -> Document:
-    """Points whose normals lie in a file by EXT_meshopt_compression's octahedral filter."""
-    import meshoptimizer
-
-    count = len(stored)
-    data = bytes(meshoptimizer.encode_vertex_buffer(stored, count, stride))
-    document = ball_of(np.zeros((count, 3), np.int8 if stride == 4 else np.int16))
-    at = document.view(data)
-    view = document.json["bufferViews"].pop(at)
-    packed = {"buffer": 0, "byteOffset": view["byteOffset"], "byteLength": len(data), "count": count}
-    packed |= {"byteStride": stride, "mode": "ATTRIBUTES", "filter": "OCTAHEDRAL"}
-    plain = {"buffer": 1, "byteLength": stride * count, "byteStride": stride}
-    document.json["bufferViews"].append(plain | {"extensions": {"EXT_meshopt_compression": packed}})
-    document.json["accessors"][-1]["bufferView"] = at
-    document.others = [{"byteLength": stride * count}]
-    document.json["extensionsRequired"].append("EXT_meshopt_compression")
-    return document
 
 
 @pytest.mark.parametrize(

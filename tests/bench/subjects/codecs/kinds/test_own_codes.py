@@ -9,7 +9,6 @@ from manual import ROOT
 
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.shaders.languages.shapes import SHAPES, WORDS, kind_spoken_of
-from normalbench.bench.shaders.languages.translated import translated
 from normalbench.bench.subjects.codecs.kinds.named import light_codecs_named, own_code, own_codes_named
 from normalbench.bench.subjects.codecs.kinds.table import OWN
 from normalbench.encodings.catalogue import CURVE_ENCODINGS, FRAME_ENCODINGS, LIGHT_BUFFERS, MOTION_ENCODINGS
@@ -21,8 +20,14 @@ from normalbench.gbuffer.codecs.curve.curve_passes import CurvePasses
 from normalbench.gbuffer.gl.device import device
 
 pytestmark = pytest.mark.usefixtures("gl", "slang")
+
+
 INPUTS = ROOT / "tests" / "inputs" / "own_codes"
+
+
 VECTORS = ("vectors", "--backend", "glsl", "--speed", "0.25,4", "--count", "512", "--format", "json")
+
+
 KEYS = ("encoding", "device", "range")
 
 
@@ -36,17 +41,6 @@ def figures(out: str, name: str) -> list[dict]:
     """The rows of a code without what names it."""
     found = [row for row in json.loads(out) if row["encoding"] == name]
     return [{column: value for column, value in row.items() if column not in KEYS} for row in found]
-
-
-@pytest.mark.parametrize("ending", ["hlsl", "slang", "glsl", "wgsl"])
-def test_a_copy_of_a_motion_code_has_its_rows(run, ending):
-    """Each is the catalogue's sqrt, in another form: with a range, a structure, an out parameter, a stage around it."""
-    file = INPUTS / f"velocity.{ending}"
-    words = ("--storage", "rg16,rg8_snorm,rg16f", "--range", "0.5,1")
-    status, out, err = run(*VECTORS, "--encoding", f"{file},sqrt", *words)
-    assert status == 0 and not err, err
-    assert len(figures(out, "sqrt")) == 12
-    assert figures(out, file.name) == figures(out, "sqrt")
 
 
 def test_codes_in_0_to_1_are_held_as_they_are(run, tmp_path):
@@ -90,6 +84,8 @@ def test_an_encoder_that_clips_by_itself_has_the_range_that_comes_back(tmp_path)
 
 
 PAIR = "float2 DecodeVelocity(float2 e) { return e; }"
+
+
 # What each file is refused for.
 BROKEN = {
     "float2 EncodeVelocity(float2 v) { return v * q; }" + PAIR: r"1:46: undefined identifier 'q'",
@@ -128,14 +124,6 @@ def test_what_cannot_be_measured_is_a_line_that_spares_others(run, tmp_path, tex
         status, out, err = run(*VECTORS, "--encoding", f"{file},linear", "--storage", "rg8")
         assert status == 0 and f"left out: {file}" in err
         assert {row["encoding"] for row in json.loads(out)} == {"linear"}
-
-
-def test_a_decoder_that_is_another_ones_is_measured_and_told(run, tmp_path):
-    file = tmp_path / "mine.hlsl"
-    file.write_text(PAIR.replace("return e", "return 2 * e") + "float2 EncodeVelocity(float2 v) { return v; }")
-    status, out, err = run(*VECTORS, "--encoding", str(file), "--storage", "rg16")
-    assert status == 0 and len(json.loads(out)) == 2
-    assert "encode and decode do not undo each other: (1, 0) comes back 1 screens off" in err
 
 
 def test_of_several_pairs_the_one_that_undoes_itself_is_taken(tmp_path):
@@ -223,6 +211,8 @@ def test_a_curve_that_leaves_its_range_or_moves_its_ends_is_told(tmp_path):
 
 
 LIGHTS = ("lights", "--sum", "1,4", "--counts", "8", "--format", "json")
+
+
 # What rows by the model alone have.
 OF_MODEL = {"model", "error", "model_rms", "model_max", "bound", "rounds", "agree_percent"}
 
@@ -266,21 +256,6 @@ def test_how_texels_are_added_is_found_out(tmp_path, encode):
     (found,) = light_codecs_named(str(file))
     assert (found.storage.name, found.blend, found.has_alpha) == (storage, blend, True)
     assert found.limit == pytest.approx(limit, rel=0.05)
-
-
-def test_a_format_is_named_behind_the_file(run, tmp_path):
-    file = tmp_path / "own.hlsl"
-    file.write_text("float3 EncodeLight(float3 l) { return l; } float3 DecodeLight(float3 e) { return e; }")
-    words = (*LIGHTS, "--experiment", "equal", "--light-buffer")
-    status, out, err = run(*words, f"{file}:format=r11g11b10f,r11g11b10f")
-    assert status == 0 and not err, err
-    # Channels share a row where the device and the model agree in them.
-    left = [{(row["sum"], row["gl"]) for row in lit(out, name)} for name in ("own.hlsl", "r11g11b10f")]
-    assert left[0] == left[1] and len(left[0]) >= 2
-    status, _, err = run(*words, f"{INPUTS / 'light.hlsl'}:format=r11g11b10f")
-    assert status == 2 and "its code has 4 numbers, R11F G11F B10F 3" in err
-    status, _, err = run(*words, f"{file}:format=rgba9")
-    assert status == 2 and "unknown format 'rgba9'" in err
 
 
 def test_a_cleared_texel_that_glows_is_told(tmp_path):
@@ -363,16 +338,6 @@ def test_axes_that_come_back_swapped_are_told(tmp_path):
 )
 def test_what_a_function_is_of_is_in_its_name(name, kind):
     assert kind_spoken_of(name) == kind
-
-
-def test_a_direction_to_a_light_is_still_measured_as_a_normal(tmp_path):
-    """Its code has two numbers, which no light has."""
-    file = tmp_path / "mine.hlsl"
-    file.write_text(
-        "float2 EncodeLightDir(float3 n) { return n.xy; }"
-        "float3 DecodeLightDir(float2 e) { return float3(e, sqrt(saturate(1 - dot(e, e)))); }"
-    )
-    assert translated(file).named == "EncodeLightDir:DecodeLightDir"
 
 
 def test_two_curves_in_a_file_are_named(tmp_path):

@@ -1,0 +1,34 @@
+"""How a process keeps memory."""
+
+import subprocess
+import sys
+
+import pytest
+
+COMMAND = """
+import resource, sys
+resource.setrlimit(resource.RLIMIT_AS, (10**9, 10**9))
+from normalbench.bench.door.cli.app import main
+sys.argv = ["normalbench", *sys.argv[1:]]
+sys.exit(main())
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the limit of addresses")
+@pytest.mark.parametrize(
+    "words", ["quality --encoding octahedral --storage rg8 --normals axes", "code octahedral --storage rg8", "doctor"]
+)
+def test_a_process_without_addresses_enough_is_one_line(words):
+    """With 1 GB the libraries that JAX is written in ended it: terminate called, status 134."""
+    done = subprocess.run([sys.executable, "-c", COMMAND, *words.split()], capture_output=True, text=True)
+    said = (
+        "normalbench: not enough memory: this process is limited to 1 GB of addresses, and JAX and OpenGL need 2.5 GB"
+    )
+    assert (done.returncode, done.stdout) == (3, ""), done.stderr
+    assert done.stderr == f"{said}; raise the limit: ulimit -v 2500000\n", done.stderr
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the limit of addresses")
+def test_what_starts_no_jax_needs_little():
+    done = subprocess.run([sys.executable, "-c", COMMAND, "list", "encodings"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr

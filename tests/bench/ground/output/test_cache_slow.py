@@ -1,0 +1,24 @@
+"""Nothing of the cache is read that another user may have written."""
+
+import os
+
+import pytest
+import test_cache
+from test_cache import ELSE, KEY, as_root
+
+from normalbench.bench.ground.output import cache
+from normalbench.bench.shaders.isa import null_device
+
+folder = test_cache.folder
+
+
+@as_root
+def test_a_cache_of_another_user_is_not_used_and_doctor_says_so(run, folder):
+    folder.mkdir(parents=True)
+    os.chown(folder, ELSE, ELSE)
+    cache.write(KEY, {})
+    assert not [*folder.iterdir()]
+    with pytest.raises(null_device.NullDeviceError, match="another user's folder; XDG_CACHE_HOME names another one"):
+        null_device.library()
+    _, out, _ = run("doctor", "--format", "csv")
+    assert f"no: another user's folder: {folder}; XDG_CACHE_HOME names another one" in out

@@ -1,0 +1,112 @@
+"""The wall around the process that translates a file, where the judge of its text is taken out."""
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+from test_wall import MINE
+
+from normalbench.bench.ground.machine import children
+from normalbench.bench.ground.machine.systems import landlock
+
+pytestmark = pytest.mark.usefixtures("slang")
+
+
+# The process as it is, but for a fault: Slang's compiler is given whatever stands here in front of each text.
+FAULT = """
+import runpy, sys
+from normalbench.bench.ground.compilers import slang
+from normalbench.bench.ground.machine.systems import landlock
+from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.shaders.languages import translated
+
+def unjudged(text, options, folder):
+    {attempt}
+    (folder / slang.GIVEN).write_text({head!r} + text)
+    return slang.Compiled([str(folder / slang.GIVEN), "-enable-machine-readable-diagnostics", *options])
+
+slang.compiled = unjudged
+landlock.is_available = lambda: {is_walled}
+runpy.run_module("normalbench.bench.shaders.languages.child", run_name="__main__")
+"""
+
+
+NOTE = "float secret() { return 1.2345; }\n"
+
+
+@pytest.fixture
+def wall():
+    if not landlock.is_available():
+        assert not os.environ.get("CI"), "no Landlock here"
+        pytest.skip("no Landlock here")
+
+
+def answer(tmp_path, head="", attempt="pass", is_walled=True, code=MINE):
+    """What the process says of a file in a folder of its own, with the fault."""
+    (tmp_path / "own").mkdir(exist_ok=True)
+    (tmp_path / "work").mkdir(exist_ok=True)
+    path = tmp_path / "own" / "mine.hlsl"
+    path.write_text(code)
+    fault = FAULT.format(head=head, attempt=attempt, is_walled=is_walled)
+    words = [sys.executable, "-P", "-c", fault, str(tmp_path / "work"), str(path), "", ""]
+    done = subprocess.run(words, capture_output=True, encoding="utf-8", env=children.environment())
+    assert done.stdout, done.stderr
+    return json.loads(done.stdout), done.stdout + done.stderr
+
+
+@pytest.mark.usefixtures("wall")
+@pytest.mark.parametrize("way", ["#include", "import", "__include"])
+def test_an_include_that_nobody_judged_reads_nothing(tmp_path, way):
+    """Without the wall the same file is read: the fault is one."""
+    note = tmp_path / "note.slang"
+    note.write_text(("implementing mine;\n" if way == "__include" else "") + NOTE)
+    head = f'{way} "{note}"' + ("\n" if way == "#include" else ";\n")
+    open_answer, _ = answer(tmp_path, head, is_walled=False)
+    walled_answer, said = answer(tmp_path, head)
+    assert way == "__include" or "1.2345" in open_answer["texts"][0], open_answer
+    assert "error" in walled_answer and "1.2345" not in said and "secret() {" not in said, walled_answer
+
+
+ATTEMPTS = {
+    "open": "open('/etc/passwd').read()",
+    "list": "__import__('os').listdir('/')",
+    "write": "open({elsewhere!r}, 'w')",
+    "start": "__import__('subprocess').run(['/bin/sh', '-c', 'echo started'])",
+    "start itself": "__import__('subprocess').run([{python!r}, '-c', 'open(\"/etc/passwd\")'], check=True)",
+    "connect": "__import__('socket').create_connection(('127.0.0.1', 9))",
+}
+
+
+@pytest.mark.usefixtures("wall")
+@pytest.mark.parametrize("name", ATTEMPTS)
+def test_code_in_the_process_opens_writes_and_starts_nothing(tmp_path, name):
+    attempt = ATTEMPTS[name].format(elsewhere=str(tmp_path / "written"), python=sys.executable)
+    telling = f"""
+    try:
+        {attempt}
+        tried = "done"
+    except (OSError, __import__("subprocess").SubprocessError) as error:
+        tried = type(error).__name__
+    print("tried: " + tried, file=sys.stderr)
+    """
+    _, said = answer(tmp_path, attempt=telling.strip(), code=MINE.replace(" * secret()", ""))
+    assert "tried: PermissionError" in said or "tried: CalledProcessError" in said, said
+    assert "tried: done" not in said and "root:" not in said and not (tmp_path / "written").exists()
+
+
+@pytest.mark.usefixtures("wall")
+def test_no_variable_that_compilers_do_not_need_is_left_in_the_process(tmp_path, monkeypatch):
+    """A token of somebody's, for instance."""
+    monkeypatch.setenv("SOME_TOKEN", "1")
+    attempt = "import os; print('variables: ' + ' '.join(os.environ), file=sys.stderr)"
+    _, said = answer(tmp_path, attempt=attempt, code=MINE.replace(" * secret()", ""))
+    assert "variables: " in said and "PATH" in said and "SOME_TOKEN" not in said, said
+
+
+@pytest.mark.usefixtures("wall")
+def test_behind_the_wall_files_are_translated_as_before(tmp_path):
+    code = MINE.replace(" * secret()", "")
+    answers = [answer(tmp_path, is_walled=is_walled, code=code)[0] for is_walled in (False, True)]
+    assert answers[0] == answers[1] and answers[0]["components"] == 2

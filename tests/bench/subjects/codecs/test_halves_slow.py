@@ -1,0 +1,66 @@
+"""A half of the sphere that does not come back: lost by one of the two functions, or a design for the other half."""
+
+import json
+
+import pytest
+import test_halves
+from test_halves import DESIGNS, HALVES, OPEN, design
+
+from normalbench.bench.subjects.codecs.first_look import first_look
+
+pytestmark = pytest.mark.usefixtures("gl")
+_here = test_halves._here
+
+
+def test_a_code_for_a_half_is_measured_on_its_half(run, tmp_path):
+    """Whichever it is, its figures are those of the same code for z >= 0, and a line says which half."""
+    means = {}
+    for half in HALVES:
+        (tmp_path / "dir.glsl").write_text(design("hemi-octahedral", half))
+        words = ("--storage", "rg8", "--normals", "hemisphere", "--count", "65536", "--backend", "glsl")
+        status, out, err = run("quality", "--encoding", "dir.glsl", *words, "--format", "json")
+        (row,) = json.loads(out)
+        means[half] = row["angle_mean_deg"]
+        assert status == 0 and f"taken to be made for normals with {half} alone" in err
+        assert row["domain"] == "hemisphere" and row["encoding"] == "dir"
+    assert min(means.values()) == pytest.approx(max(means.values()), rel=0.01)
+    assert means["z >= 0"] == pytest.approx(0.239, abs=0.003)
+
+
+@pytest.mark.parametrize("half", ["y >= 0", "z <= 0"])
+def test_code_of_a_half_is_in_its_own_axes(run, tmp_path, half):
+    """What is written for an engine has the axes of the engine's file, though tables turn it."""
+    (tmp_path / "dir.glsl").write_text(design("hemi-octahedral", half))
+    status, out, _ = run("code", "dir.glsl", "--storage", "rg8", "--to", "glsl")
+    assert status == 0 and f"Normals: unit vectors with {half}." in out
+    (tmp_path / "written.glsl").write_text(out)
+    found = first_look(tmp_path / "written.glsl")
+    axis, side = found.get("half", (2, 1))
+    assert f"{'xyz'[axis]} {'>=' if side > 0 else '<='} 0" == half and found["wrong"] == []
+
+
+# Each design of a half has all six; of these two are enough, of which one is turned and mirrored.
+TWO = ("z >= 0", "x <= 0")
+
+
+@pytest.mark.parametrize("half", TWO)
+@pytest.mark.parametrize("what", OPEN)
+def test_a_code_that_is_finite_on_its_half_alone_is_taken_for_it(tmp_path, monkeypatch, what, half):
+    monkeypatch.setitem(DESIGNS, what, OPEN[what])
+    (tmp_path / "dir.glsl").write_text(design(what, half))
+    for domain in ("", "hemisphere"):
+        found = first_look(tmp_path / "dir.glsl", domain)
+        axis, side = found.get("half", (2, 1))
+        assert found["wrong"] == [] and found["domain"] == "hemisphere" and "no number" in found["hole"], found
+        assert f"{'xyz'[axis]} {'>=' if side > 0 else '<='} 0" == half
+    found = first_look(tmp_path / "dir.glsl", "sphere")
+    assert "no number" in (found.get("broken") or found["wrong"][0])
+
+
+def test_a_hole_in_the_half_that_comes_back_is_no_other_half(tmp_path):
+    """A root of a rounding below 0 on the rim: NaN stays a finding of z >= 0."""
+    text = "vec2 dir_encode(vec3 n) { return n.xy * 0.5 + 0.5; }\n"
+    text += "vec3 dir_decode(vec2 e) { e = e * 2.0 - 1.0; return vec3(e, sqrt(1.0 - dot(e, e))); }\n"
+    (tmp_path / "dir.glsl").write_text(text)
+    found = first_look(tmp_path / "dir.glsl")
+    assert found["domain"] == "hemisphere" and "no number" in found["wrong"][0]

@@ -1,0 +1,21 @@
+"""Layouts of users' files that name users' encoders: measured, found again after a change, refused in a line."""
+
+import json
+from pathlib import Path
+
+import pytest
+from test_layout_names import written
+
+pytestmark = pytest.mark.usefixtures("gl")
+
+
+def test_a_layout_takes_a_users_encoder(run, tmp_path, monkeypatch):
+    """The octahedron in a user's words loses what the catalogue's loses; its file is sought where the layout lies."""
+    monkeypatch.chdir(tmp_path)
+    layouts = f"{written(Path('here'), 'code/mine.glsl')},{written(Path('here'), 'octahedral', 'other.toml')}"
+    words = ("--scene", "room", "--size", "96x64", "--repeats", "0", "--format", "json")
+    status, out, err = run("render", "--layout", layouts, *words)
+    assert (status, err) == (0, "")
+    own, other = json.loads(out)
+    assert (own["encoding"], other["encoding"]) == ("mine", "octahedral")
+    assert own["normal_psnr_db"] == pytest.approx(other["normal_psnr_db"], abs=0.1)

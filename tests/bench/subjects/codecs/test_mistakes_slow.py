@@ -1,0 +1,35 @@
+"""Mistakes of encoders are named rightly, whatever the text and the bits; right files raise nothing.
+
+Each program is a right text with one edit; see `mistakes`. What is measured is a round trip without any storage, so
+that a mistake which changes no result, as `>` for `>=` in a fold, is none.
+"""
+
+from pathlib import Path
+
+import pytest
+
+from normalbench.bench.shaders.code.files import code_of
+from normalbench.bench.subjects.codecs.first_look import first_look
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
+
+pytestmark = pytest.mark.usefixtures("gl")
+
+
+SOME = {("octahedral", "glsl"), ("cube", "wgsl"), ("xy", "glsl"), ("spheremap", "wgsl")}
+
+
+def check_written(folder: Path, name: str, language: str) -> None:
+    codec = Codec(ENCODINGS[name], STORAGES["rgba16"])
+    path = folder / f"mine.{language}"
+    path.write_text(code_of(codec, language).text([]))
+    found = first_look(path)
+    assert found.get("wrong") == [], found
+    assert found["domain"] == ENCODINGS[name].domain
+
+
+@pytest.mark.parametrize("name, language", sorted(SOME))
+def test_code_of_the_catalogue_raises_nothing(tmp_path, monkeypatch, name, language):
+    monkeypatch.chdir(tmp_path)
+    check_written(Path(), name, language)

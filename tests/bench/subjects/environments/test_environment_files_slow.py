@@ -1,0 +1,65 @@
+"""Environments by their names and from files; what is no environment is refused in one line."""
+
+import os
+
+import numpy as np
+import pytest
+import test_environment_files
+from test_environment_files import exr, here, light, refused
+from written import png_bytes, write_image
+
+from normalbench.bench.subjects.environments.environment_names import environment_named
+from normalbench.gbuffer.environment.catalogue import ENVIRONMENTS
+from normalbench.gbuffer.environment.environment import solid_angles
+
+in_here = test_environment_files.in_here
+
+
+def test_a_radiance_file_is_what_is_in_it(tmp_path):
+    """To the precision of RGBE, whose three colours share an exponent; in a process of its own."""
+    found = environment_named(str(write_image(tmp_path / "a.hdr", light())))
+    assert found.name == "a.hdr" and found.changes == () and found.sun is None
+    assert found.radiance.dtype == np.float32 and found.radiance.flags.c_contiguous
+    assert np.abs(found.radiance - light()).max() <= light().max(-1).max() / 128
+    assert (np.abs(found.radiance - light()).max(-1) <= light().max(-1) / 127).all()
+
+
+def test_names_are_those_of_the_catalogue_however_spelled():
+    for name in ENVIRONMENTS:
+        assert environment_named(f" {name.upper()} ").name == name
+
+
+@here
+@pytest.mark.parametrize(("height", "wanted"), [(513, 512), (1024, 512), (10, 8), (30, 28)])
+def test_a_larger_file_is_averaged_and_says_so(tmp_path, height, wanted):
+    """To 1024 x 512, and to a width that 8 divides; no light is lost."""
+    radiance = light(height)
+    found = environment_named(str(exr(tmp_path / "a.exr", radiance)))
+    assert found.radiance.shape == (wanted, 2 * wanted, 3) and found.radiance.dtype == np.float32
+    assert found.changes == (f"averaged from {2 * height} x {height}",)
+    before, after = (
+        (one.astype(np.float64) * solid_angles(len(one))[..., None]).sum((0, 1)) for one in (radiance, found.radiance)
+    )
+    assert after == pytest.approx(before, rel=1e-6)
+
+
+def test_other_files_are_one_line(tmp_path):
+    (tmp_path / "sky.png").write_bytes(png_bytes(np.zeros((8, 16, 3), np.uint8)))
+    (tmp_path / "photo.hdr").write_bytes(b"\xff\xd8\xff\xe0" + bytes(99))
+    (tmp_path / "cut.hdr").write_bytes(write_image(tmp_path / "whole.hdr", light()).read_bytes()[:-900])
+    (tmp_path / "scene.glb").write_bytes(b"glTF")
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "folder.exr").mkdir()
+    os.mkfifo(tmp_path / "pipe.exr")
+    for name, said in (
+        ("sky.png", "its pixels have no light beyond white; save the environment as .hdr or .exr"),
+        ("none.jpg", "its pixels have no light beyond white"),
+        ("photo.hdr", "no HDR file, by its first bytes; save it again"),
+        ("cut.hdr", "it is cut off or damaged; save it again"),
+        ("scene.glb", ".hdr and .exr files are read"),
+        ("folder", "it is a folder; name a file"),
+        ("folder.exr", "it is a folder; name a file"),
+        ("pipe.exr", "it is not a plain file"),
+        ("none.hdr", "there is no such file"),
+    ):
+        assert said in refused(tmp_path / name), name

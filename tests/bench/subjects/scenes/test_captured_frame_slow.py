@@ -1,0 +1,83 @@
+"""Captured frames as scenes: the image and the figures of a scene that was read back and written as a frame."""
+
+import json
+from contextlib import ExitStack
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_captured_frame import frame, pixels_of, read
+from written import png_bytes
+
+from normalbench.bench.subjects.scenes.scene_names import scene_makers_named
+from normalbench.bench.tables.budget.attributes import SEEN
+from normalbench.bench.tables.budget.rates import Exact, Stage
+from normalbench.encodings.storages.rounding import from_srgb
+from normalbench.gbuffer.frame.resources import LINEAR_DEPTH
+from normalbench.gbuffer.scenes.catalogue import SCENES, SceneMaker
+from normalbench.gbuffer.scenes.setting import Setting
+
+SIZE = (160, 120)
+
+
+def unlit(name: str) -> SceneMaker:
+    """A scene of the catalogue under its environment alone, as frames are."""
+    maker = SCENES[name]
+    return replace(maker, make=lambda setting: replace(maker.make(setting), lights=()))
+
+
+def written(exact: Exact, folder: Path) -> Path:
+    """What an exact image is of, as arrays of floats, with the description of that."""
+    view, surfaces = exact.stage.scene.view, exact.surfaces
+    depth = exact._made.read(LINEAR_DEPTH)[0][..., 0]
+    arrays = {
+        "depth": np.where(exact.covered, depth, 0),
+        **{name: getattr(surfaces, name) for name in surfaces.__dataclass_fields__},
+    }
+    for name, found in arrays.items():
+        np.save(folder / f"{name}.npy", found.astype(np.float32))
+    said = {name: {"file": f"{name}.npy"} for name in arrays}
+    said["normal"]["space"] = "world"
+    said |= {"fov": view.fov, "near": view.near, "far": view.far, "view_matrix": view.matrix().tolist()}
+    path = folder / "gbuffer.json"
+    path.write_text(json.dumps(said))
+    return path
+
+
+@pytest.mark.parametrize("name", ["ramps", "studio"])
+def test_a_scene_that_was_read_back_has_the_images_of_the_scene(gl, name, tmp_path):
+    """Attributes and the lit image to within texels' rounding, and each code's errors to a hundredth of a decibel."""
+    with ExitStack() as stack:
+        whole = Exact(gl, stack, Stage(unlit(name), Setting(), SIZE))
+        (maker,) = scene_makers_named(str(written(whole, tmp_path)))
+        assert maker.sides == SIZE == maker.within((320, 240)) and maker.name == "gbuffer.json"
+        maker = replace(maker, exposure=SCENES[name].exposure)
+        again = Exact(gl, stack, Stage(maker, Setting(), SIZE))
+        assert np.array_equal(whole.covered, again.covered) and set(whole.classes) == set(again.classes)
+        for one in whole.surfaces.__dataclass_fields__:
+            apart = abs(getattr(whole.surfaces, one) - getattr(again.surfaces, one))[whole.covered]
+            assert apart.max() < 1e-6 * max(1.0, abs(getattr(whole.surfaces, one)).max()), one
+        assert abs(whole.shown - again.shown).max() < 1e-4
+        for attribute in ("normal", "basecolor", "roughness", "metalness", "occlusion"):
+            code = SEEN[attribute].codes[0]
+            errors, others = whole.of(code.trip), again.of(code.trip)
+            for of_class, error in errors.items():
+                if error > 1e-8:
+                    assert 10 * abs(np.log10(error / others[of_class])) < 0.1, (attribute, of_class)
+
+
+def test_images_of_eight_bits_are_read_by_their_curve_and_named(tmp_path):
+    """A PNG's base colour, and roughness that RenderDoc's script wrote as floats, lie on steps of 8 bits."""
+    rng = np.random.default_rng(5)
+    colours = rng.integers(0, 256, (16, 24, 3), np.uint8)
+    (tmp_path / "a.png").write_bytes(png_bytes(colours))
+    path = frame(tmp_path, basecolor={"file": "a.png", "curve": "srgb"})
+    np.save(tmp_path / "roughness.npy", rng.integers(0, 256, (16, 24)).astype(np.float32) / np.float32(255))
+    assert np.allclose(pixels_of(path).basecolor, from_srgb(colours / 255), atol=1e-6)
+    assert (
+        "basecolor, roughness: steps of 8 bits; codes of the same steps look better than they are" in read(path).notes
+    )
+    path = frame(tmp_path, basecolor={"file": "a.png"})
+    assert np.allclose(pixels_of(path).basecolor, colours / 255, atol=1e-6)
+    assert any('"curve": "srgb"' in line for line in read(path).notes)

@@ -1,0 +1,22 @@
+"""Codes of normals: both back ends have the same errors, and every direction comes back."""
+
+import pytest
+
+from normalbench.bench.subjects.normals.normal_sets import hemisphere
+from normalbench.bench.tables.quality import measure as quality
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.storage import STORAGES
+
+
+@pytest.mark.usefixtures("gl")
+def test_the_stereographic_scale_is_one_field_for_both_languages():
+    """At scale 1 the disk is the hemisphere: better there than a scale for a wider view, and the same by both."""
+    psnr = {}
+    for scale in (1.0, 1.7777):
+        codec = Codec(ENCODINGS["stereographic"].with_parameters({"scale": scale}), STORAGES["rgba8"])
+        for backend in ("jax", "glsl"):
+            row = quality.measure(quality.Case(codec, hemisphere(2**18), backend))
+            psnr[scale, backend] = row["psnr_db"]
+        assert abs(psnr[scale, "jax"] - psnr[scale, "glsl"]) <= 0.02, psnr
+    assert psnr[1.0, "jax"] > psnr[1.7777, "jax"] + 3, psnr

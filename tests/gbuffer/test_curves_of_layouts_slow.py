@@ -1,0 +1,34 @@
+"""What a material is on a curve, or in a code of light: the image follows, and a layout says what cannot be."""
+
+from dataclasses import replace
+
+import pytest
+from drawing import apart, draw
+from test_curves_of_layouts import layout_of
+from test_metal_rough import LIT
+
+# Colours as dark as soil and rubber, where linear steps are coarsest.
+DARK = replace(
+    LIT, materials=tuple(replace(m, base=(0.03, 0.02, 0.04), metalness=0.0, normal_map=None) for m in LIT.materials)
+)
+
+
+@pytest.mark.parametrize(
+    "scene, better, worse",
+    [
+        (DARK, "srgb(albedo):5", "albedo:5"),
+        (DARK, "square_root(albedo):5", "albedo:5"),
+        (LIT, "roughness:4", "squared(roughness):4"),
+        (LIT, "linear:0.08(reflectance):4", "reflectance:4"),
+    ],
+    ids=["sRGB", "square root", "square", "range"],
+)
+def test_in_few_bits_the_curve_decides(gl, scene, better, worse):
+    """Colours want a gamma, a roughness even steps, and a reflectance of 0.04 a range of its own: 3 dB and more."""
+    floats = {"albedo", "metalness", "roughness", "reflectance", "occlusion"} - {worse.rstrip("):45").split("(")[-1]}
+    targets = "; ".join(f"rgba32f: {quantity}" for quantity in sorted(floats))
+    right = draw(gl, "hybrid", scene).image
+    found = [
+        apart(draw(gl, "hybrid", scene, layout_of(f"rgba8: {w}; {targets}")).image, right) for w in (better, worse)
+    ]
+    assert 15 < found[1] < found[0] - 3 and found[0] < 75, f"{found[0]:.1f} and {found[1]:.1f} dB"
