@@ -7,7 +7,7 @@ import sys
 import time
 from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import AbstractContextManager, ExitStack, nullcontext
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
@@ -128,20 +128,24 @@ def run_command(request: Any, output: Path | None, on: str | None = None, commit
     require_memory()
     have_few_heaps()
     # It imports what it needs while this process does, and finds out what there is to measure.
-    with spoken(), _second(request, on) as second:
+    with spoken(), ExitStack() as ending:
+        second = ending.enter_context(_second(request, on))
         from ..ground.machine.devices import require_jax
 
         require_jax()
         facts: Row = {"request": {"tables": request.tables, **given(request)}, **facts_of(sys.argv[1:])}
-        facts |= {"time": time.strftime("%Y-%m-%dT%H:%M:%S%z"), "finished": False}
-        facts |= {"commit": commit_of(commit, Path.cwd())}
+        facts |= {
+            "time": time.strftime("%Y-%m-%dT%H:%M:%S%z"),
+            "finished": False,
+            "commit": commit_of(commit, Path.cwd()),
+        }
         folder = output or unfinished(RESULTS, facts) or _new_folder()
         with noting_what_is_left_out() as left_out:
             asks = asked_of(request, folder)
         facts |= {"left_out": left_out}
         keep_what_is_imported()
         with place(on) as where, opened(folder, facts) as run:
-            shown = _measured_and_shown(run, asks, where, second)
+            shown = _measured_and_shown(run, asks, where, second, ending)
     return int(shown.failed)
 
 
@@ -151,12 +155,15 @@ def _second(request: Any, on: str | None) -> AbstractContextManager[Second | Non
     return second_process(beside.prepare) if is_wanted else nullcontext()
 
 
-def _measured_and_shown(run: Run, asks: Sequence[Asked], where: Place, second: Second | None) -> Shown:
+def _measured_and_shown(
+    run: Run, asks: Sequence[Asked], where: Place, second: Second | None, ending: ExitStack
+) -> Shown:
     total = sum(1 for ask in asks for _ in with_parts(ask.steps))
     if run.kept:
         tell(f"{run.folder} goes on: {_there(run, asks)} of {total} steps are there")
     try:
-        with progress_of_all(sum(step.ticks for ask in asks for step in ask.steps), len(asks)):
+        # The second process ends while its rows are still kept, and before it is said how many are.
+        with progress_of_all(sum(step.ticks for ask in asks for step in ask.steps), len(asks)), ending.pop_all():
             shown = _measure_all(run, asks, where, second)
         shown.written |= second.written if second else set()
         run.arrange((ask.table.name, step) for ask in asks for step in ask.steps)
