@@ -18,6 +18,8 @@ os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "0")
 os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES", "-1")
 # As the program does; without it OpenBLAS waits for work in a loop that takes a whole core.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# llvmpipe draws in the thread that asks: threads of four processes would wait for one another on two cores.
+os.environ.setdefault("LP_NUM_THREADS", "0")
 # On a busy machine any run may take long enough to say how far it is.
 os.environ.setdefault("NORMALBENCH_NO_PROGRESS", "1")
 
