@@ -53,7 +53,7 @@ def of(kinds, share: int) -> list:
 
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize(
-    "kind, count", [*of((k for k in FEW if k.name not in COSTLY), 1), *of((k for k in FEW if k.name in COSTLY), 6)]
+    "kind, count", [*of((k for k in FEW if k.name not in COSTLY), 1), *of((k for k in FEW if k.name in COSTLY), 8)]
 )
 def test_what_is_damaged_is_measured_or_refused_in_a_line(kind, count, tmp_path, monkeypatch, opened):
     """Soon, and no file is opened that lies elsewhere."""

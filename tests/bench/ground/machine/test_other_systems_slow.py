@@ -19,8 +19,7 @@ COMMANDS = (
 )
 
 
-@pytest.mark.parametrize("system", SYSTEMS)
-def test_commands_end_well_and_a_users_encoder_is_measured(system, tmp_path):
+def test_commands_end_well_and_a_users_encoder_is_measured(tmp_path, system="win32"):
     write_examples(tmp_path)
     done = on(system, tmp_path, *COMMANDS)
     ended = [line for line in done.stderr.splitlines() if " ended with " in line]

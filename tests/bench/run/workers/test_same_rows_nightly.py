@@ -3,6 +3,8 @@
 import pytest
 import test_same_rows_slow
 
+scheduler = test_same_rows_slow.scheduler
+
 COMMANDS = {
     "depth": "--depth linear,logarithmic --near 0.1 --count 512 --storage depth16,depth24",
     "lights": "--experiment equal,banding --light-buffer linear,rgba16f --sum 1 --counts 4",
@@ -14,3 +16,7 @@ COMMANDS = {
 def test_the_rows_and_pictures_of_further_tables_are_those_of_one_process(gl, run, tmp_path, table):  # noqa: ARG001
     """Every figure to the last digit, in the same order; every picture to the last byte."""
     test_same_rows_slow.compared(run, tmp_path, table, COMMANDS[table])
+
+
+def test_users_files_of_absolute_paths_travel(gl, run, scheduler, tmp_path, monkeypatch):
+    test_same_rows_slow.test_users_files_travel(gl, run, scheduler, tmp_path, monkeypatch, True)
