@@ -1,6 +1,11 @@
 """Instructions by Intel's compilers: what listings hold, which kernels compare, and the device that is not there."""
 
 import test_intel_slow
+from vendors import INTEL
+
+
+def test_no_kernel_of_intels_spills(vendor_rows):
+    assert {row["spills"] for row in vendor_rows(INTEL, True)} == {0}
 
 
 def test_known_counts_of_intels_compilers_of_every_encoding(vendor_rows):

@@ -123,7 +123,3 @@ def test_known_counts_of_intels_compilers(vendor_rows, is_every=False):
         assert found["octahedral"] == OCTAHEDRAL[name], name
         order = [found[encoding] for encoding in ("xy", "stereographic", "spheremap", "octahedral")]
         assert order == sorted(set(order)), name
-
-
-def test_no_kernel_of_intels_spills(vendor_rows):
-    assert {row["spills"] for row in vendor_rows(INTEL, True)} == {0}
