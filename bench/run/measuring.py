@@ -81,8 +81,8 @@ class Here:
 
 
 def _with_settings(row: Row, said: str) -> Row:
-    """A row whose device has what is set from outside, if anything is."""
-    return row | {"device": f"{row['device']}, {said}"} if said and row.get("device") else row
+    """A row whose device has what is set from outside, if anything is; one of a file was measured elsewhere."""
+    return row | {"device": f"{row['device']}, {said}"} if said and row.get("device") and "renderer" not in row else row
 
 
 HERE = Here()

@@ -221,6 +221,7 @@ def test_settings_from_outside_are_facts_of_a_run_and_named_where_they_differ(ru
 
 
 def test_settings_from_outside_stand_in_a_row(run, monkeypatch):
+    monkeypatch.delenv("LP_NUM_THREADS", raising=False)
     monkeypatch.setenv("MESA_NO_ERROR", "1")
     words = ["quality", "--encoding", "xy", "--storage", "rg8", "--normals", "axes", "--format", "json"]
     devices = {row["backend"]: row["device"] for row in json.loads(run(*words)[1])}

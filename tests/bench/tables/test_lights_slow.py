@@ -159,7 +159,8 @@ def test_every_code_is_the_light_buffer_of_every_pipeline(gl, pipeline, samples)
             assert psnr > least, f"{pipeline}, {encoding.name}x{targets}, {samples} samples: {psnr:.1f} dB"
 
 
-def test_rows_say_everything_once(run, gl):
+def test_rows_say_everything_once(run, gl, monkeypatch):
+    monkeypatch.delenv("LP_NUM_THREADS", raising=False)
     status, out, err = run("lights", *QUICK, "--light-buffer", "linear,log,rgbm", "--format", "json")
     rows = json.loads(out)
     assert (status, err) == (0, "")
