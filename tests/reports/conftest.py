@@ -1,10 +1,7 @@
 """A browser, and the page of the small run in it."""
 
-import inspect
 import os
 import shutil
-import sys
-import traceback
 from contextlib import ExitStack, contextmanager
 
 import both_ways
@@ -14,19 +11,9 @@ from playwright.sync_api import sync_playwright
 from screens import screen
 
 
-def _callers(_context=1):
-    """The frames of `inspect.stack`, less the search for their sources: playwright asks for them at every call, which
-    takes a test of pages a third of its time."""
-    return [
-        inspect.FrameInfo(frame, frame.f_code.co_filename, line, frame.f_code.co_name, None, None)
-        for frame, line in traceback.walk_stack(sys._getframe(1))
-    ]
-
-
 @pytest.fixture(scope="session")
 def play():
-    with sync_playwright() as playing, pytest.MonkeyPatch.context() as patch:
-        patch.setattr(inspect, "stack", _callers)
+    with sync_playwright() as playing:
         yield playing
 
 
