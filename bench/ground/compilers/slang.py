@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import cache
 from mmap import ACCESS_READ, mmap
 from pathlib import Path
+from weakref import finalize
 
 from ..output.errors import MissingError
 from .text import RefusedError, Text, judged
@@ -130,12 +131,10 @@ class Compiled:
 
     def __init__(self, words: Sequence[str]):
         self.request = api().request(api().session)
+        finalize(self, api().destroy, self.request)
         given = (c.c_char_p * len(words))(*[word.encode() for word in words])
         self.failed = bool(api().take(self.request, given, len(words)) or api().compile(self.request))
         self.said = (api().said(self.request) or b"").decode(errors="replace")
-
-    def __del__(self) -> None:
-        api().destroy(self.request)
 
     @property
     def code(self) -> str:
