@@ -24,7 +24,7 @@ from normalbench.gbuffer.scenes.setting import Setting
 ENGINES = [name for name, layout in LAYOUTS.items() if layout.engine]
 
 
-GLOSS, STUDIO = SCENES["gloss"].make(Setting(lights=4)), SCENES["studio"].make(Setting())
+GLOSS = SCENES["gloss"].make(Setting(lights=4))
 
 
 # Mean, RMS and largest angle on 2 M uniform directions and the error of the six axes, in degrees, measured outside of

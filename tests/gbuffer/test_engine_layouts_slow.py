@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 import pytest
 from slowly import a_tenth
-from test_engine_layouts import ENGINES, FIGURES, GLOSS, STUDIO, plan
+from test_engine_layouts import ENGINES, FIGURES, GLOSS, plan
 
 from normalbench.bench.ground.angles import angles_deg
 from normalbench.bench.tables.quality.measure import round_trip
@@ -17,6 +17,8 @@ from normalbench.encodings.storages.storage import STORAGES
 from normalbench.gbuffer.layouts.presets import LAYOUTS
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import check, rendering
+from normalbench.gbuffer.scenes.catalogue import SCENES
+from normalbench.gbuffer.scenes.setting import Setting
 
 
 @pytest.mark.parametrize("name", FIGURES)
@@ -34,6 +36,9 @@ def test_a_presets_code_has_the_error_measured_outside(name):
             assert abs(figure - wanted) <= max(share * wanted, 0.5e-4), f"{figure:.5f}, {wanted} outside"
     if largest:
         assert abs(apart.max() - largest) <= max(0.03 * largest, 1e-4), f"{apart.max():.4f}, {largest} outside"
+
+
+STUDIO = SCENES["studio"].make(Setting())
 
 
 @cache

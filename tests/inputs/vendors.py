@@ -17,6 +17,8 @@ from normalbench.gbuffer.defines.packings import PACKINGS
 
 EVERY_PACKING = tuple(dict.fromkeys(packing for several in PACKINGS.values() for packing in several))
 CHEAP = ("xyz", "xy", "spheremap", "stereographic", "octahedral")
+# What asks for the instructions of one codec.
+INSTRUCTIONS = ["cost", "--isa", "--format", "json", "--encoding", "spheremap", "--storage", "rgba8"]
 # Runs the code where the driver is told of an Intel GPU; for a Radeon it compiles as always.
 INTELS_CHILD = """
 import os, sys, time

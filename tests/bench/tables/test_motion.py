@@ -18,7 +18,7 @@ from normalbench.bench.tables.motion.work import motions, picture_turns
 from normalbench.gbuffer.scenes.scene import TURNS, View
 from normalbench.reports.page.pixels import MAX_FILM, film_uri
 
-COUNT, FRAMES, SEED = 2**14, 8, 0
+COUNT, SEED = 2**14, 0
 
 
 SMALL = ("--count", "2048", "--frames", "4", "--size", "96x72", "--lights", "2")

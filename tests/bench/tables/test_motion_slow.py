@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import test_motion
 from PIL import Image
-from test_motion import FRAMES, SEED, SMALL, wobble
+from test_motion import SEED, SMALL, wobble
 
 from normalbench.bench.measures.metrics.totals import psnr_db
 from normalbench.bench.run.measuring import Nothing, asked, measured
@@ -32,6 +32,7 @@ from normalbench.gbuffer.scenes.setting import Setting
 from normalbench.reports.page.pixels import film_uri
 
 pictures = test_motion.pictures
+FRAMES = 8
 
 
 def test_a_frame_of_the_pixels_own_turns_along_with_a_yaw():

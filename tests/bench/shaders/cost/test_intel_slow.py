@@ -6,16 +6,13 @@ import subprocess
 import sys
 
 import pytest
-from vendors import INTEL
+from vendors import INSTRUCTIONS, INTEL
 
 from normalbench.bench.ground.compilers.text import judged, own
 from normalbench.bench.ground.options.gpu_families import FAMILIES
 from normalbench.bench.ground.output.errors import MissingError
 from normalbench.bench.keep.machine import require_intel
 from normalbench.bench.shaders.isa import null_device
-
-EVERY = ["cost", "--isa", "--format", "json", "--encoding", "spheremap", "--storage", "rgba8", "--stage", "fragment"]
-
 
 # What a process with the null device finds: errno of each try, 0 where it works.
 TRIES = """
@@ -89,7 +86,7 @@ def with_a_broken_cc(monkeypatch, folder):
 )
 def test_a_machine_without_a_c_compiler_loses_intels_rows_alone(run, monkeypatch, tmp_path, take, status, said):
     take(monkeypatch, tmp_path)
-    found, out, err = run(*EVERY, "--family", "navi21,skl")
+    found, out, err = run(*INSTRUCTIONS, "--stage", "fragment", "--family", "navi21,skl")
     rows = json.loads(out)
     assert (found, err.count("\n")) == (status, 1) and said in err, err
     (lost,) = [row for row in rows if row["skipped"]]

@@ -6,7 +6,7 @@ import subprocess
 
 import numpy as np
 import pytest
-from vendors import NVIDIA
+from vendors import INSTRUCTIONS, NVIDIA
 
 from normalbench.bench.ground.options.gpu_families import FAMILIES
 from normalbench.bench.ground.output.errors import MissingError
@@ -105,9 +105,6 @@ def test_the_cuda_of_a_packing_brings_numbers_back(called, name):
         assert np.abs(back - given).max() < 1 / 127, packing.name
 
 
-EVERY = ["cost", "--isa", "--format", "json", "--encoding", "spheremap", "--storage", "rgba8"]
-
-
 # What the figures below hold for.
 VERSIONS = "NVRTC 12.9.86 (CUDA's compiler, not the graphics driver's), nvdisasm 13.5.37"
 
@@ -115,7 +112,7 @@ VERSIONS = "NVRTC 12.9.86 (CUDA's compiler, not the graphics driver's), nvdisasm
 @pytest.mark.usefixtures("radv", "own_cache")
 def test_a_machine_without_the_compiler_loses_nvidias_rows_alone(run, monkeypatch):
     monkeypatch.setattr(tools, "library", lambda: None)
-    status, out, err = run(*EVERY, "--family", "navi21,sm_86")
+    status, out, err = run(*INSTRUCTIONS, "--family", "navi21,sm_86")
     (lost,) = [row for row in json.loads(out) if row["skipped"]]
     assert status == 3 and err.count("\n") == 1 and "pip install 'normalbench[nvidia]'" in err
     assert lost["family"] == "sm_86" and "normalbench[nvidia]" in lost["skipped"]
@@ -128,7 +125,7 @@ def test_a_machine_without_the_compiler_loses_nvidias_rows_alone(run, monkeypatc
 def test_a_fragment_shader_is_refused_in_a_line(run, monkeypatch):
     """CUDA has none; other vendors' rows are there."""
     monkeypatch.setattr(tools, "missing", lambda: "")
-    status, out, _ = run(*EVERY, "--family", "navi21,sm_86", "--stage", "fragment")
+    status, out, _ = run(*INSTRUCTIONS, "--family", "navi21,sm_86", "--stage", "fragment")
     (lost,) = [row for row in json.loads(out) if row["skipped"]]
     assert status == 0 and lost["family"] == "sm_86" and "ask for --stage compute" in lost["skipped"]
     assert sum(row["family"] == "navi21" for row in json.loads(out)) == 6
@@ -165,7 +162,7 @@ def test_the_cuda_of_an_encoding_computes_its_formula(called, at):
 def test_an_architecture_that_nvrtc_does_not_know_is_one_line(run, monkeypatch):
     monkeypatch.setattr(isa, "FAMILIES", FAMILIES | {"sm_120": FAMILIES["sm_90"]})
     monkeypatch.setattr(isa, "_variables", lambda *_: {isa.ARCHITECTURE: "sm_999"})
-    status, out, _ = run(*EVERY, "--family", "sm_120")
+    status, out, _ = run(*INSTRUCTIONS, "--family", "sm_120")
     row = json.loads(out)[0]
     assert status == 0 and row["family"] == "sm_120"
     assert re.match(r"NVRTC [\d.]+ does not compile for sm_999; it knows sm_", row["skipped"])

@@ -4,13 +4,10 @@ own. Figures of one vendor stand in the vendor's file."""
 import json
 
 import pytest
-from vendors import INTEL, NVIDIA, VENDORS
+from vendors import INSTRUCTIONS, INTEL, NVIDIA, VENDORS
 
 from normalbench.bench.shaders.isa import isa
 from normalbench.bench.shaders.isa import process as isa_process
-
-EVERY = ["cost", "--isa", "--format", "json", "--encoding", "spheremap", "--storage", "rgba8"]
-
 
 named = pytest.mark.parametrize("vendor", VENDORS, ids=lambda vendor: vendor.name)
 
@@ -40,7 +37,7 @@ def test_rows_are_the_same_from_the_cache_and_another_gpu_or_build_is_compiled_f
 ):
     """The article's rows stand next to them."""
     request.getfixturevalue(vendor.name)
-    asked = [*EVERY, "--stage", ",".join(vendor.stages), "--family", vendor.quick[-1], "--article"]
+    asked = [*INSTRUCTIONS, "--stage", ",".join(vendor.stages), "--family", vendor.quick[-1], "--article"]
     first = run(*asked)
     rows = json.loads(first[1])
     assert first[0] == 0 and {row["measure"] for row in rows} == {"isa", "article"}
@@ -68,7 +65,7 @@ def test_a_compiler_that_fails_costs_its_own_rows(request, run, monkeypatch, ven
     monkeypatch.setattr(isa_process, "SECONDS", 8.0 if "sleep" in code else isa_process.SECONDS)
     isa._loaded.cache_clear()
     family, stages = vendor.quick[-1], ",".join(vendor.stages)
-    status, out, err = run(*EVERY, "--stage", stages, "--family", f"navi21,{family}")
+    status, out, err = run(*INSTRUCTIONS, "--stage", stages, "--family", f"navi21,{family}")
     isa._loaded.cache_clear()
     (lost,) = [row for row in json.loads(out) if row["skipped"]]
     assert status == 0 and lost["family"] == family and reason in lost["skipped"] and reason in err

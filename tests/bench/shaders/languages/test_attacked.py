@@ -12,7 +12,6 @@ from normalbench.bench.shaders.languages.translated import translated
 pytestmark = pytest.mark.usefixtures("slang", "in_this_process")
 ENCODE = "float2 PackDir(float3 n) { return CODE; }\n"
 DECODE = "float3 UnpackDir(float2 e) { return float3(e, sqrt(saturate(1.0 - dot(e, e)))); }\n"
-ROUGH = "float4 PackDir(float3 n, float r) { return float4(n, r); }\nfloat3 UnpackDir(float4 t) { return t.xyz; }\n"
 WGSL = "fn f_encode(n: vec3f) -> vec2f { return n.xy * two(); }\n"
 WGSL += "fn f_decode(e: vec2f) -> vec3f { return vec3f(e, 0.0); }\n"
 PLAIN = ENCODE.replace("CODE", "n.xy") + DECODE

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from twins import HALF_OCTAHEDRAL
 
 from normalbench.bench.ground.directions import directions
 from normalbench.bench.run.measuring import files_of
@@ -15,21 +16,6 @@ from normalbench.bench.subjects.codecs.doctor.exact import is_unit
 from normalbench.bench.tables.quality.table import QualityOptions
 
 pytestmark = pytest.mark.usefixtures("gl")
-
-
-TWIN = """
-from normalbench.encodings.vec import Vec2, Vec3, normalize
-
-
-def encode(n, view):
-    s = abs(n.x) + abs(n.y) + abs(n.z)
-    return Vec2((n.x + n.y) / s, (n.x - n.y) / s)
-
-
-def decode(e, view):
-    x, y = (e.x + e.y) * 0.5, (e.x - e.y) * 0.5
-    return normalize(Vec3(x, y, 1.0 - abs(x) - abs(y)))
-"""
 
 
 MINE = """
@@ -131,7 +117,7 @@ def test_a_wrong_file_alone_is_one_line(run, tmp_path, ending):
 @pytest.mark.usefixtures("hlsl")
 def test_a_twin_next_to_it_is_measured_by_jax(run, tmp_path):
     path = written(tmp_path, MINE, "mine.hlsl")
-    written(tmp_path, TWIN, "mine.py")
+    written(tmp_path, HALF_OCTAHEDRAL, "mine.py")
     _, out, _ = run("quality", "--encoding", path, *QUICK[:4], *QUICK[6:])
     by_jax, by_gl = (row["angle_mean_deg"] for row in json.loads(out))
     assert by_jax == pytest.approx(by_gl, rel=1e-3)

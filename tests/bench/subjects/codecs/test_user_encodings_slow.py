@@ -4,26 +4,12 @@ import json
 
 import pytest
 from test_user_encodings import MINE, QUICK, written
+from twins import HALF_OCTAHEDRAL
 
 from normalbench.bench.subjects.codecs import user_encodings
 from normalbench.encodings.catalogue import NAMES
 
 pytestmark = pytest.mark.usefixtures("gl")
-
-
-TWIN = """
-from normalbench.encodings.vec import Vec2, Vec3, normalize
-
-
-def encode(n, view):
-    s = abs(n.x) + abs(n.y) + abs(n.z)
-    return Vec2((n.x + n.y) / s, (n.x - n.y) / s)
-
-
-def decode(e, view):
-    x, y = (e.x + e.y) * 0.5, (e.x - e.y) * 0.5
-    return normalize(Vec3(x, y, 1.0 - abs(x) - abs(y)))
-"""
 
 
 def test_two_functions_are_measured_like_any_other(run, tmp_path):
@@ -50,7 +36,7 @@ def test_without_a_twin_the_jax_row_says_so_and_with_one_it_agrees(run, tmp_path
     _, out, _ = run("quality", "--encoding", path, *QUICK[:-1], "markdown")
     assert "| mine " in out and "jax" not in out.partition("- by OpenGL")[0], "a row by GLSL alone"
     assert f"by OpenGL alone: mine/rgba8 on hemisphere ({jax_row['skipped']})" in out
-    (tmp_path / "mine.py").write_text(TWIN)
+    (tmp_path / "mine.py").write_text(HALF_OCTAHEDRAL)
     _, out, err = run("quality", "--encoding", path, *QUICK)
     by_jax, by_gl = json.loads(out)
     assert err.count("\n") == 1 and by_jax["psnr_db"] == pytest.approx(by_gl["psnr_db"], abs=0.02)
