@@ -50,9 +50,9 @@ from normalbench.bench.shaders.isa.nvidia import tools
 from normalbench.gbuffer.gl.device import NoDeviceError, device
 
 # What a process of the tests may hold on to between two tests, in bytes.
-LARGE = 1_400_000_000
+LARGE = 1_200_000_000
 # By how much more than that, or than what was left the last time, before memory is given back again: it takes seconds.
-GROWN = 300_000_000
+GROWN = 200_000_000
 pytest_plugins = ["pytester"]
 jax.config.update("jax_numpy_rank_promotion", "raise")
 jax.config.update("jax_numpy_dtype_promotion", "strict")

@@ -968,7 +968,7 @@ FAULTS = (
         "lost guard",
         "return text if is_plain or CODE.fullmatch(text) else code_text(text)",
         "return text",
-        "test_judged.py",
+        "test_text.py",
     ),
     Fault(
         "markdown-too-long",
@@ -1030,7 +1030,7 @@ FAULTS = (
         "wrong column",
         'exact if exact != text else "", ',
         '"", ',
-        "test_judged.py",
+        "test_text.py",
         "sort",
         "test_report.py",
     ),
@@ -1040,7 +1040,7 @@ FAULTS = (
         "swapped argument",
         "columns.remove(spared.pop(0))",
         "columns.remove(spared.pop())",
-        "test_judged.py",
+        "test_text.py",
         "spared",
         "test_sweep.py test_render.py",
     ),
@@ -1100,7 +1100,7 @@ FAULTS = (
         "dropped term",
         'if now["digest"] in (facts["digest"], facts.get("next", {}).get("digest")):',
         'if now["digest"] == facts["digest"]:',
-        "test_import.py",
+        "test_killed_writers.py",
     ),
     # What the C compiler is given.
     Fault(

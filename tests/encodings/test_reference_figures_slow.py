@@ -16,9 +16,11 @@ from normalbench.encodings.storages.storage import STORAGES
 pytestmark = pytest.mark.usefixtures("rows_are_shared")
 
 MORE = FIGURES[4:]
+# That of best fit by day too: nothing else sees which of its lengths are tried.
+DRAWN = [figures for figures in MORE if figures[0] == "best_fit" or figures in a_tenth(MORE)]
 
 
-@pytest.mark.parametrize("encoding, storage, rounding, normals, mean, rms, sup", a_tenth(MORE))
+@pytest.mark.parametrize("encoding, storage, rounding, normals, mean, rms, sup", DRAWN)
 def test_more_reference_figures_are_reproduced(normalbench, encoding, storage, rounding, normals, mean, rms, sup):
     figures_are_reproduced(normalbench, encoding, storage, rounding, normals, mean, rms, sup)
 

@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import NamedTuple
 
+# What is said of an encoder that cuts its codes off.
+CUT_OFF = "codes are cut off instead of rounded: rounding would halve the error"
 # The octahedral map as it is written everywhere; mistakes of numbers are put where CODE is returned.
 PLAIN = """vec2 mine_encode(vec3 n) {
     vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));

@@ -141,6 +141,13 @@ def test_a_second_site_replaces_its_own_files_and_no_others(run, tmp_path):
     assert "Mali" not in (site / "index.html").read_text()
 
 
+def test_a_page_that_no_longer_belongs_to_the_site_is_taken_away(tmp_path):
+    write_site(tmp_path / "site", {"index.html": "first", "codecs/xy.html": "xy", "codecs/xyz.html": "xyz"})
+    write_site(tmp_path / "site", {"index.html": "second", "codecs/xyz.html": "xyz"})
+    assert set(files_of(tmp_path / "site")) == {"index.html", "codecs/xyz.html", MARKER}
+    assert json.loads((tmp_path / "site" / MARKER).read_text())["files"] == ["codecs/xyz.html", "index.html"]
+
+
 @pytest.mark.parametrize(
     "name, text, said",
     [

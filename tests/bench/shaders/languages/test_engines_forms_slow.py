@@ -5,6 +5,7 @@ import shutil
 
 import pytest
 from manual import ROOT
+from mistakes import CUT_OFF
 
 from normalbench.bench.shaders.languages.translated import translated
 
@@ -85,9 +86,6 @@ def test_hundreds_of_functions_that_are_wrong_stand_in_no_pairs_way(tmp_path, co
         "float2 PackDir(float3 n) { return n.xy; }\n" + wrong + "float3 UnpackDir(float2 e) { return float3(e, 0); }\n"
     )
     assert "gone" not in translated(path).text
-
-
-CUT_OFF = "codes are cut off instead of rounded: rounding would halve the error"
 
 
 # The mean, of which normals, and the bits that are used.

@@ -6,6 +6,7 @@ from itertools import product
 
 import pytest
 from manual import ROOT
+from mistakes import CUT_OFF
 
 from normalbench.bench.subjects.codecs.first_look import first_look
 
@@ -13,9 +14,6 @@ pytestmark = pytest.mark.usefixtures("gl", "slang")
 
 
 FORMS = ROOT / "tests" / "inputs" / "encoders"
-
-
-CUT_OFF = "codes are cut off instead of rounded: rounding would halve the error"
 
 
 # The begin of what is said, and what else stands in that line.
