@@ -30,6 +30,7 @@ import seconds
 import shared_rows
 import typer.main
 from languages import SHORT
+from slowly import is_drawn
 from tiers import TIERS, is_in, tier_of
 
 from normalbench.bench.door import run_code
@@ -94,6 +95,16 @@ def pytest_collection_modifyitems(items, config):
             item.add_marker(pytest.mark.skip(reason=mark.args[0]))
         if tier_of(item.path) == TIERS[0] and (asked := LONG_FIXTURES.intersection(item.fixturenames)):
             raise pytest.UsageError(f"{item.nodeid} asks for {', '.join(asked)}: move it to a file test_..._slow.py")
+    if config.option.tier != TIERS[-1] and not any("::" in word for word in config.args):
+        _leave_out_undrawn(items, config)
+
+
+def _leave_out_undrawn(items, config):
+    """Leave out the tests that this commit does not draw."""
+    marks = [(item, item.get_closest_marker("drawn")) for item in items]
+    undrawn = {item for item, mark in marks if mark and not is_drawn(item.nodeid, *mark.args)}
+    config.hook.pytest_deselected(items=list(undrawn))
+    items[:] = [item for item in items if item not in undrawn]
 
 
 def pytest_collection_finish():

@@ -51,6 +51,7 @@ def of(kinds, share: int) -> list:
     return [pytest.param(kind, kind.few // share, id=kind.name) for kind in kinds]
 
 
+@pytest.mark.drawn(3)
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize(
     "kind, count", [*of((k for k in FEW if k.name not in COSTLY), 1), *of((k for k in FEW if k.name in COSTLY), 8)]
@@ -73,6 +74,7 @@ def test_what_is_damaged_is_measured_or_refused_in_a_line(kind, count, tmp_path,
     assert len(counts) == 2, f"changes must be both harmless and harmful: {counts}"
 
 
+@pytest.mark.drawn(3)
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("seed", BY_DAY)
 def test_programs_mean_the_same_in_every_language(seed, tmp_path, monkeypatch):

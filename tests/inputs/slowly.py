@@ -1,4 +1,4 @@
-"""Of a test's cases those that run by day: a tenth, drawn by the commit."""
+"""Of a test's cases those that run by day, drawn by the commit."""
 
 import random
 import subprocess
@@ -13,6 +13,11 @@ def a_tenth(values: Iterable[Any]) -> list[Any]:
     every = list(values)
     drawn = set(random.Random(_commit()).sample(range(len(every)), -(-len(every) // 10)))
     return [value for at, value in enumerate(every) if at in drawn]
+
+
+def is_drawn(test: str, of: int) -> bool:
+    """Whether a test that runs for one commit of so many, by its id, runs for this one."""
+    return random.Random(f"{_commit()} {test}").randrange(of) == 0
 
 
 @cache

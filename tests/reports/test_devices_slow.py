@@ -106,6 +106,7 @@ def small_site(tmp_path_factory):
     return folder / "site"
 
 
+@pytest.mark.drawn(2)
 @pytest.mark.parametrize("size, theme", [(DESKTOP, "light"), (PHONE, "dark")])
 def test_the_site_opens_from_the_disk_and_keeps_nobody_out(small_site, opener, size, theme):
     """No request but for the file, nothing complained of, no sideways scrolling of the page."""

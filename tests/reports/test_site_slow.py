@@ -194,6 +194,7 @@ WIDE = ("index.html", "layouts.html", "codecs/octahedral.html")
 NARROW = ("choose.html", "codecs/index.html", "devices/index.html")
 
 
+@pytest.mark.drawn(3)
 @pytest.mark.parametrize(
     ("name", "size", "theme"),
     [(name, DESKTOP, "light") for name in WIDE] + [(name, PHONE, "dark") for name in NARROW],

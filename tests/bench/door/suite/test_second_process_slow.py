@@ -78,6 +78,7 @@ def is_there(process: int) -> bool:
         return False
 
 
+@pytest.mark.drawn(3)
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("ended", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_no_process_outlives_a_run(tmp_path, ended):

@@ -64,6 +64,7 @@ def test_the_octahedrons_border_is_there_twice():
     assert unorm.unstable == unorm.duplicate
 
 
+@pytest.mark.drawn(3)
 @pytest.mark.parametrize("storage", [*STORAGES.values(), R11G11B10F], ids=lambda s: s.name)
 def test_a_storages_numbers_are_what_it_gives_back(storage):
     """Each is stored as itself in float32 and in float64, and there are as many as are said to be."""

@@ -101,6 +101,7 @@ def test_local_workers_listen_nowhere(started, tmp_path):
     assert seen == 4, f"{seen} looks; the command ended: {process.poll()}"
 
 
+@pytest.mark.drawn(3)
 def test_a_worker_that_is_ended_leaves_no_file(tmp_path, number=signal.SIGTERM):
     """Neither of its orders nor of dask's."""
     temporary = tmp_path / "temporary"
@@ -114,6 +115,7 @@ def test_a_worker_that_is_ended_leaves_no_file(tmp_path, number=signal.SIGTERM):
         assert not [*temporary.iterdir()], "a folder is left"
 
 
+@pytest.mark.drawn(3)
 @pytest.mark.parametrize("command", [("quality", "--normals", "axes", "--on"), ("worker",)], ids=["on", "worker"])
 @pytest.mark.parametrize(
     ("scheme", "encrypts", "says"),

@@ -42,6 +42,7 @@ def test_an_address_where_nobody_answers_is_refused_in_seconds(run):
     assert time.monotonic() - began < 20
 
 
+@pytest.mark.drawn(3)
 def test_workers_of_this_machine_need_no_dask_and_no_certificates_and_leave_nothing_behind(tmp_path):
     """In a process that cannot import dask, twice, as a program may that uses the Python functions; workers could."""
     options = {"encoding": "xyz,octahedral", "storage": "rgba8", "normals": "axes", "backend": "jax", "on": "local:1"}
@@ -159,6 +160,7 @@ def test_an_interruption_leaves_rows_and_no_process_and_a_killed_worker_costs_no
     assert not [*(tmp_path / "temporary").iterdir()], "the folder of a killed worker is left"
 
 
+@pytest.mark.drawn(3)
 def test_a_killed_scheduler_and_its_killed_worker_cost_no_row(tmp_path, rows_alone):
     """The command and the workers wait for another scheduler at the same address."""
     with scheduled({}, {}) as there:

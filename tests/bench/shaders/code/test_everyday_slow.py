@@ -29,6 +29,7 @@ def agrees(codec, language, folder):
     return "" if found.holds else f"{code.language}: {found.says}\n{code.body}"
 
 
+@pytest.mark.drawn(3)
 @pytest.mark.parametrize("name", GLSL)
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_everyday_glsl_is_read_and_means_the_same(language, name, tmp_path):
@@ -39,6 +40,7 @@ def test_everyday_glsl_is_read_and_means_the_same(language, name, tmp_path):
     assert not said, said
 
 
+@pytest.mark.drawn(3)
 @pytest.mark.parametrize("name", WGSL)
 def test_everyday_wgsl_means_what_naga_makes_of_it(name, tmp_path):
     """The text as it was typed, compiled by naga and run by Vulkan, gives the texels of its translation by OpenGL."""

@@ -39,6 +39,7 @@ def given(kind: str) -> tuple[np.ndarray, np.ndarray]:
     return n, np.broadcast_to(np.float32([*SETTINGS[kind], 0.0]), (len(rows), 3))
 
 
+@pytest.mark.drawn(3)
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("kind, name, storage, language", [(*codec, "c") for codec in CODECS])
 def test_code_gives_the_catalogues_texels_of_odd_values(kind, name, storage, language, tmp_path):

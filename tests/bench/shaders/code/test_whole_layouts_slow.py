@@ -43,6 +43,7 @@ TIES |= {
 }
 
 
+@pytest.mark.drawn(3)
 @pytest.mark.parametrize("name, language", [*product(TIES, FAST)])
 def test_it_packs_and_unpacks_as_the_renderer_does(name, language, layouts):
     """Bits of every target, and every number that comes back, of surfaces with the ends of each range and beyond."""
@@ -63,6 +64,7 @@ def written_in_c(name, layout):
     return WRITTEN[name]
 
 
+@pytest.mark.drawn(3)
 @pytest.mark.parametrize(
     "old, new",
     [

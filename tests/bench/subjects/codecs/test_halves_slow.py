@@ -43,6 +43,7 @@ def test_code_of_a_half_is_in_its_own_axes(run, tmp_path, half):
 TWO = ("z >= 0", "x <= 0")
 
 
+@pytest.mark.drawn(3)
 @pytest.mark.parametrize("half", TWO)
 @pytest.mark.parametrize("what", OPEN)
 def test_a_code_that_is_finite_on_its_half_alone_is_taken_for_it(tmp_path, monkeypatch, what, half):
