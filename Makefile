@@ -45,4 +45,4 @@ lint: .venv/tests
 say-bench:
 	@echo "make bench: sets up what is missing, then measures the default suite into results: about five minutes, 100 MB"
 say-test:
-	@echo "make test: sets up what is missing, then runs the tests: $(if $(ALL),$(if $(filter nightly,$(ALL)),about an hour and a half,about 16 minutes),about 3 minutes) on two cores"
+	@echo "make test: sets up what is missing, then runs the tests: $(if $(ALL),$(if $(filter nightly,$(ALL)),about an hour,about 16 minutes),about 3 minutes) on two cores"

@@ -1,6 +1,7 @@
 """The house: rooms and who knows whom, the package list, the catalogue, and twins."""
 
 import ast
+import json
 import pkgutil
 import re
 import subprocess
@@ -11,6 +12,7 @@ from pathlib import Path
 
 import pytest
 from other_systems import SYSTEMS, lacking
+from tiers import TIERS, tier_of
 
 from normalbench.bench.ground.options import listing
 from normalbench.bench.subjects.normals import normal_sets
@@ -503,3 +505,21 @@ def test_what_the_set_up_imports_is_there():
     for script, module, name in asked:
         # It imports what is a module of its own.
         assert pkgutil.resolve_name(f"{module}.{name}"), f".ci/{script}: {module} has no {name}"
+
+
+# Seconds of processor of each tier, as the last nightly took them: a change that goes over takes something out.
+BUDGETS = {"quick": 430, "slow": 1480, "nightly": 3600}
+# Of a quick file that no nightly has run yet.
+UNMEASURED = 5.0
+
+
+@pytest.mark.parametrize("tier", TIERS)
+def test_a_tier_takes_no_more_than_its_budget(tier):
+    measured = json.loads((ROOT / "tests" / "seconds.json").read_text())["files"]
+    unmeasured = [UNMEASURED if tier == TIERS[0] else 0.0]
+    names = [str(path.relative_to(ROOT)) for path in (ROOT / "tests").rglob("test_*.py") if tier_of(path) == tier]
+    seconds = {name: measured.get(name, unmeasured)[0] for name in names}
+    dearest = sorted(seconds.items(), key=lambda file: -file[1])[:10]
+    assert sum(seconds.values()) <= BUDGETS[tier], (
+        f"{sum(seconds.values()):.0f} s of {BUDGETS[tier]}; dearest: {dearest}"
+    )
