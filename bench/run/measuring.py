@@ -23,7 +23,7 @@ from ..keep.journal import Journal, journal
 from ..keep.plain import key_text, plain
 from ..shaders.languages.source import Source
 from ..shaders.languages.words import file_of, names_an_encoder, parts_of, split_names, twin_of
-from ..tables.table import Measured, Row, Step, Table, Tick
+from ..tables.table import Measured, Role, Row, Step, Table, Tick
 
 # Beside a file of one of these, files that it refers to are read too.
 COMPANIONS = {".gltf": ("*.bin",), ".obj": ("*.mtl",)}
@@ -77,12 +77,17 @@ class Here:
         said = ", ".join(f"{name}={value}" for name, value in settings().items())
         for step, rows in zip(steps, ask.table.work.measure(steps, tick), strict=True):
             require_living_device()
-            yield step, [_with_settings(row, said) for row in rows]
+            yield step, [_with_settings(ask.table, row, said) for row in rows]
 
 
-def _with_settings(row: Row, said: str) -> Row:
-    """A row whose device has what is set from outside, if anything is; one of a file was measured elsewhere."""
-    return row | {"device": f"{row['device']}, {said}"} if said and row.get("device") and "renderer" not in row else row
+def _with_settings(table: Table, row: Row, said: str) -> Row:
+    """A row whose device has what is set from outside, if anything is. A device that names the row is another
+    machine's."""
+    return (
+        row | {"device": f"{row['device']}, {said}"}
+        if said and row.get("device") and table.column("device") not in table.of_role(Role.KEY)
+        else row
+    )
 
 
 HERE = Here()
