@@ -16,10 +16,10 @@ from .codecs.depth_codec import DepthEncoding
 from .codecs.encoding import Encoding
 from .codecs.files import CatalogueError
 from .codecs.frame_encoding import FrameEncoding
-from .codecs.kind import CURVE, DEPTH, FRAME, LIGHT, MOTION, NORMAL, AnyEncoding, Kind
 from .codecs.light_codec import LightCodec
 from .codecs.light_encoding import LightEncoding
 from .codecs.motion_codec import MotionEncoding
+from .kinds import CURVE, DEPTH, FRAME, LIGHT, MOTION, NORMAL, AnyEncoding, Kind
 from .storages.storage import LIGHT_STORAGES
 
 PAIRS = (
@@ -79,8 +79,8 @@ def _loaded_encoding(kind: Kind, name: str) -> Any:
         encoding = import_module(f".{kind.folder}.{name}", __package__).ENCODING
     except Exception as error:  # whatever a user's own file raises
         raise CatalogueError(f"{place}: {type(error).__name__}: {error}") from error
-    if not isinstance(encoding, kind.encoding):
-        raise CatalogueError(f"{place}: its ENCODING is no {kind.encoding.__name__}")
+    if getattr(encoding, "kind", None) is not kind:
+        raise CatalogueError(f"{place}: its ENCODING is not of {kind.plural}")
     if encoding.name != name:
         raise CatalogueError(f"{place}: its ENCODING is named {encoding.name!r}, not {name!r}")
     return encoding

@@ -156,14 +156,16 @@ def _writers(of: str) -> Iterator[tuple[str, Callable[[str], Any]]]:
     from normalbench.bench.subjects.codecs.kinds.codecs import codecs_of_kind
     from normalbench.bench.subjects.codecs.layout_names import layouts_named
     from normalbench.bench.subjects.codecs.names import codecs_named, fitting
-    from normalbench.encodings.codecs.kind import KINDS, NORMAL
+    from normalbench.encodings.kinds import KINDS, NORMAL
 
     if of == "layouts":
-        yield from ((layout.name, partial(gbuffer_code, layout)) for layout in layouts_named("all"))
+        yield from ((layout.name, partial(gbuffer_code, layout)) for layout in layouts_named(("all",)))
         return
-    named = {NORMAL: fitting(codecs_named("all", SHIPPED, "nearest"))[0]} if of == "normals" else {}
+    named = {NORMAL: fitting(codecs_named(("all",), SHIPPED, ("nearest",)))[0]} if of == "normals" else {}
     if of == "others":
-        named = {kind: codecs_of_kind(kind, "all", "", ["nearest"]) for kind in KINDS if kind is not NORMAL}
+        named = {
+            kind: codecs_of_kind(kind, ("all",), (), ("nearest",), slice(1)) for kind in KINDS if kind is not NORMAL
+        }
     for kind, codecs in named.items():
         yield from ((f"{kind.word} {codec.name}", partial(code_of, codec)) for codec in codecs if not codec.misfit)
 

@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from normalbench.bench.shaders.languages.words import ENDINGS
+from normalbench.bench.ground.user_files import ENDINGS
 
 SETTING = ("--storage", "rg16,rgba16", "--normals", "sphere", "--backend", "glsl", "--count", "65536")
 WITHIN, SECONDS = 0.01, 200

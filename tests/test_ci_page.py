@@ -5,7 +5,7 @@ import re
 import yaml
 from manual import PAGES, ROOT
 
-from normalbench.bench.shaders.languages.words import ENDINGS
+from normalbench.bench.ground.user_files import ENDINGS
 
 PAGE = PAGES[ROOT / "docs/ci.md"]
 

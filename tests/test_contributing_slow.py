@@ -19,6 +19,9 @@ def copy(tmp_path_factory):
     return folder
 
 
+SMALL = ("--size", "64x48", "--repeats", "0")
+
+
 def rows_of(folder, *arguments):
     done = normalbench_in(folder, *arguments, "--format", "csv")
     assert done.returncode == 0, done.stderr
@@ -41,6 +44,22 @@ def test_a_storage_is_a_line_and_a_column_two(copy):
     assert len(figures) == 4 and max(figures.values()) - min(figures.values()) < 1e-4, figures
     for row in rows:
         assert float(row["angle_rms_minutes"]) == pytest.approx(60 * float(row["angle_rms_deg"]), rel=1e-5)
+
+
+@pytest.mark.usefixtures("gl")
+def test_a_kind_is_a_class_a_pair_a_module_and_six_lines(copy):
+    """Its code is held against its twin, and has the kind's name in front."""
+    (row,) = json.loads(normalbench_in(copy, "code", "metres", "--check", "--to", "glsl", "--format", "json").stdout)
+    assert (row["encoding"], row["storage"], row["differing"]) == ("metres", "r16", 0), row
+    assert "float height_encode(float x)" in normalbench_in(copy, "code", "metres", "--to", "glsl").stdout
+
+
+@pytest.mark.usefixtures("gl")
+def test_a_scene_is_a_file_and_two_lines(copy):
+    """It is drawn: marbles come back better in 16 bits a number than in 8."""
+    rows = rows_of(copy, "render", "--scene", "marbles", "--encoding", "octahedral", "--storage", "rg8,rg16", *SMALL)
+    psnr = {row["storage"]: float(row["psnr_db"]) for row in rows}
+    assert psnr["rg16"] > psnr["rg8"] + 20 > 40, psnr
 
 
 @pytest.mark.usefixtures("gl")

@@ -14,7 +14,7 @@ import pytest
 from other_systems import SYSTEMS, lacking
 from tiers import TIERS, tier_of
 
-from normalbench.bench.ground.options import listing
+from normalbench.bench.subjects.names import listing
 from normalbench.bench.subjects.normals import normal_sets
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.registry import TABLES
@@ -167,6 +167,7 @@ OWN_JSON = {
     "bench/keep/journal.py": "lines with infinite figures, which the schema judges",
     "bench/keep/plain.py": "rows on their way",
     "bench/measures/metrics/totals.py": "totals on their way",
+    "bench/door/run.py": "what a run was asked for, as its file has it",
     "bench/shaders/isa/child.py": "what a child is asked",
     "bench/shaders/isa/driver_files.py": "files of drivers that are installed",
     "bench/shaders/isa/nvidia/child.py": "what a child is asked",
@@ -294,7 +295,7 @@ def test_no_number_is_typed_in_both_languages():
 
 def test_the_list_command_knows_everything_there_is():
     assert set(listing.NORMAL_SETS) == set(normal_sets.NORMAL_SETS)
-    listed = {row["name"] for row in listing.listing("all")}
+    listed = {row["name"] for row in listing.listing(("all",))}
     there = {
         *ENCODINGS,
         *STORAGES,
@@ -314,7 +315,7 @@ def test_the_list_command_knows_everything_there_is():
 def test_rows_have_the_columns_of_the_table():
     from normalbench.encodings.codecs.codec import Codec
 
-    case = quality.Case(Codec(ENCODINGS["xy"], STORAGES["rg8"]), normal_sets.axes(), "jax")
+    case = quality.QualityCase(Codec(ENCODINGS["xy"], STORAGES["rg8"]), normal_sets.axes(), "jax")
     assert tuple(quality.measure(case)) == tuple(TABLES["quality"].empty())
 
 
@@ -473,6 +474,36 @@ def test_no_table_of_a_run_is_asked_for_by_a_literal_name():
 
 def _is_anothers(module: list[str], own: str) -> bool:
     return len(module) > 3 and module[2] != own and module[3] in ("work", "pictures")
+
+
+def _is_text_of_names(argument: ast.arg) -> bool:
+    """Tell whether an argument is the text of what it is named for."""
+    kinds = "codec", "encoding", "storage", "normal_set", "scene", "layout"
+    return argument.arg.removesuffix("s") in kinds and "str" in ast.unparse(argument.annotation or ast.Name(""))
+
+
+def test_texts_become_names_where_a_command_is_read():
+    """By one splitter, which options call, and commands for arguments of their own. Below the subjects names are
+    values."""
+    wrong, splitters = [], {("options.words", "names"), ("user_files", "file_names")}
+    below = [ROOT / "encodings", ROOT / "gbuffer", BENCH / "shaders"]
+    for path in SOURCES:
+        tree, place = ast.parse(path.read_text()), path.relative_to(ROOT)
+        asked = {
+            (node.module.removeprefix("bench.").removeprefix("ground."), alias.name)
+            for node in ast.walk(tree)
+            if isinstance(node, ast.ImportFrom) and node.module
+            for alias in node.names
+        }
+        is_door = path.is_relative_to(BENCH / "door") or path.name in ("option.py", "user_files.py")
+        wrong += [f"{place} splits names" for module, name in asked & splitters if not is_door]
+        if not any(path.is_relative_to(room) for room in below):
+            continue
+        wrong += [f"{place} reads names" for module, _ in asked if module in ("choose", "options.words")]
+        functions = (node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef))
+        arguments = (one for node in functions for one in (*node.args.args, *node.args.kwonlyargs))
+        wrong += [f"{place}, line {one.lineno}: {one.arg} is a text" for one in arguments if _is_text_of_names(one)]
+    assert not wrong, wrong
 
 
 # Turns that a reader of a message, a help text or a definition stumbles over.

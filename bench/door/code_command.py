@@ -5,34 +5,35 @@ from __future__ import annotations
 import re
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
 from ...encodings.codecs.codec import Codec
-from ...encodings.codecs.kind import CURVE, FRAME, MOTION, NORMAL, Kind
+from ...encodings.kinds import CURVE, FRAME, MOTION, NORMAL, Kind
 from ...gbuffer.gl.shader import ShaderError
 from ..ground.choose import choose, unknown_name
 from ..ground.machine.memory import require_memory
 from ..ground.machine.systems.people import command_line
 from ..ground.options.code import CodeOptions
-from ..ground.options.storage_names import roundings_named
+from ..ground.options.source_options import in_names
 from ..ground.options.targets import that_fit, what_is_left
+from ..ground.options.words import Names
 from ..ground.output.errors import UsageError, leave_out, tell
 from ..ground.spelling import spelled
 from ..shaders.code.emit import LANGUAGES
 from ..shaders.code.files import Code, code_of, file_name, stem_of, usual_prefix
 from ..shaders.code.kinds.table import kind_of
 from ..shaders.code.verify import Agreement, agreement
-from ..shaders.languages.source_options import in_names
 from ..subjects.codecs.kinds.codecs import NAMED, codecs_of_kind, kinds_named
 from ..subjects.codecs.names import codecs_named, fitting
+from ..subjects.names.storages import roundings_named
 from .code_figures import figures, head, rounding_of
 from .code_rows import DIFFERS, NOT_RUN, WITNESSES, Row, check_codes, check_place, compared, save, witness
 from .gbuffer_command import LAYOUT, check_no_layout, gbuffer_command, is_of_layouts
 
-SHIPPED = "rgba8,rg8,rgb10a2,rgb8_12_12,rg16,rg16f"
+SHIPPED = ("rgba8", "rg8", "rgb10a2", "rgb8_12_12", "rg16", "rg16f")
 LONGEST = 60
 # Codes whose numbers may be cut off.
 ROUNDED = (NORMAL, MOTION, CURVE, FRAME)
@@ -49,7 +50,8 @@ def code_command(options: CodeOptions, format: str, output: Path | None) -> int:
     """
     require_memory()
     _check_prefix(options.prefix)
-    options = replace(options, **in_names(asdict(options) | {"of": _of_named(options.of)}))
+    values = {field.name: getattr(options, field.name) for field in fields(options)}
+    options = replace(options, **in_names(values | {"of": _of_named(options.of)}))
     languages = choose("language", options.to, {name: name for name in LANGUAGES})
     if is_of_layouts(options):
         return gbuffer_command(options, languages, format, output)
@@ -110,15 +112,15 @@ def _codecs(options: CodeOptions) -> list[Any]:
     return what_is_left(found, complaints)
 
 
-def _of_kind(kind: Kind, names: str, options: CodeOptions) -> list[Any]:
+def _of_kind(kind: Kind, names: Names, options: CodeOptions) -> list[Any]:
     rounded = roundings_named(options.rounding)
     if rounded != ["nearest"] and kind not in ROUNDED:
         raise UsageError(f"--rounding is for {ROUNDED_WORDS}; codes of {kind.word} are rounded to the nearest")
-    return that_fit(codecs_of_kind(kind, names, options.storage or "", rounded))
+    return that_fit(codecs_of_kind(kind, names, options.storage, rounded, slice(1)))
 
 
-def _normals(names: str, options: CodeOptions) -> list[Codec]:
-    storages = options.storage or (SHIPPED if options.check else "rgba8")
+def _normals(names: Names, options: CodeOptions) -> list[Codec]:
+    storages = options.storage or (SHIPPED if options.check else ("rgba8",))
     codecs, left_out = fitting(codecs_named(names, storages, options.rounding))
     if not options.check or options.storage:
         for line in left_out:

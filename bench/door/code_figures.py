@@ -76,7 +76,7 @@ def _errors(codec: Codec) -> Iterator[str]:
         return
     backend = "jax" if has_twin(codec.encoding) else "glsl"
     chosen = NORMAL_SETS[domain](DEFAULT_COUNT, 0)
-    row = quality.measure(quality.Case(codec, chosen, backend, worst_case=codec.encoding.is_exact))
+    row = quality.measure(quality.QualityCase(codec, chosen, backend, worst_case=codec.encoding.is_exact))
     if row["skipped"]:
         yield f"Errors: not measured here: {row['skipped']}."
         return

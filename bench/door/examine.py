@@ -20,17 +20,18 @@ from ...reports import tables
 from ...reports.charts.sphere_chart import sphere_chart
 from ..ground.choose import choose_one
 from ..ground.machine.systems.people import command_line
-from ..ground.options.storage_names import storages_named
+from ..ground.options.option import Sources
+from ..ground.options.source_options import in_names
 from ..ground.output.errors import UsageError, tell
 from ..ground.output.writing import check_plot, save_plot, write_text
+from ..ground.user_files import UserFile
 from ..keep.row_files import check_rows, write
-from ..shaders.languages.source_options import in_names
-from ..shaders.languages.words import file_of, without_settings
 from ..subjects.codecs.kinds.named import examined_code, kind_of, notes_of
 from ..subjects.codecs.kinds.own import OwnKind
 from ..subjects.codecs.user_encodings import ANY, Examined, examined
+from ..subjects.names.storages import storages_named
 from ..subjects.normals.normal_sets import NORMAL_SETS
-from ..tables.quality.measure import Case, measure
+from ..tables.quality.measure import QualityCase, measure
 from ..tables.quality.sphere_maps import sphere_map
 
 STORAGE = "rgba8"
@@ -50,7 +51,7 @@ def examine_encoding(
     output: Path | None,
     storage: str | None = None,
     domain: str | None = None,
-    sources: Mapping[str, str | None] = MappingProxyType({}),
+    sources: Mapping[str, Any] = MappingProxyType({}),
 ) -> int:
     """Write a verdict, findings and notes, and the picture if one is asked for.
 
@@ -67,19 +68,20 @@ def examine_encoding(
     """
     if file is None:
         raise UsageError("doctor examines a file with --plot, --storage and --domain: name it")
-    file = Path(in_names({"encoding": str(file), **sources})["encoding"])
+    (word,) = in_names({"encoding": (str(file),), **vars(Sources(**sources))})["encoding"]
+    shader = UserFile(str(word))
     check_plot(plot)
     kept = _storage(storage or STORAGE)
     try:
-        found = examined(file, choose_one("domain", domain, DOMAINS) if domain else ANY)
+        found = examined(shader, choose_one("domain", domain, DOMAINS) if domain else ANY)
     except UsageError as error:
         # What it is of in place of normals is asked once it is none of these.
-        if (kind := kind_of(file, str(error))) is None:
+        if (kind := kind_of(shader, str(error))) is None:
             raise
         given = {"plot": plot, "storage": storage, "domain": domain}
         if option := next((name for name, value in given.items() if value), ""):
-            raise UsageError(f"{file}: --{option} is of normals, and this file is of {kind.words.plural}") from None
-        return _examine_own(file, kind, format, output)
+            raise UsageError(f"{shader}: --{option} is of normals, and this file is of {kind.kind.plural}") from None
+        return _examine_own(shader, kind, format, output)
     codec = Codec(found.encoding, kept)
     if storage and codec.misfit:
         raise UsageError(f"{codec.name}: {codec.misfit}")
@@ -92,7 +94,7 @@ def examine_encoding(
     wrong, notes = ([*found.wrong], [*worse, *found.notes]) if is_meant else ([*found.wrong, *worse], found.notes)
     notes = [*notes, *halves]
     about = {
-        "file": file_of(file).name,
+        "file": shader.path.name,
         "encoding": found.encoding.name,
         "domain": _domain(found),
         "functions": found.functions,
@@ -104,11 +106,11 @@ def examine_encoding(
     return int(bool(wrong))
 
 
-def _examine_own(file: Path, kind: OwnKind, format: str, output: Path | None) -> int:
+def _examine_own(file: UserFile, kind: OwnKind, format: str, output: Path | None) -> int:
     """The same of a code of something else than normals."""
     own = examined_code(kind, file)
-    command = kind.words.command.format(command_line([str(without_settings(file))]))
-    about = {"file": file_of(file).name, "encoding": own.made.name, "domain": kind.words.plural}
+    command = kind.kind.command.format(command_line([file.plain]))
+    about = {"file": file.path.name, "encoding": own.made.name, "domain": kind.kind.plural}
     measures = [] if "broken" in own.found else [f"`{command}` measures it"]
     wrong, notes = own.found.get("wrong", []), [*notes_of(own), *measures]
     _write(about | {"functions": own.made.named}, wrong, notes, format, output)
@@ -149,7 +151,7 @@ def _list(lines: Sequence[str], format: str) -> str:
 
 def _storage(name: str) -> Storage:
     """Raises UsageError where it is not one."""
-    found = storages_named(name)
+    found = storages_named((name,))
     if len(found) != 1:
         raise UsageError(f"--storage {name}: doctor measures in one storage")
     return found[0]
@@ -206,7 +208,7 @@ def _means(codec: Codec) -> tuple[float, float]:
 def _row(codec: Codec) -> dict[str, Any]:
     """A row of the quality table."""
     chosen = NORMAL_SETS["sphere" if codec.encoding.domain == "sphere" else "hemisphere"](COUNT, 0)
-    return measure(Case(codec, chosen, "glsl"))
+    return measure(QualityCase(codec, chosen, "glsl"))
 
 
 def _picture(codec: Codec, found: Examined) -> Any:

@@ -26,13 +26,12 @@ LAYOUT, ENDING = "layout", ".toml"
 
 def is_of_layouts(options: CodeOptions) -> bool:
     """Whether layouts are named: by `--of layout`, or as files."""
-    words = [word.strip() for word in options.codec.split(",")]
-    return options.of == LAYOUT or (not options.of and all(word.endswith(ENDING) for word in words))
+    return options.of == LAYOUT or (not options.of and all(str(word).endswith(ENDING) for word in options.codec))
 
 
 def check_no_layout(options: CodeOptions) -> None:
     """Raises UsageError where the name of a layout stands among those of encodings."""
-    for word in map(str.strip, options.codec.split(",")):
+    for word in map(str, options.codec):
         if not options.of and word in LAYOUTS and word not in ENCODINGS:
             raise UsageError(f"{word} is a layout: normalbench code {word} --of {LAYOUT}")
 
@@ -74,7 +73,7 @@ def _write_layout(layout: Layout, made: Sequence[GBufferCode], options: CodeOpti
 
 
 def _command(code: GBufferCode, options: CodeOptions) -> str:
-    words = [word.strip() for word in options.codec.split(",")]
+    words = map(str, options.codec)
     files = [word for word in words if word.endswith(ENDING) and Path(word).stem == code.layout.name]
     named = [Path(files[0]).name] if files else [code.layout.name, "--of", LAYOUT]
     prefix = ["--prefix", options.prefix] if options.prefix else []

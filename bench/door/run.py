@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import json
 import sys
 import time
 from collections import deque
@@ -15,17 +16,18 @@ from typing import Any
 from ..ground.choose import choose
 from ..ground.machine.memory import give_back_what_a_table_needed, have_few_heaps, keep_what_is_imported, require_memory
 from ..ground.options.option import fields_of
+from ..ground.options.source_options import in_names, names_files
+from ..ground.options.words import Names
 from ..ground.output.errors import MissingError, UsageError, leave_out, noting_what_is_left_out, tell, told
 from ..ground.output.progress import progress_of_all, spoken
 from ..ground.output.writing import say
+from ..ground.user_files import SETTINGS
 from ..keep.commit import commit_of
 from ..keep.runs import Row, Run, facts_of, opened, read_run, unfinished
 from ..keep.table_files import write_tables
 from ..run.measuring import Asked, Place, asked_together, measured, with_parts
 from ..run.second import Second, is_worth_it, second_process
 from ..run.workers.places import place
-from ..shaders.languages.source_options import in_names, names_files
-from ..shaders.languages.words import SETTINGS
 from ..show.showing import say_lines, say_skipped, show_summary
 from ..tables.registry import TABLES
 from ..tables.table import Measured, Table
@@ -36,10 +38,10 @@ RESULTS = Path("results")
 PAGE = "report.html"
 
 
-def chosen_tables(names: str, said: Mapping[str, Any]) -> list[Table]:
-    """The tables that comma-separated names stand for; of "all" those measured unasked, with the options that were
-    said. Raises UsageError."""
-    if names.strip() == "all":
+def chosen_tables(names: Names, said: Mapping[str, Any]) -> list[Table]:
+    """Return the tables that names stand for; of "all" those measured unasked, with the options that were said. Raises
+    UsageError."""
+    if names == ("all",):
         return [table for table in TABLES.values() if table.is_in_all(said)]
     return list(dict.fromkeys(choose("table", names, TABLES)))
 
@@ -133,7 +135,8 @@ def run_command(request: Any, output: Path | None, on: str | None = None, commit
         from ..ground.machine.devices import require_jax
 
         require_jax()
-        facts: Row = {"request": {"tables": request.tables, **given(request)}, **facts_of(sys.argv[1:])}
+        asked = {"tables": request.tables, **given(request)}
+        facts: Row = {"request": json.loads(json.dumps(asked)), **facts_of(sys.argv[1:])}
         facts |= {
             "time": time.strftime("%Y-%m-%dT%H:%M:%S%z"),
             "finished": False,

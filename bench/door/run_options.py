@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import field, make_dataclass
 from typing import Annotated, Any
 
-from ..ground.options.option import Field, Option, fields_of
+from ..ground.options.option import Field, Option, Options, fields_of
+from ..ground.options.words import Names
 from ..tables.registry import TABLES
 
 
@@ -22,11 +23,11 @@ def _shared() -> dict[str, Field]:
 def _options_class() -> type:
     others = ", ".join(name for name, table in TABLES.items() if not table.in_all)
     said = f"{', '.join(TABLES)}; comma-separated, or all, which is all but {others}."
-    tables = Annotated[str, Option("--tables", said)]
-    typed: list[tuple[str, Any, Any]] = [("tables", tables, field(default="all"))]
+    tables = Annotated[Names, Option("--tables", said)]
+    typed: list[tuple[str, Any, Any]] = [("tables", tables, field(default=("all",)))]
     for name, one in _shared().items():
         typed.append((name, Annotated[one.type | None, one.option], field(default=None)))
-    return make_dataclass("RunOptions", typed, frozen=True, kw_only=True)
+    return make_dataclass("RunOptions", typed, bases=(Options,), frozen=True, kw_only=True)
 
 
 RunOptions = _options_class()

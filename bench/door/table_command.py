@@ -149,7 +149,7 @@ def _write_page(table: Table, done: Measured, folder: Path, target: Path) -> Non
 
     rows = plain(list(done.rows))
     facts = facts_of(sys.argv[1:]) | {"time": time.strftime("%Y-%m-%dT%H:%M:%S%z"), "finished": True}
-    facts |= {"request": {"tables": table.name}}
+    facts |= {"request": {"tables": [table.name]}}
     steps = [{"table": table.name, "key": {}, "rows": rows}]
     shown = Done(facts, steps, whole={table.name: rows})
     say(f"\nThe page: {write_report(folder, shown, target, name=target.stem)}\n")

@@ -7,30 +7,31 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TypeVar
 
+from .options.words import Given, Word
 from .output.errors import UsageError
 from .spelling import meant, spelled
 
 T = TypeVar("T")
-# In the name of a file.
-MOST_COMMAS = 4
 # Behind the name of a mesh file: mesh.glb#vertices is the normals of its vertices.
 PART, VERTICES = "#", "vertices"
 
 
-def choose(what: str, names: str, known: Mapping[str, T]) -> list[T]:
-    """The values that comma-separated names stand for, however they are spelled, or all of them for "all".
+def choose(what: str, names: Iterable[Word], known: Mapping[str, T]) -> list[T]:
+    """Return the values that names stand for, however they are spelled, or all of them for "all"; a value of the
+    caller's own is itself.
 
     Raises:
         UsageError: an unknown name; the message says what may have been meant, and lists the known ones.
     """
-    asked = [name.strip() for name in names.split(",") if name.strip()]
+    asked = list(names)
     if not asked:
         raise UsageError(f"no {what} named; known: all, {', '.join(known)}")
-    found = {name: spelled(what, name, known) for name in asked if name != "all"}
-    unknown = [name for name, key in found.items() if key is None]
+    known = {**known, **{word.name: word.value for word in asked if isinstance(word, Given)}}
+    keys = {word: spelled(what, word, known) for word in map(str, asked) if word != "all"}
+    unknown = [word for word, key in keys.items() if key is None]
     if unknown:
         raise unknown_name(what, unknown, known, f"all, {', '.join(known)}")
-    chosen = known if "all" in asked else dict.fromkeys(key for key in found.values() if key is not None)
+    chosen = known if "all" in asked else dict.fromkeys(key for key in keys.values() if key is not None)
     return [known[name] for name in chosen]
 
 
@@ -56,45 +57,25 @@ def unknown_name(what: str, names: Iterable[str], known: Collection[str], listed
 
 
 def choose_or_read(
-    what: str, names: str, known: Mapping[str, T], endings: Collection[str], read: Callable[[Path], T]
+    what: str, names: Iterable[Word], known: Mapping[str, T], endings: Collection[str], read: Callable[[Path], T]
 ) -> list[T]:
-    """The values that comma-separated names stand for, or files by what their names end in.
+    """Return the values that names stand for, or files by what their names end in.
 
     Raises:
         UsageError: an unknown name, or two files of one name, which rows could not tell apart; and what `read` raises.
     """
-    words = [name for name in file_names(names) if name]
-    files = [Path(word) for word in words if Path(word).suffix.lower() in endings]
+    words = list(names)
+    files = [Path(word) for word in words if isinstance(word, str) and Path(word).suffix.lower() in endings]
     called = [file.name for file in files]
     twice = [name for name in called if called.count(name) > 1]
     if twice:
         raise UsageError(f"two files are called {twice[0]}, which is how rows name them; rename one")
-    others = [word for word in words if Path(word).suffix.lower() not in endings]
+    others = [word for word in words if Path(str(word)).suffix.lower() not in endings or isinstance(word, Given)]
     try:
-        chosen = choose(what, ",".join(others), known) if others or not files else []
+        chosen = choose(what, others, known) if others or not files else []
     except UsageError as error:
         raise UsageError(f"{error}; or a file that ends in {', '.join(endings)}") from None
     return chosen + [read(file) for file in files]
-
-
-def split(names: str, is_whole: Callable[[str], bool]) -> list[str]:
-    """Comma-separated names, each once.
-
-    Args:
-        is_whole: whether several that commas separate are one name, such as that of a file.
-    """
-    parts, found = names.split(","), []
-    while parts:
-        several = (size for size in range(min(len(parts), MOST_COMMAS + 1), 1, -1))
-        size = next((size for size in several if is_whole(",".join(parts[:size]).strip())), 1)
-        found.append(",".join(parts[:size]).strip())
-        parts = parts[size:]
-    return list(dict.fromkeys(found))
-
-
-def file_names(names: str) -> list[str]:
-    """Comma-separated names, each once; a comma in a file's name is a part of it."""
-    return split(names, lambda word: names_a_file(whole_file_of(word)))
 
 
 def whole_file_of(word: str) -> str:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ..ground.choose import choose
+from ..ground.options.words import Names
 from ..ground.output.errors import UsageError, tell
 from ..tables.table import Row
 from .change_lines import LINES, SENTENCES, in_short, sentences
@@ -29,12 +30,12 @@ SPARED = ("figures", "rows", "date", "change")
 
 @dataclass(frozen=True)
 class Wanted:
-    """What of the runs is looked at: comma-separated names, or None for all."""
+    """What of the runs is looked at: names, or None for all."""
 
-    tables: str | None = None
-    encoding: str | None = None
-    storage: str | None = None
-    column: str | None = None
+    tables: Names | None = None
+    encoding: Names | None = None
+    storage: Names | None = None
+    column: Names | None = None
 
 
 @dataclass(frozen=True)
@@ -87,7 +88,7 @@ def _chosen(series: Sequence[Series], wanted: Wanted) -> list[Series]:
     """The wanted rows. Raises UsageError for a name that no row has."""
     found = list(series)
     for what in ("tables", "encoding", "storage"):
-        names: str | None = getattr(wanted, what)
+        names: Names | None = getattr(wanted, what)
         if names:
             known = dict.fromkeys(name for one in series if (name := _name(one, what)))
             chosen = choose(what.removesuffix("s"), names, {str(name): name for name in known})

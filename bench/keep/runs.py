@@ -255,8 +255,10 @@ def _step_of(part: Row) -> str:
 
 
 def _write_facts(folder: Path, facts: Row) -> None:
+    from .schema import SCHEMA
+
     with whole_file(folder / RUN) as partial:
-        partial.write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8", newline="\n")
+        partial.write_text(json.dumps({"schema": SCHEMA, **facts}, indent=1) + "\n", encoding="utf-8", newline="\n")
 
 
 class Amended:

@@ -14,6 +14,8 @@ from ..tables.table import Role, Row
 
 # A float holds whole numbers below this: storages of 64 bits have more codes than fit a whole number of NumPy's.
 LARGEST = 2**1000
+# Raised where rows or their keys mean something else than before; runs of another are refused.
+SCHEMA = 3
 
 
 def _checked_scalar(value: Any) -> Any:
@@ -48,6 +50,7 @@ class StepLine(TypedDict):
 class RunFacts(TypedDict, total=False):
     """What is read of `run.json`."""
 
+    schema: int
     request: dict[str, JsonValue]
     command: list[str]
     sources: str
@@ -93,8 +96,10 @@ WRONG = {
 
 
 def check_facts(facts: Any, place: str) -> None:
-    """Raises UsageError where `run.json` holds something else than a run's facts."""
+    """Raises UsageError where `run.json` holds something else than a run's facts, or those of another version."""
     _check(FACTS, facts, [place])
+    if facts.get("schema") != SCHEMA:
+        raise UsageError(f"{place}: another version of normalbench measured this run; measure it again")
 
 
 # By table and column, whether a key is text, and a place that says so.

@@ -6,7 +6,7 @@ import hashlib
 import os
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from itertools import zip_longest
 from pathlib import Path
 from typing import Any, Protocol
@@ -19,10 +19,10 @@ from ..ground.options.option import Reading, fields_of
 from ..ground.output.errors import UsageError
 from ..ground.output.progress import progress
 from ..ground.output.writing import is_special, target_of
+from ..ground.user_files import UserFile, file_of, names_an_encoder, parts_of
 from ..keep.journal import Journal, journal
 from ..keep.plain import key_text, plain
 from ..shaders.languages.source import Source
-from ..shaders.languages.words import file_of, names_an_encoder, parts_of, split_names, twin_of
 from ..tables.table import Measured, Role, Row, Step, Table, Tick
 
 # Beside a file of one of these, files that it refers to are read too.
@@ -174,19 +174,20 @@ def with_parts(steps: Iterable[Step]) -> Iterator[Step]:
 
 
 def files_of(options: Any) -> Row:
-    """A fingerprint of every file that options name, and of those read beside it: {"files": {...}}; {} for none."""
-    words = [word for words in words_of(options).values() for word in words]
-    digests = {word: "".join(map(_fingerprint, parts_of(word))) for word in words}
-    found = {word: digest for word, digest in digests.items() if digest}
-    return {"files": found} if found else {}
+    """Return fingerprints of all files that options name, and of those read beside each: {"files": [...]}; {} for
+    none."""
+    words = {part for words in words_of(options).values() for word in words for part in parts_of(word)}
+    digests = sorted(filter(None, map(_fingerprint, words)))
+    return {"files": digests} if digests else {}
 
 
 def words_of(options: Any) -> dict[str, list[str]]:
-    """By option the words that may name files."""
+    """Return by option the words that may name files."""
+    known = fields_of(type(options))
+    values = {name: getattr(options, name) or () for name, field in known.items() if field.option.files}
     return {
-        field.name: split_names(str(getattr(options, field.name) or ""))
-        for field in fields(options)
-        if fields_of(type(options))[field.name].option.files
+        name: [value] if isinstance(value, str) else [word for word in value if isinstance(word, str)]
+        for name, value in values.items()
     }
 
 
@@ -206,7 +207,7 @@ def _fingerprint(word: str) -> str:
 def companions(word: str | Path) -> list[Path]:
     """The files that are read with the one that a word names: those of the same stem, and those that its kind refers
     to."""
-    path = file_of(word)
+    path = file_of(str(word))
     patterns = COMPANIONS.get(path.suffix.lower(), ())
     beside = {other for pattern in patterns for other in path.parent.glob(pattern)}
     if path.suffix.lower() == ".gltf":
@@ -216,7 +217,7 @@ def companions(word: str | Path) -> list[Path]:
     if path.suffix.lower() == ".toml":
         beside |= set(_files_of_layout(path))
     if names_an_encoder(str(word)):
-        beside |= {other for other in (twin_of(word), *_included(word)) if other.is_file()}
+        beside |= {other for other in (UserFile(str(word)).twin, *_included(word)) if other.is_file()}
     return sorted(beside)
 
 
@@ -253,7 +254,7 @@ def _files_of_layout(path: Path) -> list[Path]:
 def _included(word: str | Path) -> list[Path]:
     """The files that a user's encoder includes; none of one that cannot be read."""
     try:
-        return list(Source(word).files.values())
+        return list(Source(UserFile(str(word))).files.values())
     except UsageError:
         return []
 

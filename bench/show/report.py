@@ -194,15 +194,14 @@ def gathered(folder: Path, done: Done, name: str = "") -> Found:
         finished=done.finished,
         encodings=_encodings(tables),
         subjects=list(_subjects(folder, done, tables, remarks)),
-        extras=_extras(folder, tables, remarks),
+        **_extras(folder, tables, remarks),
         live=_live(folder / LIVE),
         remarks=remarks,
     )
     asked = _asked(facts)
     shown = [table for table in TABLES.values() if table.name in tables or table.name in asked]
     sections = answered_first([_section(folder, found, done, table, remarks) for table in shown])
-    extras = {**found.extras, "cards": about_codecs(sections), "code": _clean_code(read_code(folder))}
-    return replace(found, sections=sections, extras=extras)
+    return replace(found, sections=sections, cards=about_codecs(sections), code=_clean_code(read_code(folder)))
 
 
 def _other_version(facts: Row) -> str:
@@ -303,7 +302,7 @@ def _asked(facts: Row) -> set[str]:
     requests = [facts.get("request"), *(one.get("request") for one in before or () if isinstance(one, dict))]
     found: set[str] = set()
     for request in (request for request in requests if isinstance(request, dict)):
-        words = {word.strip() for word in str(request.get("tables")).split(",")}
+        words = {*(request.get("tables") or ())}
         found |= words & TABLES.keys()
         found |= {table.name for table in TABLES.values() if "all" in words and table.is_in_all(request)}
     return found
@@ -321,7 +320,7 @@ def _subjects(folder: Path, done: Done, names: Iterable[str], remarks: list[str]
 
 
 def _extras(folder: Path, tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> dict[str, Any]:
-    """What tables show beside their rows, by name."""
+    """Find what tables show beside their rows, by attributes of `found.Found`."""
     found: dict[str, Any] = {}
     for name in tables:
         try:

@@ -123,12 +123,12 @@ def _views(run: Found) -> list[ViewPage]:
     return made
 
 
-def _answer(parts: Sequence[page.Part]) -> str:
+def _answer(parts: Sequence[page.PageSection]) -> str:
     """The first answer of these sections; empty where they have none."""
     return next((table.said[0] for part in parts for table in part.tables if table.said), "")
 
 
-def _parts(run: Found, view: View) -> list[page.Part]:
+def _parts(run: Found, view: View) -> list[page.PageSection]:
     sections = [section for section in run.sections if section.about.view == view and section.rows]
     return [
         page.part_of(run, section, {}, math.inf) for section in sorted(sections, key=lambda one: not one.about.leads)

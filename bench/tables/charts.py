@@ -8,8 +8,8 @@ from typing import Any
 
 from ...reports.page.codec_key import CodecKey
 from ...reports.page.verdict import BACKENDS, is_number
-from ..ground.options import backends
 from ..ground.output.errors import lacks_twin
+from ..subjects.names import backends
 from .table import Row
 
 # A histogram's least angle: nothing of 32 bits and less is finer, and what is 0 has no logarithm.

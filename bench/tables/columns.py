@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from ..ground.choose import choose
+from ..ground.options.words import Names
 from .registry import TABLES
 from .table import Column, Row, Table
 
 
-def columns(names: str) -> list[Row]:
-    """A row for each column of the tables that comma-separated names stand for. Raises UsageError."""
+def columns(names: Names) -> list[Row]:
+    """Return a row for each column of the tables that names stand for. Raises UsageError."""
     return [_column_row(table, column) for table in choose("table", names, TABLES) for column in table.columns]
 
 

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from ..ground.choose import choose
 from ..ground.options import gpu_families
+from ..ground.options.words import Names
 from ..ground.output.errors import UsageError
 from .roofline.rates import GPUS
 
 
-def families_named(names: str) -> list[str]:
-    """The families of comma-separated names, each once: families, and vendors for all of theirs.
+def families_named(names: Names) -> list[str]:
+    """Return the families of names, each once: families, and vendors for all of theirs.
 
     Raises:
         UsageError: an unknown name; of a GPU that `roofline` knows, the message says its family.
     """
-    words = [word.strip() for word in names.split(",")]
-    if gpu := next((word for word in words if word.lower() in GPUS), None):
+    if gpu := next((word for word in map(str, names) if word.lower() in GPUS), None):
         raise UsageError(f"{gpu} is a GPU and not a family; its family is {GPUS[gpu.lower()].family}")
     return list(dict.fromkeys(name for several in choose("family", names, gpu_families.CHOICES) for name in several))

@@ -132,8 +132,8 @@ class Work:
         write: the files that were asked for beside the rows. Returns lines that make the command fail.
         charts: `chart.Chart` values of rows, which the page, the files of `run`, notebooks and --plot draw.
         plotted: the charts that --plot draws where they are not `charts` of the rows.
-        extras: what the page shows beside the rows, by name, from the folder of a run, its rows by table, and remarks
-            that it may add to.
+        extras: what the page shows beside the rows, by attributes of `found.Found`, from the folder of a run, its rows
+            by table, and remarks that it may add to.
         joined: charts of the page that need rows of several tables, from its contents, a `found.Found`.
         subjects: what the files of `write`, in a folder, show of the rows: `pixels.Subject` values for the page.
         films: animations of the rows among the files of `write`, in a folder: `pixels.Film` values for the page.

@@ -40,9 +40,9 @@ def fewer_bits(bits: int | None, code_bits: float | None) -> int | None:
     return round(code_bits) if bits and code_bits and round(code_bits) < bits else None
 
 
-def codec_name(encoding: str, storage: str, rounding: str) -> str:
+def codec_name(encoding_name: str, storage_name: str, rounding: str) -> str:
     """What a codec is called; rounding to the nearest is not said."""
-    return f"{encoding}/{storage}" + ("" if rounding == "nearest" else f"/{rounding}")
+    return f"{encoding_name}/{storage_name}" + ("" if rounding == "nearest" else f"/{rounding}")
 
 
 def rounding_misfit(storage: Storage, rounding: str) -> str | None:

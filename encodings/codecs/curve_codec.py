@@ -6,8 +6,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
+from ..kinds import CURVE, Kind
 from ..storages.rounding import store_texel
 from ..storages.rules import of_count
 from ..storages.storage import DITHERED, Storage, rounds_to
@@ -41,6 +42,7 @@ class CurveEncoding:
         functions: what the names of its GLSL functions begin with, of a user's file; empty where that is the name.
     """
 
+    kind: ClassVar[Kind] = CURVE
     name: str
     title: str
     encode: Callable[[Any, Any], Any]

@@ -7,14 +7,15 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
+from ..kinds import DEPTH, Kind
 from ..shared.position import (
     Camera,
+    CameraTerms,
     Projection,
-    Seen,
     position_from_linear_depth,
     position_from_projection_terms,
     position_from_window_depth,
@@ -64,6 +65,7 @@ class DepthEncoding:
         functions: what the names of its GLSL functions begin with, of a user's file; empty where that is the name.
     """
 
+    kind: ClassVar[Kind] = DEPTH
     name: str
     title: str
     encode: Callable[[Any, Any, Any], Any]
@@ -218,17 +220,17 @@ class DepthCodec:
             return np.where(finite, share * np.spacing(np.where(finite, rounded, 1)).astype(np.float64), np.inf)
 
 
-def by_inverse_projection(_: DepthCodec, number, place: Vec2, seen: Seen) -> Vec3:
+def by_inverse_projection(_: DepthCodec, number, place: Vec2, seen: CameraTerms) -> Vec3:
     """Positions of stored numbers by the inverse projection; the encoding has a projection."""
     return position_from_window_depth(place, number, seen.clip, seen.clip_to_view)
 
 
-def by_projection_terms(_: DepthCodec, number, place: Vec2, seen: Seen) -> Vec3:
+def by_projection_terms(_: DepthCodec, number, place: Vec2, seen: CameraTerms) -> Vec3:
     """Positions of stored numbers by the two terms of the projection; the encoding has a projection."""
     return position_from_projection_terms(place, number, seen.clip, seen.terms, seen.rays)
 
 
-def by_eye_ray(codec: DepthCodec, number, place: Vec2, seen: Seen) -> Vec3:
+def by_eye_ray(codec: DepthCodec, number, place: Vec2, seen: CameraTerms) -> Vec3:
     """Positions of stored numbers by the decoder and the eye's ray."""
     return position_from_linear_depth(place, abs(codec.depths(number, seen.near, seen.far)), seen.rays)
 
@@ -243,7 +245,7 @@ class Rebuild:
         way: its number in GLSL.
     """
 
-    position: Callable[[DepthCodec, Any, Vec2, Seen], Vec3]
+    position: Callable[[DepthCodec, Any, Vec2, CameraTerms], Vec3]
     by_projection: bool
     way: int
 

@@ -7,8 +7,9 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, ClassVar
 
+from ..kinds import NORMAL, Kind
 from ..vec import Vec2, Vec3, jnp, unit
 from .fingerprint import fingerprint
 
@@ -92,6 +93,7 @@ class Encoding:
         own: the same in its author's axes, of a code for another half than z >= 0, which tables turn.
     """
 
+    kind: ClassVar[Kind] = NORMAL
     name: str
     title: str
     encode: Callable[[Vec3, Vec3], Any]

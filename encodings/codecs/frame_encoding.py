@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
+from ..kinds import FRAME, Kind
 from ..rotation import Frame
 from ..vec import Vec4
 
@@ -42,6 +43,7 @@ class FrameEncoding:
         is_unit: its author's functions give and take numbers in [0, 1], u for c = 2 u - 1: every storage holds u.
     """
 
+    kind: ClassVar[Kind] = FRAME
     name: str
     title: str
     encode: Callable[[Frame, Any], Vec4]

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import ClassVar
 
+from ..kinds import LIGHT, Kind
 from ..vec import Vec4
 
 # How light is added up: by the blending hardware, adding or multiplying texels; or by reading what is there, adding in
@@ -44,6 +46,7 @@ class LightEncoding:
             empty where it is made for the named ones alone.
     """
 
+    kind: ClassVar[Kind] = LIGHT
     name: str
     title: str
     encode: Callable[[Vec4], Vec4]

@@ -7,8 +7,9 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
+from ..kinds import MOTION, Kind
 from ..storages.dither import Dither
 from ..storages.rounding import store_number
 from ..storages.rules import of_count
@@ -46,6 +47,7 @@ class MotionEncoding:
         own_range: of functions that are given no range, the largest motion that comes to 1 or -1; None of others.
     """
 
+    kind: ClassVar[Kind] = MOTION
     name: str
     title: str
     encode: Callable[[Vec2, Any], Vec2]

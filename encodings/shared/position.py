@@ -14,7 +14,7 @@ import numpy as np
 from ..vec import Vec2, Vec3, jnp
 
 
-class Seen(NamedTuple):
+class CameraTerms(NamedTuple):
     """What a shader knows of a camera and a projection, in float32: scalars, and `clip_to_view` of shape (4, 4).
 
     `terms` are the two of the projection's row for z: clip-space z is terms.x z + terms.y.
@@ -77,12 +77,12 @@ class Camera:
         """The two terms of a projection's row for z, a and b; of none 0 and 1."""
         return projection.row(self.near, self.far) if projection else (0.0, 1.0)
 
-    def seen(self, projection: Projection | None) -> Seen:
+    def seen(self, projection: Projection | None) -> CameraTerms:
         """The camera as a shader knows it."""
         near, far, *rays = map(jnp.float32, (self.near, self.far, *self.rays))
         clip = Vec2(*map(jnp.float32, projection.clip if projection else (1.0, 0.0)))
         terms = Vec2(*map(jnp.float32, self.terms(projection)))
-        return Seen(near, far, Vec2(*rays), clip, jnp.asarray(self.clip_to_view(projection), jnp.float32), terms)
+        return CameraTerms(near, far, Vec2(*rays), clip, jnp.asarray(self.clip_to_view(projection), jnp.float32), terms)
 
 
 def position_from_window_depth(place: Vec2, depth, clip: Vec2, clip_to_view) -> Vec3:

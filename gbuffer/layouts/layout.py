@@ -318,18 +318,17 @@ class Layout:
 
 
 def engine_layout(
-    engine: str, year: int, name: str, title: str, encoding: str | Encoding, targets: str, source: str, **how: Any
+    engine: str, year: int, name: str, title: str, encoding: Encoding, targets: str, source: str, **how: Any
 ) -> Layout:
     """A layout of an engine, in world space if not said otherwise; `targets` is as `targets_of` reads it."""
-    found = ENCODINGS[encoding] if isinstance(encoding, str) else encoding
     how = {"space": WORLD, "engine": engine, "year": year, **how}
-    return Layout(name, title, targets_of(targets), found, source, **how)
+    return Layout(name, title, targets_of(targets), encoding, source, **how)
 
 
-def _check_known(layout: str, field: str, name: str, known: Collection[str]) -> None:
+def _check_known(layout_name: str, field: str, name: str, known: Collection[str]) -> None:
     """Raises LayoutError for a name that is not among the known ones."""
     if name not in known:
-        raise LayoutError(f"layout {layout}: unknown {field} {name!r}; known: {', '.join(known)}")
+        raise LayoutError(f"layout {layout_name}: unknown {field} {name!r}; known: {', '.join(known)}")
 
 
 def _words_without_depth(holds: str) -> list[str]:

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from ...encodings.catalogue import ENCODINGS
+from ...encodings.codecs.encoding import Encoding
 from .layout import Layout, engine_layout
 
 UNREAL_4 = "Unreal Engine 4.27.2, SceneRenderTargets.cpp, DeferredShadingCommon.ush"
@@ -27,7 +29,7 @@ IN_SHADER = "evaluated in the material's shader"
 
 
 def _whole(
-    engine: str, year: int, name: str, title: str, encoding: str, targets: str, light: str, source: str, **how: Any
+    engine: str, year: int, name: str, title: str, encoding: Encoding, targets: str, light: str, source: str, **how: Any
 ) -> Layout:
     return engine_layout(engine, year, name, title, encoding, targets, source, is_whole=True, light=light, **how)
 
@@ -38,7 +40,7 @@ WHOLE_ENGINES = (
         2021,
         "unreal4",
         "xyz in RGB10A2; metallic, specular, roughness, model; base colour in sRGB, AO; custom data",
-        "xyz_renormalised",
+        ENCODINGS["xyz_renormalised"],
         "rgb10a2: normal.x normal.y normal.z other; "
         "rgba8: metalness linear:0.08(reflectance) roughness other:4 kind:4; srgb8_a8: albedo occlusion; "
         "rgba8: other other other other",
@@ -51,7 +53,7 @@ WHOLE_ENGINES = (
         2026,
         "unreal5_mobile",
         "octahedral 10:10, model; metallic, specular, roughness, custom; base colour in sRGB, AO",
-        "octahedral",
+        ENCODINGS["octahedral"],
         "rgb10a2: normal.x normal.y kind other; rgba8: metalness linear:0.08(reflectance) roughness other; "
         "srgb8_a8: albedo occlusion",
         "r11g11b10f",
@@ -63,7 +65,7 @@ WHOLE_ENGINES = (
         2026,
         "unreal5_substrate",
         "Substrate's simple slab: octahedral 11:11, roughness 10; diffuse and F0 in 7:7:6 bits on the root, a header",
-        "octahedral",
+        ENCODINGS["octahedral"],
         "rgba8: normal.x:11 normal.y:11 roughness:10; "
         "rgba8: kind:4 other:12 square_root(albedo.r):7 square_root(albedo.g):7 other:2; "
         "rgba8: square_root(albedo.b):6 square_root(specular.r):7 square_root(specular.g):7 square_root(specular.b):6 "
@@ -77,7 +79,7 @@ WHOLE_ENGINES = (
         2022,
         "unity_hdrp",
         "diffuse in sRGB, specular occlusion; octahedral by floor(x 4095.5), roughness; F0 by a fast sRGB curve, class",
-        "octahedral",
+        ENCODINGS["octahedral"],
         "srgb8_a8: albedo occlusion; rgba8: normal.x:12 normal.y:12 roughness; "
         "rgba8: fast_srgb(specular) kind:3 other:5",
         "r11g11b10f",
@@ -90,7 +92,7 @@ WHOLE_ENGINES = (
         2022,
         "unity_urp",
         "base colour in sRGB, flags; reflectivity for metalness, occlusion; xyz and smoothness in SNORM8",
-        "xyz_renormalised",
+        ENCODINGS["xyz_renormalised"],
         f"{URP}; rgba8_snorm: normal.x normal.y normal.z inverted(roughness)",
         "r11g11b10f",
         f"Unity URP 14, UnityGBuffer.hlsl; {UNITY}",
@@ -101,7 +103,7 @@ WHOLE_ENGINES = (
         2022,
         "unity_urp_accurate",
         "as unity_urp, with octahedral 12:12 by floor(x 4095.5) and smoothness in RGBA8",
-        "octahedral",
+        ENCODINGS["octahedral"],
         f"{URP}; rgba8: normal.x:12 normal.y:12 inverted(roughness)",
         "r11g11b10f",
         f"Unity URP 14, UnityGBuffer.hlsl, accurate G-buffer normals; {UNITY}",
@@ -114,7 +116,7 @@ WHOLE_ENGINES = (
         "bevy",
         "four words: base colour by 2.2, roughness; emission RGB9E5; reflectance, metallic, occlusion, coat; "
         "octahedral 12:12, flags; the lighting pass",
-        "octahedral",
+        ENCODINGS["octahedral"],
         "rgba8: gamma_2_2(albedo) roughness; rgba8: rgb9e5(emission); "
         "rgba8: square_root:0.16(reflectance) metalness occlusion other; "
         "rgba8: normal.x:12 normal.y:12 other; r8: kind",
@@ -127,7 +129,7 @@ WHOLE_ENGINES = (
         2026,
         "flax",
         "base colour linear in 8 bits, AO; xyz in RGB10A2, model; roughness, metalness, specular",
-        "xyz_renormalised",
+        ENCODINGS["xyz_renormalised"],
         "rgba8: albedo occlusion; rgb10a2: normal.x normal.y normal.z kind; "
         "rgba8: roughness metalness square_root:0.16(reflectance) -",
         "r11g11b10f",
@@ -139,7 +141,7 @@ WHOLE_ENGINES = (
         2026,
         "donut",
         "diffuse in sRGB, opacity; F0 in sRGB, occlusion; xyz and roughness in RGBA16 signed; emission, motion",
-        "xyz_renormalised",
+        ENCODINGS["xyz_renormalised"],
         "srgb8_a8: albedo kind; srgb8_a8: specular occlusion; rgba16_snorm: normal.x normal.y normal.z roughness; "
         "rgba16f: emission other; rg16f: motion.x motion.y",
         "",
@@ -150,7 +152,7 @@ WHOLE_ENGINES = (
         2026,
         "granite",
         "base colour in sRGB, ambient; xyz in RGB10A2; metallic, roughness; read in tile memory",
-        "xyz_renormalised",
+        ENCODINGS["xyz_renormalised"],
         "srgb8_a8: albedo occlusion; rgb10a2: normal.x normal.y normal.z -; rg8: metalness roughness",
         "r11g11b10f",
         "Themaister/Granite (7c59ad8), scene_viewer_application.cpp, inc/render_target.h",
@@ -162,7 +164,7 @@ WHOLE_ENGINES = (
         "kajiya",
         "four words: root of colours 8:8:8; xyz 11:10:11; roughness, metalness in halves; emission RGB9E5; "
         "geometric normal; motion in view space",
-        "xyz_renormalised",
+        ENCODINGS["xyz_renormalised"],
         KAJIYA,
         "",
         "EmbarkStudios/kajiya (9fdec0f), gbuffer.hlsl, pack_unpack.hlsl; to nearest since 2022-10 (591d966)",
@@ -172,7 +174,7 @@ WHOLE_ENGINES = (
         2021,
         "kajiya_truncated",
         "as kajiya before 2022-10: normals cut off, as colours were, which are rounded here",
-        "xyz_renormalised",
+        ENCODINGS["xyz_renormalised"],
         KAJIYA,
         "",
         "EmbarkStudios/kajiya before 591d966 (2022-10), pack_unpack.hlsl",
@@ -183,7 +185,7 @@ WHOLE_ENGINES = (
         2026,
         "dagor",
         "albedo in sRGB, AO; octahedral 10:10, there in halves, class; smoothness, reflectance, metal; motion",
-        "octahedral",
+        ENCODINGS["octahedral"],
         "srgb8_a8: albedo occlusion; rgb10a2: normal.x normal.y other kind; "
         "rgba8: inverted(roughness) square_root:0.16(reflectance) metalness other; "
         "rgba16f: motion.x motion.y other other",
@@ -196,7 +198,7 @@ WHOLE_ENGINES = (
         2026,
         "spartan",
         "base colour linear in 8 bits; xyz in halves, material; roughness, metalness, emission, occlusion; motion",
-        "xyz_renormalised",
+        ENCODINGS["xyz_renormalised"],
         "rgba8: albedo other; rgba16f: normal.x normal.y normal.z kind; rgba8: roughness metalness other occlusion; "
         "rgba16f: motion.x motion.y other -",
         "",
@@ -207,7 +209,7 @@ WHOLE_ENGINES = (
         2025,
         "second_life",
         "base colour linear in 8 bits; occlusion, roughness, metal; spheremap 16:16 in view space, class",
-        "spheremap",
+        ENCODINGS["spheremap"],
         "rgba8: albedo -; rgba8: occlusion roughness metalness -; rgba16: normal.x normal.y other kind",
         "",
         "secondlife/viewer (d6d453b), pipeline.cpp, pbropaqueF.glsl; emission's own target is optional there",
@@ -218,7 +220,7 @@ WHOLE_ENGINES = (
         2026,
         "r3d",
         "base colour linear in RGB8; octahedral 16:16 twice; occlusion, roughness, metal, specular; depth; emission",
-        "octahedral",
+        ENCODINGS["octahedral"],
         "rgba8: albedo -; rg16: normal.x normal.y; rg16: other other; "
         "rgba8: occlusion roughness metalness square_root:0.16(reflectance); r16f: depth; rgba16f: emission -",
         "",
@@ -230,7 +232,7 @@ WHOLE_ENGINES = (
         2026,
         "o3de",
         "a prototype, not the main pipeline: base colour, roughness, metalness in halves; signed octahedron 10:10",
-        "signed_octahedral",
+        ENCODINGS["signed_octahedral"],
         "rgba16f: albedo -; rgba16f: roughness metalness - -; rgb10a2: normal.x normal.y normal.z -",
         "",
         "o3de/o3de-atom-sampleviewer, Materials/Pipelines/PrototypeDeferredPipeline/DeferredMaterialPass.azsli:79",
@@ -240,7 +242,7 @@ WHOLE_ENGINES = (
         2025,
         "fidelityfx",
         "base colour, alpha; xyz in halves, signed here; AO, square of the roughness, metallic; motion",
-        "xyz_renormalised",
+        ENCODINGS["xyz_renormalised"],
         "rgba8: albedo other; rgba16f: normal.x normal.y normal.z -; rgba8: occlusion squared(roughness) metalness -; "
         "rg16f: motion.x motion.y",
         "",
@@ -251,7 +253,7 @@ WHOLE_ENGINES = (
         2024,
         "cocos",
         "three targets in halves: albedo; emission, occlusion; octahedral, roughness, metallic",
-        "octahedral",
+        ENCODINGS["octahedral"],
         "rgba16f: albedo other; rgba16f: emission occlusion; rgba16f: normal.x normal.y roughness metalness",
         "",
         "cocos-engine 3.8 (4a7c879), deferred-pipeline.ts, standard-surface-entry.chunk",
@@ -261,7 +263,7 @@ WHOLE_ENGINES = (
         2026,
         "hybrid_rendering",
         "albedo, metal; octahedral and motion in halves; roughness, curvature, mesh and depth in halves",
-        "octahedral",
+        ENCODINGS["octahedral"],
         "rgba8: albedo metalness; rgba16f: normal.x normal.y motion.x motion.y; rgba16f: roughness other kind depth",
         "",
         "diharaw/hybrid-rendering (090360e), G-buffer",
@@ -271,7 +273,7 @@ WHOLE_ENGINES = (
         2026,
         "remix",
         "octahedral in two SNORM16; roughness; albedo and F0 linear in RGB10; anisotropy, opacity, flags and emission",
-        "octahedral",
+        ENCODINGS["octahedral"],
         "rg16_snorm: normal.x normal.y; r8: roughness; rgb10a2: albedo -; rgb10a2: specular -; "
         "rgba8: other other other:6 kind:2 other; rgba8: other other other other",
         "",

@@ -83,22 +83,22 @@ def targets_of(text: str) -> tuple[Target, ...]:
     return tuple(Target(*one.strip().split(": ", 1)) for one in text.split(";"))
 
 
-def placed(layout: str, index: int, target: Target) -> Iterator[Word]:
+def placed(layout_name: str, index: int, target: Target) -> Iterator[Word]:
     """Where each component of a target lies, the free and the unused ones left out; see `all_placed`."""
-    return (word for word in all_placed(layout, index, target) if word.component != OTHER)
+    return (word for word in all_placed(layout_name, index, target) if word.component != OTHER)
 
 
-def all_placed(layout: str, index: int, target: Target) -> Iterator[Word]:
+def all_placed(layout_name: str, index: int, target: Target) -> Iterator[Word]:
     """Where each component of a target lies and what engines keep besides, the free ones left out.
 
     Args:
-        layout: its name, for messages.
+        layout_name: for messages.
         index: which target of the layout it is.
 
     Raises:
         LayoutError: an unknown word, or one that does not fit.
     """
-    place, storage, bit = place_of(layout, index, target), target.storage, 0
+    place, storage, bit = place_of(layout_name, index, target), target.storage, 0
     for text in spelt_out(place, target):
         label = text.removeprefix(f"{OTHER}.").partition(":")[0] if text.startswith(f"{OTHER}.") else ""
         name, sign, bits, kept = _word_parts(place, text)
@@ -123,9 +123,9 @@ def all_placed(layout: str, index: int, target: Target) -> Iterator[Word]:
         bit += taken
 
 
-def place_of(layout: str, index: int, target: Target) -> str:
+def place_of(layout_name: str, index: int, target: Target) -> str:
     """What messages call a target."""
-    return f"layout {layout}, target {index} ({target.format})"
+    return f"layout {layout_name}, target {index} ({target.format})"
 
 
 def spelt_out(place: str, target: Target) -> Iterator[str]:

@@ -10,7 +10,7 @@ from ..environment.catalogue import ENVIRONMENTS
 from .files.read import AROUND
 from .mesh import Mesh
 from .metal_rough import Map, MetalRough
-from .scene import Part, Scene, View
+from .scene import Scene, ScenePart, View
 
 # A reflectance is a number of a material: materials of so many are made, and more are rounded to as many steps.
 REFLECTANCES = 256
@@ -49,7 +49,7 @@ def pixel_scene(pixels: PixelSurfaces, view: View) -> Scene:
     meshes = [_squares(pixels.depth, level == at, view) for at in range(len(reflectances))]
     to_world, surface = np.linalg.inv(view.matrix())[None], _surface(pixels)
     return Scene(
-        parts=tuple(Part(mesh, to_world, np.array([at]), casts=False) for at, mesh in enumerate(meshes)),
+        parts=tuple(ScenePart(mesh, to_world, np.array([at]), casts=False) for at, mesh in enumerate(meshes)),
         materials=tuple(replace(surface, reflectance=float(one)) for one in reflectances),
         lights=(),
         ambient=(0.0, 0.0, 0.0),

@@ -66,7 +66,7 @@ class Light:
 
 
 @dataclass(frozen=True)
-class Part:
+class ScenePart:
     """One mesh in many places.
 
     Attributes:
@@ -184,7 +184,7 @@ class Scene:
         environment: what lies around, at every distance; of metal/rough scenes alone.
     """
 
-    parts: tuple[Part, ...]
+    parts: tuple[ScenePart, ...]
     materials: tuple[Material, ...] | tuple[MetalRough, ...]
     lights: tuple[Light, ...]
     ambient: Colour

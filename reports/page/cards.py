@@ -28,7 +28,7 @@ def block(found: Found, names: Sequence[str]) -> str:
     Args:
         names: of the codecs that the page shows.
     """
-    about = found.extras.get("cards")
+    about = found.cards
     if not about or not names:
         return ""
     sections = sections_of(found)
@@ -42,12 +42,12 @@ def block(found: Found, names: Sequence[str]) -> str:
 
 def sections_of(found: Found) -> list[TableSection]:
     """The sections whose rows are of codecs of normals."""
-    return [section for section in found.sections if section.rows and section.key in found.extras["cards"]["takes"]]
+    return [section for section in found.sections if section.rows and section.key in found.cards["takes"]]
 
 
 def codecs_of(found: Found, names: Sequence[str]) -> dict[str, dict[str, Any]]:
     """What is known of each codec: its storage, and the figures that codecs are compared by."""
-    known = found.extras["cards"]["codecs"]
+    known = found.cards["codecs"]
     first = _first_rows(sections_of(found), known)
     return {name: first.get(name, {}) | known.get(name, {}) for name in names}
 
@@ -111,7 +111,7 @@ def _first(row: Row, names: Sequence[str]) -> float | None:
 
 def _code(found: Found, names: Sequence[str]) -> dict[str, Any]:
     """The code that the run keeps of these codecs, with the pieces that these need alone."""
-    kept = found.extras.get("code")
+    kept = found.code
     if not kept:
         return {"languages": {}, "pieces": [], "codecs": {}}
     codecs = {name: kept["codecs"][name] for name in names if name in kept["codecs"]}

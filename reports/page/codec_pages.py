@@ -11,7 +11,7 @@ from typing import Any
 from ..sheets import Role, Row, Sheet
 from . import cards
 from .found import Found
-from .page import Table, base, sheet_table, table, template
+from .page import PageTable, base, sheet_table, table, template
 from .sections import TableSection, whole
 from .site import SCRIPTS, Index, Searched, Site, index_html, linked, plain_names
 
@@ -40,8 +40,8 @@ class CodecPage:
     question: str
     says: str
     facts: Sequence[tuple[str, Lines]]
-    storages: Table
-    tables: Sequence[tuple[str, str, Table]]
+    storages: PageTable
+    tables: Sequence[tuple[str, str, PageTable]]
     code: Sequence[tuple[str, Sequence[tuple[str, str]]]]
     look_ups: bool
 
@@ -70,7 +70,7 @@ def _card(label: str) -> str:
 
 
 def _page(found: Found, name: str, codecs: Mapping[str, Row]) -> CodecPage:
-    known = found.extras["cards"]["encodings"].get(name, {})
+    known = found.cards["encodings"].get(name, {})
     code = list(_code(found, codecs))
     return CodecPage(
         name=name,
@@ -118,7 +118,7 @@ def _users(used: Sequence[tuple[str, int, str]]) -> str:
     return "; ".join(f"{engine} in {', '.join(kept)}" for engine, kept in storages.items())
 
 
-def _codec_table(title: str, codecs: Mapping[str, Row]) -> Table:
+def _codec_table(title: str, codecs: Mapping[str, Row]) -> PageTable:
     """The figures of codecs; of those that have none only where no other has any."""
     rows = [
         {"codec": label, "storage": one.get("storage"), **{name: one.get(key) for name, key in FIGURES.items()}}
@@ -131,7 +131,7 @@ def _measured(codecs: Mapping[str, Row]) -> Mapping[str, Row]:
     return {label: one for label, one in codecs.items() if "mean" in one} or codecs
 
 
-def _rows(section: TableSection, name: str) -> tuple[str, str, Table] | None:
+def _rows(section: TableSection, name: str) -> tuple[str, str, PageTable] | None:
     """An encoding's rows in a table: what tells them apart, and the figures that codecs are compared by."""
     rows = [row for row in whole(section.rows) if row.get("encoding") == name]
     known = {column for row in rows for column, value in row.items() if value is not None and column != "encoding"}
@@ -147,7 +147,7 @@ def _rows(section: TableSection, name: str) -> tuple[str, str, Table] | None:
 
 def _code(found: Found, codecs: Mapping[str, Row]) -> Iterator[tuple[str, Sequence[tuple[str, str]]]]:
     """The code that the run keeps of an encoding, by codec and language."""
-    kept = found.extras.get("code") or {"codecs": {}}
+    kept = found.code or {"codecs": {}}
     for label in codecs:
         if label in kept["codecs"]:
             texts = kept["codecs"][label]["texts"].items()
@@ -169,7 +169,7 @@ def _index_page(found: Found, codecs: Mapping[str, Row], files: Mapping[str, str
 
 
 def _encoding_list(found: Found, codecs: Mapping[str, Row], links: Mapping[str, str]) -> Searched:
-    known = found.extras["cards"]["encodings"]
+    known = found.cards["encodings"]
     rows = [
         {
             "encoding": name,

@@ -56,8 +56,14 @@ class Found:
         finished: whether all that was asked for has.
         encodings: the names of encodings of normals: the catalogue's, and those of users' files.
         subjects: what codecs were tried on, and their pixels.
-        extras: what tables show beside their rows, by name: `maps`, `agreement`, `fronts`, `listings` and
-            `order`.
+        maps: errors over the sphere.
+        agreement: how far the figures of two back ends are apart, in a sentence; empty where no codec has both.
+        fronts: cost against error.
+        listings: disassemblies, by name.
+        order: where costs are in another order than the article's, and why, in lines.
+        choices: the questions that a reader may ask otherwise; empty where a run answers none.
+        cards: what is known of codecs and encodings; empty without any.
+        code: the code of codecs that the run keeps; empty where it keeps none.
         live: what its laboratory runs; None where the run keeps none.
         remarks: what does not fit, in sentences.
     """
@@ -70,7 +76,14 @@ class Found:
     finished: bool = False
     encodings: frozenset[str] = frozenset()
     subjects: Sequence[Subject] = ()
-    extras: Mapping[str, Any] = field(default_factory=dict)
+    maps: Sequence[SphereMap] = ()
+    agreement: str = ""
+    fronts: Sequence[Front] = ()
+    listings: Mapping[str, Listing] = field(default_factory=dict)
+    order: Sequence[str] = ()
+    choices: Mapping[str, Any] = field(default_factory=dict)
+    cards: Mapping[str, Any] = field(default_factory=dict)
+    code: Mapping[str, Any] = field(default_factory=dict)
     live: Live | None = None
     remarks: Sequence[str] = ()
 

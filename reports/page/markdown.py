@@ -41,7 +41,7 @@ def _blocks(found: Found) -> Iterator[str]:
     for sheet in answers:
         first, *rest = map(tables.markdown_sentence, sheet.said)
         yield "\n".join([f"**{first}**\n", *(f"- {line}" for line in rest), ""])
-    if said := found.extras.get("agreement"):
+    if said := found.agreement:
         yield f"{tables.markdown_sentence(said)}\n"
     # Nobody reads the tables of a whole run in a comment: its page has them.
     summaries = () if answers else (sheet for section in found.sections for sheet in section.summary if sheet.rows)

@@ -75,7 +75,7 @@ class Line:
 
 
 @dataclass(frozen=True)
-class Table:
+class PageTable:
     """A table as the template shows it; `constants` says what is the same in every row, and `data` has its rows packed
     where the page builds it when it is opened."""
 
@@ -89,18 +89,18 @@ class Table:
     data: str = ""
 
 
-def definitions(shown: Iterable[Table]) -> list[tuple[str, str]]:
+def definitions(shown: Iterable[PageTable]) -> list[tuple[str, str]]:
     """What the columns of tables say, each once: titles and definitions."""
     heads = (head for one in shown for head in one.columns)
     return list(dict.fromkeys((head.title, head.column.definition) for head in heads if head.column.definition))
 
 
-def table(title: str, rows: Sequence[Row], says: Callable[[str], str]) -> Table:
+def table(title: str, rows: Sequence[Row], says: Callable[[str], str]) -> PageTable:
     """Rows as a table to show; columns that say the same in each row are said once."""
     return sheet_table(Sheet(title, rows), lambda name: Column(name, says(name)))
 
 
-def sheet_table(sheet: Sheet, column: Callable[[str], Column], encodings: Container[str] = ()) -> Table:
+def sheet_table(sheet: Sheet, column: Callable[[str], Column], encodings: Container[str] = ()) -> PageTable:
     """A sheet as a table to show.
 
     Args:
@@ -120,7 +120,7 @@ def sheet_table(sheet: Sheet, column: Callable[[str], Column], encodings: Contai
         for at, (row, one) in enumerate(zip(shown, rows, strict=True))
     ]
     about = {"said": sheet.said, "aside": sheet.aside, "keys": sheet.keys}
-    return Table(sheet.title, heads, lines, constants.replace("_", " "), **about)
+    return PageTable(sheet.title, heads, lines, constants.replace("_", " "), **about)
 
 
 def _best(shown: Sequence[Row], rows: Sequence[Row], column: Column) -> Iterator[tuple[int, str]]:
@@ -174,12 +174,12 @@ class Chart:
 
 
 @dataclass(frozen=True)
-class Part:
+class PageSection:
     """A section as the template shows it."""
 
     section: TableSection
     charts: Sequence[Chart]
-    tables: Sequence[Table]
+    tables: Sequence[PageTable]
     measured: Sequence[tuple[str, str]]
 
     @property
@@ -222,7 +222,7 @@ def views(found: Found, has_codecs: bool, has_pictures: bool) -> list[Shown]:
 
 
 def beginning(
-    parts: Sequence[Part], names: Sequence[str], own: Sequence[str] = (), is_laboratory: bool = False
+    parts: Sequence[PageSection], names: Sequence[str], own: Sequence[str] = (), is_laboratory: bool = False
 ) -> dict[str, Any]:
     """What the script begins with: every codec; which are A and B until a reader says, the answer and what stands next
     to it, or a user's own and the answer; and the view: the laboratory if the page is one, else that of what was
@@ -243,14 +243,14 @@ def beginning(
 
 def _own(found: Found, names: Sequence[str]) -> list[str]:
     """The codecs whose encoding a user has brought."""
-    known = found.extras.get("cards", {}).get("encodings")
+    known = found.cards.get("encodings")
     return [name for name in names if known and cards.of_encoding(name) not in known]
 
 
 def drawings(found: Found) -> list[Drawing]:
     """Every chart of a run."""
     charts = [drawing for section in found.sections for drawing in section.drawings]
-    return charts + spheres.drawings(found.extras.get("maps", ()))
+    return charts + spheres.drawings(found.maps)
 
 
 @cache
@@ -303,9 +303,9 @@ def html(
     parts = [part_of(found, section, specs, most_cells) for section in found.sections]
     leading = [part for part in parts if part.section.about.leads and part.is_there]
     maps, begins, choices = (
-        found.extras.get("maps", ()),
+        found.maps,
         beginning(parts, names, _own(found, names), bool(home and found.live)),
-        found.extras.get("choices"),
+        found.choices,
     )
     return template("page.html.j2").render(
         found=found,
@@ -313,7 +313,7 @@ def html(
         remarks=remarks(found),
         most_remarks=MOST_REMARKS,
         views=views(found, bool(names), bool(gallery.subjects)),
-        agreement=found.extras.get("agreement", ""),
+        agreement=found.agreement,
         parts=parts,
         leading=leading,
         spheres=spheres.globes(spheres.shown(maps)),
@@ -330,7 +330,7 @@ def html(
         choices=choices,
         choices_data=packed(json.dumps(choices)) if choices else "",
         cards=cards.block(found, names),
-        listings=packed(_listings(found)) if found.extras.get("listings") else "",
+        listings=packed(_listings(found)) if found.listings else "",
         files=files,
         library=packed(library_script) if specs else "",
         specs=packed(json.dumps(specs)) if specs else "",
@@ -343,7 +343,7 @@ def html(
 
 def _listings(found: Found) -> str:
     """Disassemblies as data.js reads them."""
-    listings = found.extras["listings"]
+    listings = found.listings
     return json.dumps({name: {"text": one.text, "source": one.source} for name, one in listings.items()})
 
 
@@ -376,7 +376,7 @@ def sources_of(scripts: Sequence[str], is_beside: bool = False) -> str:
     return " ".join([*(f"'sha256-{digest}'" for digest in digests), *(["'self'", "file:"] if is_beside else [])])
 
 
-def part_of(found: Found, section: TableSection, specs: Mapping[str, Spec], most_cells: float) -> Part:
+def part_of(found: Found, section: TableSection, specs: Mapping[str, Spec], most_cells: float) -> PageSection:
     """A section as the template shows it, with those of its charts that are there."""
     encodings = found.encodings
     sheets = list(section.sheets)
@@ -387,4 +387,4 @@ def part_of(found: Found, section: TableSection, specs: Mapping[str, Spec], most
         for one, sheet, sum_of in zip(shown, sheets, cells, strict=True)
     ]
     charts = [Chart(drawing, specs[drawing.name]) for drawing in section.drawings if drawing.name in specs]
-    return Part(section, charts, shown, section.measured())
+    return PageSection(section, charts, shown, section.measured())

@@ -11,7 +11,7 @@ from typing import Any
 
 from .. import tables
 from ..sheets import undefined
-from .page import Cell, Heading, Line, Part, Table, base, template
+from .page import Cell, Heading, Line, PageSection, PageTable, base, template
 
 SCRIPTS = ("tables.js", "site.js")
 LONGEST = 60
@@ -64,7 +64,7 @@ class Answer:
     """A question about a device, answered: sentences, the first of which is the answer, and a table."""
 
     said: Sequence[str]
-    table: Table
+    table: PageTable
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ class DeviceSection:
     said: str
     about: Mapping[str, str]
     answers: Sequence[Answer]
-    tables: Sequence[Table]
+    tables: Sequence[PageTable]
 
 
 @dataclass(frozen=True)
@@ -96,16 +96,16 @@ class Searched:
     key: str
     title: str
     intro: str
-    table: Table
+    table: PageTable
     words: Sequence[str]
     links: Sequence[str] = field(default_factory=tuple)
 
 
-def words_table(title: str, rows: Sequence[Mapping[str, str | None]]) -> Table:
+def words_table(title: str, rows: Sequence[Mapping[str, str | None]]) -> PageTable:
     """Rows of words as a table to show; every column stays, also one that says the same in each row."""
     heads = [Heading(undefined(name), name, numeric=False) for name in rows[0]]
     lines = [Line([Cell(tables.text_of(row[head.title]), "", "") for head in heads], "") for row in rows]
-    return Table(title, heads, lines, "")
+    return PageTable(title, heads, lines, "")
 
 
 @dataclass(frozen=True)
@@ -156,7 +156,7 @@ class ViewPage(Headed):
 
     said: str
     view: tuple[str, str]
-    parts: Sequence[Part]
+    parts: Sequence[PageSection]
 
 
 def index_html(index: Index, site: Site) -> str:

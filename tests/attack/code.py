@@ -7,10 +7,9 @@ from pathlib import Path
 
 import numpy as np
 from damaged import mutated
+from typed import encodings_named, first_look
 
 from normalbench.bench.ground.output.errors import UsageError
-from normalbench.bench.subjects.codecs.first_look import first_look
-from normalbench.bench.subjects.codecs.user_encodings import encodings_named
 
 from .kind import MEASURED, REFUSED, Attack, Kind, one_line
 

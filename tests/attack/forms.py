@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 from damaged import mutated
+from typed import translated
 
 from normalbench.bench.ground.output.errors import MissingError, UsageError
-from normalbench.bench.shaders.languages.translated import translated
-from normalbench.bench.shaders.languages.words import ENDINGS
+from normalbench.bench.ground.user_files import ENDINGS
 
 from .kind import MEASURED, REFUSED, Attack, Kind, one_line
 

@@ -29,6 +29,7 @@ from written import ply, png_bytes, write_exr, write_image  # noqa: E402
 
 from normalbench.bench.door.gates.baseline import read_baseline  # noqa: E402
 from normalbench.bench.keep.runs import read_run  # noqa: E402
+from normalbench.bench.keep.schema import SCHEMA  # noqa: E402
 from normalbench.bench.subjects.normals.captures import Reading, capture  # noqa: E402
 from normalbench.gbuffer.gl.shader import Source  # noqa: E402
 from normalbench.gbuffer.layouts.layout import read_layout  # noqa: E402
@@ -82,7 +83,7 @@ def text_ply(path: Path, count: int) -> None:
 
 def rows(path: Path, count: int) -> None:
     path.mkdir()
-    (path / "run.json").write_text("{}")
+    (path / "run.json").write_text(json.dumps({"schema": SCHEMA}))
     row = {"encoding": "octahedral", "storage": "rg8", "psnr_db": 47.5, "angle_mean_deg": 0.3, "count": 65536}
     line = json.dumps({"table": "quality", "key": {"encoding": "octahedral"}, "rows": [row] * 10})
     (path / "rows.jsonl").write_text(f"{line}\n" * (count // 10))

@@ -7,11 +7,14 @@ import re
 from pathlib import Path
 from unittest.mock import patch
 
+from typed import translated
+
 from normalbench.bench.ground.compilers import slang
 from normalbench.bench.ground.compilers.text import RULES, RefusedError, judged
+from normalbench.bench.ground.user_files import UserFile
 from normalbench.bench.shaders.languages import child, hlsl
 from normalbench.bench.shaders.languages import slang as languages_slang
-from normalbench.bench.shaders.languages.translated import UsageError, translated
+from normalbench.bench.shaders.languages.translated import UsageError
 
 from .kind import MEASURED, REFUSED, Attack, Kind
 
@@ -158,7 +161,7 @@ def boundary(folder: Path) -> Attack:
             patch.object(hlsl, "judged", _remembering),
             patch.object(languages_slang, "functions_of", lambda *_: []),
         ):
-            answer = child.answer(_written(folder, seed), folder / "work")
+            answer = child.answer(UserFile(str(_written(folder, seed))), folder / "work")
         said = str(answer.get("error", ""))
         assert "\n" not in said and NEEDED not in str(answer.get("text", "")).replace("two()", "")
         return MEASURED if _seen else REFUSED

@@ -5,17 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 
 from languages import RUN
+from typed import answer, first_look, read_encoding
 
 from normalbench.bench.ground.output.errors import MissingError, UsageError
+from normalbench.bench.ground.user_files import UserFile
 from normalbench.bench.shaders.code.emit import LANGUAGES
 from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.shaders.code.run import runner
 from normalbench.bench.shaders.code.verify import agreement
 from normalbench.bench.shaders.languages import translated
-from normalbench.bench.shaders.languages.child import answer
-from normalbench.bench.shaders.languages.words import file_of
-from normalbench.bench.subjects.codecs.first_look import first_look
-from normalbench.bench.subjects.codecs.user_encodings import read_encoding
+from normalbench.encodings import kinds
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
 from normalbench.gbuffer.gl.device import NoDeviceError
@@ -41,9 +40,9 @@ def written_here() -> tuple[list[str], list[str]]:
     return found, left_out
 
 
-def translated_here(word: Path, by: str, kind: str) -> dict[str, object]:
+def translated_here(file: UserFile, by: str, kind: kinds.Kind) -> dict[str, object]:
     """A translation in this process: the attack limits itself."""
-    found = answer(word, file_of(word).parent, by, kind)
+    found = answer(file, file.path.parent, by, kind)
     if "error" in found:
         raise UsageError(str(found["error"]))
     return found

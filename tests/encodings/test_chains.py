@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from typed import codecs_named
 
 from normalbench.bench.ground.angles import angles_deg
 from normalbench.bench.ground.output.errors import UsageError
-from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.bench.tables.quality.measure import round_trip
 from normalbench.gbuffer.codecs.codec_passes import CodecPasses, encoding_defines
 from normalbench.gbuffer.gl.shader import ShaderError

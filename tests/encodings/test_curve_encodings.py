@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from parity.comparison import ULP
 from parity.curves import range_of, shares
+from typed import storages_named
 
-from normalbench.bench.ground.options.storage_names import storages_named
 from normalbench.encodings.catalogue import CURVE_ENCODINGS
 from normalbench.encodings.codecs.curve_codec import CurveCodec
 from normalbench.encodings.storages.storage import CURVE_STORAGES

@@ -40,7 +40,7 @@ def test_reversed_depth_beats_z_over_w_in_shaders_by_the_distance_over_near(back
     worst = {}
     for name in WINDOWS:
         codec = DepthCodec(DEPTH_ENCODINGS[name], DEPTH_STORAGES["depth32f"])
-        case = depth.Case(codec, "inverse_projection", backend, camera, DISTANCES, 2**12, 0)
+        case = depth.DepthCase(codec, "inverse_projection", backend, camera, DISTANCES, 2**12, 0)
         worst[name] = np.array([row["error_max"] for row in depth.measure(case)])
     factors, expected = worst["window"] / worst["reversed_window"], np.array(DISTANCES) / camera.near
     story = f"at {DISTANCES}: {factors.round(1)} times, expected {expected}"
@@ -69,7 +69,7 @@ def test_an_error_is_along_the_eyes_ray():
     camera = Camera(0.1, 1000.0, 60.0, 16 / 9)
     on = depth.points(camera, None, 256, 0)
     codec = DepthCodec(DEPTH_ENCODINGS["linear"], DEPTH_STORAGES["packed16"])
-    found = depth.through(depth.Case(codec, "eye_ray", "jax", camera, (None,), 256, 0), on)
+    found = depth.through(depth.DepthCase(codec, "eye_ray", "jax", camera, (None,), 256, 0), on)
     back = np.asarray(codec.round_trip(jnp.asarray(on.depths), np.float32(0.1), np.float32(1000)), np.float64)
     expected = np.linalg.norm(on.rays(camera), axis=1) * abs(back - on.depths)
     assert found.errors == pytest.approx(expected, rel=1e-3, abs=1e-3)
@@ -78,7 +78,9 @@ def test_an_error_is_along_the_eyes_ray():
 def cases(backend: str, camera: Camera) -> list:
     distances = (*np.geomspace(camera.near, camera.far, 4).tolist(), None)
     return [
-        depth.Case(codec, way, backend, camera, distances, 2**10, 7) for codec in CODECS for way in depth.ways(codec)
+        depth.DepthCase(codec, way, backend, camera, distances, 2**10, 7)
+        for codec in CODECS
+        for way in depth.ways(codec)
     ]
 
 

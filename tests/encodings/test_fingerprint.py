@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from typed import read_encoding
 
-from normalbench.bench.subjects.codecs.user_encodings import read_encoding
 from normalbench.encodings.catalogue import ENCODINGS
 
 GLSL = """#include "scale.glsl"

@@ -3,13 +3,13 @@
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from typed import codecs_named, with_arithmetics
 
 from normalbench.bench.ground.angles import angles_deg
 from normalbench.bench.ground.output.errors import MissingError, UsageError
 from normalbench.bench.subjects.codecs.half import compute
 from normalbench.bench.subjects.codecs.half.round_trip import HalfPasses
 from normalbench.bench.subjects.codecs.half.source import in_halves
-from normalbench.bench.subjects.codecs.names import codecs_named, with_arithmetics
 from normalbench.bench.tables.quality import half
 from normalbench.bench.tables.quality.measure import round_trip
 from normalbench.encodings.catalogue import ENCODINGS

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from parity.comparison import ULP, rows
 from parity.light import apart, given_texels, lights, planes
+from typed import light_buffers_named
 
-from normalbench.bench.ground.options.light_names import light_buffers_named
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.encodings.catalogue import LIGHT_BUFFERS, LIGHT_ENCODINGS, LIGHT_NAMES
 from normalbench.encodings.codecs.light_codec import LightCodec

@@ -44,7 +44,7 @@ KINDS = [
 def test_the_two_back_ends_give_the_same_psnr(codec):
     for normals in (sphere(2**17), playground()):
         by_jax, by_gl = (
-            quality.measure(quality.Case(codec, normals, backend))["psnr_db"] for backend in ("jax", "glsl")
+            quality.measure(quality.QualityCase(codec, normals, backend))["psnr_db"] for backend in ("jax", "glsl")
         )
         assert abs(by_jax - by_gl) <= 0.02, f"{codec.name} on {normals.name}: JAX {by_jax} dB, GLSL {by_gl} dB"
 

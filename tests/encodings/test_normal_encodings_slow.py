@@ -16,7 +16,7 @@ def test_the_stereographic_scale_is_one_field_for_both_languages():
     for scale in (1.0, 1.7777):
         codec = Codec(ENCODINGS["stereographic"].with_parameters({"scale": scale}), STORAGES["rgba8"])
         for backend in ("jax", "glsl"):
-            row = quality.measure(quality.Case(codec, hemisphere(2**18), backend))
+            row = quality.measure(quality.QualityCase(codec, hemisphere(2**18), backend))
             psnr[scale, backend] = row["psnr_db"]
         assert abs(psnr[scale, "jax"] - psnr[scale, "glsl"]) <= 0.02, psnr
     assert psnr[1.0, "jax"] > psnr[1.7777, "jax"] + 3, psnr

@@ -69,7 +69,7 @@ def test_the_lambert_spheremap_loses_the_far_pole_in_float32(normalbench):
     n = np.stack([3e-4 * np.cos(around), 3e-4 * np.sin(around), np.full(1000, -math.sqrt(1 - 9e-8))], axis=1)
     near_pole = from_arrays("", "", n, n, np.ones(1000, bool))
     largest = {
-        name: quality.measure(quality.Case(Codec(ENCODINGS[name], STORAGES["rgba32f"]), near_pole, "jax"))[
+        name: quality.measure(quality.QualityCase(Codec(ENCODINGS[name], STORAGES["rgba32f"]), near_pole, "jax"))[
             "angle_max_deg"
         ]
         for name in ("spheremap", "spheremap_classic", "cryengine3")

@@ -37,7 +37,7 @@ PUBLISHED = [
 @pytest.mark.parametrize("codec, mean, largest", PUBLISHED, ids=lambda value: getattr(value, "name", ""))
 def test_published_maxima_are_those_of_samples(codec, mean, largest):
     """Some hundred thousand samples have the published maximum, give or take; the supremum is 1.0 to 1.4 % above it."""
-    few, many = (quality.measure(quality.Case(codec, sphere(2**bits), "jax")) for bits in (14, 22))
+    few, many = (quality.measure(quality.QualityCase(codec, sphere(2**bits), "jax")) for bits in (14, 22))
     assert many["angle_mean_deg"] == pytest.approx(mean, rel=0.002)
     assert few["angle_max_deg"] < largest < many["angle_max_deg"]
     assert 0.010 < 1 - largest / worst_case(codec).angle_deg < 0.014

@@ -15,7 +15,7 @@ from normalbench.gbuffer.frame.plan import Plan
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.mesh import plane
-from normalbench.gbuffer.scenes.scene import Light, Material, Part, Scene, View
+from normalbench.gbuffer.scenes.scene import Light, Material, Scene, ScenePart, View
 
 
 def shaded(gl, scene: Scene, size) -> tuple[np.ndarray, relighting.Surfaces]:
@@ -116,7 +116,7 @@ def test_a_surface_is_brightest_at_the_foot_of_its_lamp(gl, side, pipeline):
         model[:3, :3], model[:3, 3] = np.array([(1, 0, 0), (0, 0, -1), (0, 1, 0)]), (0, 0, -6.0)
     else:
         model[:3, 3] = (0, -2.0, -10.0)
-    part = Part(plane(40.0, 40.0), (np.linalg.inv(view.matrix()) @ model)[None], np.array([0]))
+    part = ScenePart(plane(40.0, 40.0), (np.linalg.inv(view.matrix()) @ model)[None], np.array([0]))
     white = Material(albedo=(1.0, 1.0, 1.0), specular=(0.0, 0.0, 0.0))
     light = in_world(Light("point", (1.0, 1.0, 1.0), lamp, 6.0), view)
     scene = Scene((part,), (white,), (light,), (0.0, 0.0, 0.0), view, view)

@@ -23,7 +23,7 @@ from normalbench.gbuffer.layouts.presets import LAYOUTS
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.mesh import plane
-from normalbench.gbuffer.scenes.scene import KINDS, Light, Material, Part, Scene, View, placed
+from normalbench.gbuffer.scenes.scene import KINDS, Light, Material, Scene, ScenePart, View, placed
 
 SIZE = (80, 60)
 
@@ -98,7 +98,7 @@ VIEWED = replace(ROOM, view=View((0.0, 1.5, 0.2), (0.0, 1.5, -1.0), 70.0, 0.1, 4
 FLOOR_ALBEDO = (0.5, 0.25, 0.75)
 
 
-FLOOR = Part(plane(4.0, 6.0), placed((0, 0, 0)), np.array([0]), casts=False)
+FLOOR = ScenePart(plane(4.0, 6.0), placed((0, 0, 0)), np.array([0]), casts=False)
 
 
 ABOVE = View((0.0, 8.0, 0.01), (0.0, 0.0, 0.0), 60.0, 0.5, 20.0)

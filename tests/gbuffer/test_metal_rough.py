@@ -26,7 +26,7 @@ from normalbench.gbuffer.layouts.words import LayoutError, targets_of
 from normalbench.gbuffer.scenes.files.read import file_scene, read_mesh_file
 from normalbench.gbuffer.scenes.mesh import plane, sphere
 from normalbench.gbuffer.scenes.metal_rough import Map, MetalRough
-from normalbench.gbuffer.scenes.scene import Light, Part, Scene, View, placed
+from normalbench.gbuffer.scenes.scene import Light, Scene, ScenePart, View, placed
 from normalbench.gbuffer.scenes.setting import Setting
 
 EYE = View((0.0, 0.0, 6.0), (0.0, 0.0, 0.0), 40.0, 1.0, 20.0)
@@ -46,9 +46,11 @@ def scene_of(*materials: MetalRough, ambient=(0.0, 0.0, 0.0), lamps=LAMPS, balls
     """A ball of each material, or of the first ones, over a plane of the last one, before the eye."""
     count = balls or len(materials)
     across = 2.4 * (np.arange(count) - (count - 1) / 2)
-    balls = Part(sphere(1.0, 64, 32), placed(np.stack([across, 0 * across, 0 * across], axis=1), 1.1), np.arange(count))
+    balls = ScenePart(
+        sphere(1.0, 64, 32), placed(np.stack([across, 0 * across, 0 * across], axis=1), 1.1), np.arange(count)
+    )
     sheet = plane(8.0, 8.0).placed(UPRIGHT, (0.0, 0.0, -1.0))
-    wall = Part(sheet, placed((0, 0, 0)), np.array([len(materials) - 1]), casts=False)
+    wall = ScenePart(sheet, placed((0, 0, 0)), np.array([len(materials) - 1]), casts=False)
     matrix = np.linalg.inv(EYE.matrix())
     lights = tuple(replace(lamp, position=tuple(matrix[:3, :3] @ lamp.position + matrix[:3, 3])) for lamp in lamps)
     return Scene((balls, wall), materials, lights, ambient, EYE, EYE)
@@ -281,7 +283,7 @@ def test_a_bump_of_a_normal_map_is_a_hollow_from_behind(gl):
     """A sheet seen from its back: the front's normal, turned round."""
     mapped = MetalRough(normal_map=slanted())
     away = plane(8.0, 8.0).placed(UPRIGHT @ np.diag([1.0, 1.0, -1.0]), (0.0, 0.0, -1.0))
-    sheet = Part(away, placed((0, 0, 0)), np.array([0]), casts=False, two_sided=True)
+    sheet = ScenePart(away, placed((0, 0, 0)), np.array([0]), casts=False, two_sided=True)
     found = draw(gl, "hybrid", replace(scene_of(mapped), parts=(sheet,))).gbuffer[1][4, 4, :3]
     # The sheet is the one that faces the eye, seen in a mirror along z: (0.3, 0.4, -0.87), turned round.
     assert found == pytest.approx((-0.3, -0.4, np.sqrt(0.75)), abs=2e-5)

@@ -18,7 +18,7 @@ from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.mesh import Mesh, grid_triangles, grid_uv
 from normalbench.gbuffer.scenes.metal_rough import Map, MetalRough
-from normalbench.gbuffer.scenes.scene import Part, placed
+from normalbench.gbuffer.scenes.scene import ScenePart, placed
 
 
 # Of a metal the sharpest light, of a dielectric the dullest: roughness and metalness are numbers of one formula.
@@ -83,7 +83,7 @@ def test_maps_look_the_same_on_many_triangles_as_on_two(gl):
         flat = np.stack([8 * u.ravel() - 4, 8 * v.ravel() - 4, 0 * u.ravel()], axis=1)
         facing = np.tile([0.0, 0.0, 1.0], (len(flat), 1))
         sheet = Mesh(flat, facing, grid_triangles(cells, cells), grid_uv(cells, cells))
-        scene = replace(scene_of(material), parts=(Part(sheet, placed((0, 0, 0)), np.array([0]), casts=False),))
+        scene = replace(scene_of(material), parts=(ScenePart(sheet, placed((0, 0, 0)), np.array([0]), casts=False),))
         images.append(draw(gl, "hybrid", scene).image)
     # An H200's places within a triangle differ more by the triangle.
     assert apart(*images) >= (70 if gl.is_software else 65), f"{apart(*images):.1f} dB"

@@ -13,7 +13,7 @@ from normalbench.gbuffer.frame.plan import Plan
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.mesh import plane
-from normalbench.gbuffer.scenes.scene import KINDS, Material, Part, Scene, View, placed
+from normalbench.gbuffer.scenes.scene import KINDS, Material, Scene, ScenePart, View, placed
 
 
 @pytest.mark.parametrize("name", [name for name in EXACT if name != "inferred"])
@@ -21,7 +21,7 @@ from normalbench.gbuffer.scenes.scene import KINDS, Material, Part, Scene, View,
 def test_near_glass_lies_over_far_glass(gl, name, heights):
     """Two panes, seen from above, in either order of the scene: half of the near one over half of the far one."""
     view = View((0.0, 4.0, 0.01), (0.0, 0.0, 0.0), 40.0, 0.5, 20.0)
-    panes = Part(plane(8.0, 8.0), placed([(0.0, height, 0.0) for height in heights]), np.arange(2))
+    panes = ScenePart(plane(8.0, 8.0), placed([(0.0, height, 0.0) for height in heights]), np.arange(2))
     colours = [(0.0, 0.0, 1.0) if height else (1.0, 0.0, 0.0) for height in heights]
     glass = tuple(Material(albedo=colour, specular=(0.0, 0.0, 0.0), alpha=0.5) for colour in colours)
     image = draw(gl, name, Scene((panes,), glass, (), (1.0, 1.0, 1.0), view, view)).image

@@ -8,9 +8,9 @@ from itertools import combinations
 import numpy as np
 import pytest
 from drawing import BLINN_PHONG, EXACT, FP32, SIZE, apart, covered_by_glass, draw, drawn, scene_of
+from typed import effects_named, light_buffers_named
 
-from normalbench.bench.ground.options.effect_names import effects_named, pipeline_with
-from normalbench.bench.ground.options.light_names import light_buffers_named
+from normalbench.bench.subjects.names.effects import pipeline_with
 from normalbench.gbuffer.frame.plan import Plan
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering

@@ -21,7 +21,7 @@ from normalbench.gbuffer.layouts.words import Target
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.mesh import box, plane, sphere
-from normalbench.gbuffer.scenes.scene import KINDS, LIGHT_KINDS, Light, Material, Part, Scene, View, placed
+from normalbench.gbuffer.scenes.scene import KINDS, LIGHT_KINDS, Light, Material, Scene, ScenePart, View, placed
 
 
 @cache
@@ -119,7 +119,7 @@ def line_up() -> Scene:
     )
     view = View((1.5, 1.2, 7.0), (0.0, 0.0, 0.0), 40.0, 1.0, 30.0)
     return Scene(
-        parts=(Part(upright, placed(places, 0.75), np.arange(4)),),
+        parts=(ScenePart(upright, placed(places, 0.75), np.arange(4)),),
         materials=materials,
         lights=(
             Light("point", (9.0, 9.0, 9.0), (-0.5, 2.5, 2.5), 6.0),
@@ -168,7 +168,7 @@ def test_the_normal_map_tilts_against_its_slopes(gl):
     does, to 0.02; the map is read back and magnified bilinearly."""
     view = View((0.3, 3.0, 0.2), (0.3, 0.0, 0.0), 40.0, 0.5, 20.0)
     bumpy = Material(bump=0.8, bump_repeat=1.0)
-    scene = Scene((Part(plane(6.0, 6.0), placed((0, 0, 0)), np.array([0])),), (bumpy,), (), (0.0,) * 3, view, view)
+    scene = Scene((ScenePart(plane(6.0, 6.0), placed((0, 0, 0)), np.array([0])),), (bumpy,), (), (0.0,) * 3, view, view)
     plan = Plan(SIZE, 1, FP32, LIGHT_BUFFERS["rgba32f"], 2, False, 1.0)
     with rendering(gl, PIPELINES["prepass"], scene, plan) as r:
         r.draw()
@@ -234,8 +234,8 @@ def block_over_floor() -> Scene:
     view = View((3.0, 4.0, 6.0), (0.4, 0.3, -0.3), 50.0, 0.5, 50.0)
     return Scene(
         parts=(
-            Part(box(*size), placed(BLOCK.mean(axis=0)), np.array([0])),
-            Part(plane(30.0, 30.0), placed((0, 0, 0)), np.array([0]), casts=False),
+            ScenePart(box(*size), placed(BLOCK.mean(axis=0)), np.array([0])),
+            ScenePart(plane(30.0, 30.0), placed((0, 0, 0)), np.array([0]), casts=False),
         ),
         materials=(white,),
         lights=(Light("sun", (1.0, 1.0, 1.0), direction=SUN),),
@@ -282,7 +282,7 @@ def test_a_coarse_ball_does_not_shadow_what_its_normals_say_is_lit(gl):
     """Smooth normals on flat faces: some faces that look away from the sun are lit all the same. All
     pixels with an N.L of 0.05 or more are."""
     view = View((-3.0, 3.0, 5.0), (0.0, 0.0, 0.0), 30.0, 0.5, 50.0)
-    ball = Part(sphere(1.0, 18, 12), placed((0, 0, 0)), np.array([0]))
+    ball = ScenePart(sphere(1.0, 18, 12), placed((0, 0, 0)), np.array([0]))
     white = Material(albedo=(1.0, 1.0, 1.0), specular=(0.0, 0.0, 0.0))
     scene = Scene((ball,), (white,), (Light("sun", (1.0,) * 3, direction=SUN),), (0.0, 0.0, 0.0), view, view)
     frame = draw(gl, "deferred", scene, shadows=True)

@@ -12,7 +12,7 @@ from written import Document, as_document
 
 from normalbench.bench.subjects.normals.normal_names import mesh_set
 from normalbench.bench.subjects.normals.normal_sets import playground
-from normalbench.bench.tables.quality.measure import Case, measure
+from normalbench.bench.tables.quality.measure import QualityCase, measure
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
@@ -103,6 +103,6 @@ def test_the_playground_as_a_file_is_measured_as_the_playground(tmp_path):
     made, _ = mesh_set(document.write(tmp_path / "playground.glb"), "640x480")
     assert made.background == pytest.approx(playground().background, abs=20)
     for name in ("xy", "octahedral"):
-        case = Case(Codec(ENCODINGS[name], STORAGES["rgba8"]), made, "jax")
+        case = QualityCase(Codec(ENCODINGS[name], STORAGES["rgba8"]), made, "jax")
         figures = [measure(replace(case, normal_set=s))["psnr_db"] for s in (made, playground())]
         assert figures[0] == pytest.approx(figures[1], abs=0.01), name

@@ -22,7 +22,7 @@ from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.mesh import box, plane, sphere
 from normalbench.gbuffer.scenes.metal_rough import MetalRough
-from normalbench.gbuffer.scenes.scene import Light, Part, Scene, View, placed
+from normalbench.gbuffer.scenes.scene import Light, Scene, ScenePart, View, placed
 
 SIZE, SMALL = (160, 120), (96, 72)
 
@@ -43,10 +43,10 @@ def hall(roughness: float) -> Scene:
     things = tuple(MetalRough(base=colour, roughness=1.0) for colour in colours)
     flat, rest = MetalRough((1.0, 1.0, 1.0), 1.0, roughness), MetalRough((0.5, 0.5, 0.5), roughness=1.0)
     parts = (
-        Part(sphere(1.0, 96, 64), balls, np.array([0, 1, 2])),
-        Part(box(1.0, 1.0, 1.0), boxes, np.array([3, 4])),
-        Part(plane(9.0, 9.0), here, np.array([5])),
-        Part(plane(7.0, 2.5).placed(UPRIGHT, (0.0, 1.25, -2.5)), here, np.array([6])),
+        ScenePart(sphere(1.0, 96, 64), balls, np.array([0, 1, 2])),
+        ScenePart(box(1.0, 1.0, 1.0), boxes, np.array([3, 4])),
+        ScenePart(plane(9.0, 9.0), here, np.array([5])),
+        ScenePart(plane(7.0, 2.5).placed(UPRIGHT, (0.0, 1.25, -2.5)), here, np.array([6])),
     )
     lights = (Light("sun", (1.0, 0.9, 0.8), direction=(-0.48, -0.8, -0.36)),)
     return Scene(parts, (*things, flat, rest), lights, (0.4, 0.45, 0.5), VIEW, VIEW)

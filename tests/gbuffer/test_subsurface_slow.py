@@ -25,7 +25,7 @@ from normalbench.gbuffer.layouts.words import LayoutError
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.mesh import box
-from normalbench.gbuffer.scenes.scene import KINDS, Light, Part, Scene, placed
+from normalbench.gbuffer.scenes.scene import KINDS, Light, Scene, ScenePart, placed
 
 METHODS = {
     "separable": {"method": "separable"},
@@ -230,7 +230,7 @@ def slabs(sun: Light, width: float) -> Scene:
     """Slabs of skin next to each other, each THROUGH widths thick, their faces at z = 0."""
     around = facing(lights=(sun,))
     parts = tuple(
-        Part(box(0.16, 0.8, t * width), placed([((number - 2) * 0.2, 0.0, -t * width / 2)]), np.array([0]))
+        ScenePart(box(0.16, 0.8, t * width), placed([((number - 2) * 0.2, 0.0, -t * width / 2)]), np.array([0]))
         for number, t in enumerate(THROUGH)
     )
     return Scene(parts, around.materials, around.lights, around.ambient, around.view, around.previous)

@@ -11,7 +11,7 @@ import pytest
 import water_twin as twin
 from drawing import FP32, apart
 
-from normalbench.bench.ground.options.effect_names import lacking
+from normalbench.bench.subjects.names.effects import lacking
 from normalbench.encodings.catalogue import LIGHT_BUFFERS
 from normalbench.encodings.storages.storage import STORAGES
 from normalbench.gbuffer.effects.catalogue import EFFECTS
@@ -29,7 +29,7 @@ from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.built_in.lake import TREES
 from normalbench.gbuffer.scenes.catalogue import SCENES
 from normalbench.gbuffer.scenes.mesh import box, plane
-from normalbench.gbuffer.scenes.scene import Light, Material, Part, Scene, View, Water, placed
+from normalbench.gbuffer.scenes.scene import Light, Material, Scene, ScenePart, View, Water, placed
 from normalbench.gbuffer.scenes.setting import Setting
 
 SIZE = (96, 72)
@@ -129,11 +129,11 @@ def above_water() -> Scene:
     """The lake's sky and trees and a box over the water, under ambient light alone."""
     scene = lake()
     kept = [part for part in scene.parts if _shines(scene, part) or len(part.materials) == TREES]
-    hovering = Part(box(2.0, 1.0, 1.0), placed((0.5, 1.2, 6.0)), np.array([1]))
+    hovering = ScenePart(box(2.0, 1.0, 1.0), placed((0.5, 1.2, 6.0)), np.array([1]))
     return replace(scene, parts=(*kept, hovering), lights=())
 
 
-def _shines(scene: Scene, part: Part) -> bool:
+def _shines(scene: Scene, part: ScenePart) -> bool:
     return max(scene.materials[part.materials[0]].emissive) > 0
 
 
@@ -157,8 +157,8 @@ def test_what_is_seen_through_still_water_stays_where_it_is(gl):
     of the brightest."""
     water = Water(deep=(0.2, 0.4, 0.6))
     view = View((0.0, 3.0, 4.0), (0.0, -1.0, 0.0), 50.0, 0.5, 40.0)
-    floor = Part(plane(30.0, 30.0), placed((0, -1.5, 0)), np.array([0]), casts=False)
-    stones = Part(box(1.0, 0.6, 1.0), placed([(0, -1.2, 0), (1.2, -0.9, 1.0)]), np.array([1, 1]))
+    floor = ScenePart(plane(30.0, 30.0), placed((0, -1.5, 0)), np.array([0]), casts=False)
+    stones = ScenePart(box(1.0, 0.6, 1.0), placed([(0, -1.2, 0), (1.2, -0.9, 1.0)]), np.array([1, 1]))
     materials = (Material(albedo=(0.5, 0.4, 0.3)), Material(albedo=(0.8, 0.1, 0.1)))
     scene = Scene((floor, stones), materials, (), (1.0, 1.0, 1.0), view, view, water)
     found = draw(gl, scene, "deferred", waves=0)
@@ -298,7 +298,7 @@ def test_the_grid_does_not_swim():
 
 def open_water(view: View, **water) -> Scene:
     """Deep water with nothing in it."""
-    floor = Part(plane(4000.0, 4000.0), placed((0, -50.0, 0)), np.array([0]), casts=False)
+    floor = ScenePart(plane(4000.0, 4000.0), placed((0, -50.0, 0)), np.array([0]), casts=False)
     sun = Light("sun", (1.0, 1.0, 1.0), direction=(0.48, -0.6, 0.64))
     return Scene((floor,), (Material(),), (sun,), (0.3, 0.3, 0.3), view, view, Water(**water))
 
@@ -316,7 +316,7 @@ def test_water_costs_the_pixels_that_it_covers(gl):
     """Still: a sample for each pixel of water; behind a wall: none."""
     view = View((0.0, 2.0, 6.0), (0.0, 1.9, 0.0), 60.0, 0.5, 100.0)
     scene = open_water(view)
-    wall = Part(box(40.0, 40.0, 0.2), placed((0, 0, 3.0)), np.array([0]))
+    wall = ScenePart(box(40.0, 40.0, 0.2), placed((0, 0, 3.0)), np.array([0]))
     for parts in (scene.parts, (*scene.parts, wall)):
         pipeline = PIPELINES["forward"].with_effect(passes_of(waves=0))
         with rendering(gl, pipeline, replace(scene, parts=parts), plan_of("forward")) as made:
@@ -376,8 +376,8 @@ def leak(gl, view: View, refraction: str) -> float:
     """The most light of things above the water that is seen through it: with clear water, less what is mirrored."""
     bars = placed([(-1.5, 1.2, 0.0), (0.0, 1.0, 1.0), (1.6, 0.9, -1.0)])
     parts = (
-        Part(plane(60.0, 60.0), placed((0, -3.0, 0)), np.array([0]), casts=False),
-        Part(box(0.5, 0.8, 0.5), bars, np.ones(3, int)),
+        ScenePart(plane(60.0, 60.0), placed((0, -3.0, 0)), np.array([0]), casts=False),
+        ScenePart(box(0.5, 0.8, 0.5), bars, np.ones(3, int)),
     )
     materials = (Material(albedo=BLACK, specular=BLACK), Material(albedo=BLACK, specular=BLACK, emissive=(1.0, 0, 0)))
     scene = Scene(parts, materials, (), BLACK, view, view, Water(deep=BLACK, slope=0.15))
@@ -427,7 +427,7 @@ def test_the_image_is_the_water_where_there_is_some(gl):
     assert np.array_equal(found.image[~found.wet], plain[~found.wet])
 
 
-def _is_opaque(part: Part) -> bool:
+def _is_opaque(part: ScenePart) -> bool:
     return all(lake().materials[index].alpha == 1 for index in part.materials)
 
 

@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from normalbench.bench.keep.schema import SCHEMA
+
 COMMITS = 30
 # 2026-01-01, and a day.
 FIRST, DAY = 1767225600, 86400
@@ -29,7 +31,14 @@ def write_run(folder: Path, at: int, steps: Steps, **facts: Any) -> Path:
     """A run of the commit of a number."""
     about = {"name": name_of(at), "time": FIRST + DAY * at, "rank": 1, "changed": False}
     about |= {"subject": SUBJECTS.get(at, f"Change {at}")}
-    made = {"request": {"tables": "all"}, "machine": {"GL": "one"}, "sources": "s", "finished": True, "commit": about}
+    made = {
+        "schema": SCHEMA,
+        "request": {"tables": ["all"]},
+        "machine": {"GL": "one"},
+        "sources": "s",
+        "finished": True,
+        "commit": about,
+    }
     data = b"".join(json.dumps(step).encode() + b"\n" for step in steps)
     folder.mkdir(parents=True)
     (folder / "rows.jsonl").write_bytes(data)

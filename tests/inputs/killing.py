@@ -41,7 +41,7 @@ from normalbench.encodings.storages.storage import STORAGES
 
 CHANGES = {"os.rename", "os.remove", "os.mkdir", "os.rmdir"}
 WRITES = os.O_WRONLY | os.O_RDWR
-FACTS = {"request": {"tables": "depth"}, "sources": "abc", "machine": {}, "command": ["run"], "finished": False}
+FACTS = {"request": {"tables": ["depth"]}, "sources": "abc", "machine": {}, "command": ["run"], "finished": False}
 ROWS = [Step({"number": number}, None, "") for number in range(4)]
 
 

@@ -12,7 +12,7 @@ from normalbench.gbuffer.frame.plan import Plan
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.mesh import Mesh, grid_triangles, grid_uv, plane, sphere
-from normalbench.gbuffer.scenes.scene import Material, Part, Scene, View, placed
+from normalbench.gbuffer.scenes.scene import Material, Scene, ScenePart, View, placed
 
 METHODS = ("ssao", "hbao", "sao", "gtao")
 AROUND = np.arange(129) * (2 * np.pi / 128)
@@ -30,7 +30,7 @@ def effect(text: str) -> ChosenEffect:
 
 
 def scene_of_meshes(*meshes: Mesh, view: View = FROM_ABOVE) -> Scene:
-    parts = tuple(Part(mesh, placed((0, 0, 0)), np.array([0]), two_sided=True) for mesh in meshes)
+    parts = tuple(ScenePart(mesh, placed((0, 0, 0)), np.array([0]), two_sided=True) for mesh in meshes)
     return Scene(parts, (Material(),), (), (1.0, 1.0, 1.0), view, view)
 
 
@@ -42,7 +42,7 @@ def turned(scene: Scene, rotation: np.ndarray) -> Scene:
     moved = (tuple(rotation @ np.array(v)) for v in (view.eye, view.target, view.up))
     eye, target, up = moved
     there = View(eye, target, view.fov, view.near, view.far, up)
-    parts = tuple(Part(p.mesh, whole @ p.models, p.materials, p.casts, p.two_sided) for p in scene.parts)
+    parts = tuple(ScenePart(p.mesh, whole @ p.models, p.materials, p.casts, p.two_sided) for p in scene.parts)
     return Scene(parts, scene.materials, (), scene.ambient, there, there)
 
 

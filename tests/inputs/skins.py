@@ -16,7 +16,7 @@ from normalbench.gbuffer.frame.resources import LIGHT
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.mesh import plane
-from normalbench.gbuffer.scenes.scene import Light, Material, Part, Scene, View, placed
+from normalbench.gbuffer.scenes.scene import Light, Material, Scene, ScenePart, View, placed
 
 SIZE = (97, 73)
 SUBSURFACE = EFFECTS["subsurface"]
@@ -31,7 +31,9 @@ DARK = Light("point", (1.0, 1.0, 1.0), (0.0, 0.0, 50.0), 1.0)
 def facing(*planes: tuple[float, float, float, float, int], distance: float = 1.0, lights=(DARK,)) -> Scene:
     """Planes that face an eye at this distance from z = 0: width, height, the middle's x, z, and the material."""
     parts = tuple(
-        Part(plane(width, height).placed(FACING, (0, 0, 0)), placed((x, 0.0, z)), np.array([material]), casts=False)
+        ScenePart(
+            plane(width, height).placed(FACING, (0, 0, 0)), placed((x, 0.0, z)), np.array([material]), casts=False
+        )
         for width, height, x, z, material in planes
     )
     view = View((0.0, 0.0, distance), (0.0, 0.0, 0.0), FOV, 0.01, 20.0)

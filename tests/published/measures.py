@@ -30,14 +30,14 @@ FIGURES = ("angle_mean_deg", SUPREMUM, "limit_max_deg", "psnr_article_db")
 
 def codec_of(encoding: str, storage: str, rounding: str = "nearest") -> Codec:
     """A codec of the catalogue."""
-    (found,) = codecs_named(encoding, storage, rounding)
+    (found,) = codecs_named((encoding,), (storage,), (rounding,))
     return found
 
 
 @cache
 def _row(codec: Codec, normals: NormalSet, worst_case: bool) -> quality.Row:
     """A row of the quality table, measured once for good."""
-    case = quality.Case(codec, normals, "jax", worst_case=worst_case)
+    case = quality.QualityCase(codec, normals, "jax", worst_case=worst_case)
     words = (codec.name, codec.rounding, normals.name, str(normals.count), str(worst_case))
     key = kept.key_of("published", sources(), jax.__version__, *words)
     return kept.kept(key, lambda: {name: value for name, value in quality.measure(case).items() if name in FIGURES})

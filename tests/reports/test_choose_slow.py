@@ -239,7 +239,7 @@ def test_half_of_the_sphere_is_a_question_of_its_own(browser, run, tmp_path):
     rows = [pick_row("octahedral", 0.2, 90), pick_row("spheremap", 0.3, 10)]
     rows += [one | {"asked": "rgb10a2", "storage": "rgb10a2"} for one in rows]
     rows += [rows[0] | half, pick_row("hemi_octahedral", 0.1, 90) | {"domain": "hemisphere"} | half]
-    assert run("report", str(a_run(tmp_path / "run", {"pick": rows}, request={"tables": "pick"})))[0] == 0
+    assert run("report", str(a_run(tmp_path / "run", {"pick": rows}, request={"tables": ["pick"]})))[0] == 0
     page = Opened(browser, tmp_path / "run/report.html")
     page.says("[data-left]", "codes are left")
     of, on = (page.page.locator(f"[data-part={name}]") for name in ("of", "on"))

@@ -6,9 +6,9 @@ from browsing import Opened, scale_of
 from PIL import Image
 from test_pictures import pick_row
 from test_report import a_run
+from typed import codecs_named
 
 from normalbench.bench.measures.live.kept import write_live
-from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.gbuffer.environment.studio import studio as surroundings
 from normalbench.gbuffer.scenes.built_in.studio import studio
 from normalbench.gbuffer.scenes.mesh import Mesh, joined
@@ -73,7 +73,7 @@ def studio_run(folder):
     for name in (*(f"{one}-rg8-final" for one in CODES), "reference"):
         Image.new("RGB", SIZE, (50, 60, 70)).save(folder / f"images/pick-studio-{name}.png")
     write_live(codecs_named(",".join(CODES), "rg8", "nearest"), folder / "live")
-    return a_run(folder, {"pick": rows}, request={"tables": "pick"})
+    return a_run(folder, {"pick": rows}, request={"tables": ["pick"]})
 
 
 @pytest.fixture(scope="module")

@@ -57,7 +57,7 @@ def rendered_run(folder: Path) -> Path:
         TABLES["render"].empty() | about | {"encoding": name, "psnr_db": figure, "normal_psnr_db": figure, "mse": 1e-4}
         for name, figure in (("xy", 40.0), ("octahedral", 50.0))
     ]
-    a_run(folder, {"render": [row | {"normal_bits": 16} for row in rows]}, request={"tables": "render"})
+    a_run(folder, {"render": [row | {"normal_bits": 16} for row in rows]}, request={"tables": ["render"]})
     image = np.random.default_rng(1).integers(10, 240, (24, 32, 3), np.uint8)
     (folder / "images").mkdir()
     off = {"reference": 0, "fp32-xy-rgba8-rgba32fx2-final": 3, "fp32-octahedral-rgba8-rgba32fx2-final": 0}

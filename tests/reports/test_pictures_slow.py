@@ -29,7 +29,7 @@ def answered_run(folder: Path) -> Path:
                 image = Image.new("RGB", (32, 24), (52 if (scene, storage) == ("gloss", "rg8") else 50, 60, 70))
                 image.save(folder / f"images/pick-{scene}-power47-{name}-{storage}-final.png")
         Image.new("RGB", (32, 24), (50, 60, 70)).save(folder / f"images/pick-{scene}-power47-reference.png")
-    return a_run(folder, {"pick": rows}, request={"tables": "pick"})
+    return a_run(folder, {"pick": rows}, request={"tables": ["pick"]})
 
 
 def test_an_answers_pictures_are_of_its_own_scene_the_best_first(tmp_path):

@@ -16,6 +16,7 @@ from packed import packed_text
 from PIL import Image
 
 from normalbench.bench.ground.output.sources import sources
+from normalbench.bench.keep.schema import SCHEMA
 from normalbench.bench.tables.charts import bins
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.bench.tables.cost.charts import front_chart
@@ -42,7 +43,12 @@ def text_of_page(folder: Path) -> str:
 def a_run(folder: Path, tables: dict[str, list], **facts) -> Path:
     """A results folder by hand."""
     folder.mkdir(parents=True, exist_ok=True)
-    about = {"request": {"tables": "all", "count": 4096, "seed": 0}, "finished": True, "machine": {"GL": "none"}}
+    about = {
+        "schema": SCHEMA,
+        "request": {"tables": ["all"], "count": 4096, "seed": 0},
+        "finished": True,
+        "machine": {"GL": "none"},
+    }
     lines = [json.dumps({"table": table, "key": {}, "rows": rows}) + "\n" for table, rows in tables.items()]
     (folder / "rows.jsonl").write_text("".join(lines))
     about |= {"lines": len(lines), "digest": hashlib.sha256("".join(lines).encode()).hexdigest()}

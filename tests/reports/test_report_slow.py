@@ -49,7 +49,7 @@ def test_a_hostile_run_injects_nothing(run, tmp_path):
 def test_a_run_of_one_table_says_what_is_not_there(run, tmp_path):
     row = {"depth": "linear", "storage": "r32f", "rebuilt": "eye_ray", "backend": "jax", "near": 0.1, "far": 10.0}
     rows = [TABLES["depth"].empty() | row | {"fov": 60.0, "distance": d, "error_max": d / 1e6} for d in (1.0, 10.0)]
-    request = {"tables": "depth", "count": 4096, "seed": 0}
+    request = {"tables": ["depth"], "count": 4096, "seed": 0}
     _, read = reported(run, a_run(tmp_path / "run", {"depth": rows}, request=request))
     assert "What this run measured" in read.text and "no rows" not in read.text
     assert "What normals lose" not in read.text, "nobody asked for it"
@@ -129,7 +129,7 @@ def test_maps_are_in_the_page_with_means_by_area(results):
     read = Read((results[0] / "report.html").read_text())
     alts = [a["alt"] for a in read.all("img") if a.get("data-which") == "mean"]
     assert len(alts) == len(list((results[0] / "sphere").iterdir()))
-    case = quality.Case(Codec(ENCODINGS["xy"], STORAGES["rgba8"]), hemisphere(2**18), "jax")
+    case = quality.QualityCase(Codec(ENCODINGS["xy"], STORAGES["rgba8"]), hemisphere(2**18), "jax")
     measured = quality.measure(case)["angle_mean_deg"]
     (text,) = [alt for alt in alts if alt.startswith("xy rgba8,")]
     (mean,) = re.findall(r"mean ([\d.]+) degrees towards the viewer", text)

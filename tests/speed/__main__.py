@@ -18,6 +18,7 @@ from pathlib import Path
 
 from normalbench.bench.ground.choose import choose
 from normalbench.bench.ground.options.counts import checked_numbers
+from normalbench.bench.ground.options.words import names
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.subjects.codecs.names import codecs_named
 
@@ -30,13 +31,13 @@ RECORD = Path(__file__).with_name("record.json")
 
 
 def _throughput(asked: argparse.Namespace) -> list[Row]:
-    encodings = [codec.encoding for codec in codecs_named(asked.encoding, throughput.STORAGE, "nearest")]
-    counts = checked_numbers("--counts", asked.counts, int, throughput.WHOLE, MOST)
+    encodings = [codec.encoding for codec in codecs_named(names(asked.encoding), (throughput.STORAGE,), ("nearest",))]
+    counts = checked_numbers("--counts", names(asked.counts), int, throughput.WHOLE, MOST)
     return throughput.rows(encodings, counts)
 
 
 def _growth(asked: argparse.Namespace) -> list[Row]:
-    kinds = choose("kind", asked.over, {name: name for name in growth.KINDS})
+    kinds = choose("kind", names(asked.over), {name: name for name in growth.KINDS})
     if asked.sizes and len(kinds) > 1:
         raise UsageError(f"--sizes {asked.sizes}: sizes are of one kind; name it, such as --over {kinds[0]}")
     return [row for kind in kinds for row in growth.rows(kind, _sizes(kind, asked.sizes))]
@@ -44,7 +45,7 @@ def _growth(asked: argparse.Namespace) -> list[Row]:
 
 def _sizes(kind: str, asked: str) -> tuple[int, ...]:
     known = growth.KINDS[kind]
-    return checked_numbers("--sizes", asked, int, known.least, known.most) if asked else known.usual
+    return checked_numbers("--sizes", names(asked), int, known.least, known.most) if asked else known.usual
 
 
 def _simulate(asked: argparse.Namespace) -> list[Row]:

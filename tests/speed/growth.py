@@ -88,7 +88,7 @@ def _normals(size: int) -> float:
 
 def _codecs(size: int) -> float:
     """Evenly from all that there are, since they differ in what they take; some come again where there are fewer."""
-    every = [codec for codec in codecs_named("all", "all", "nearest") if codec.fits]
+    every = [codec for codec in codecs_named(("all",), ("all",), ("nearest",)) if codec.fits]
     return _quality([every[at * len(every) // size] for at in range(size)], NORMALS)
 
 

@@ -137,7 +137,7 @@ def record(names: Iterable[str], path: Path) -> None:
     """
     before = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
     made = {"seconds": dict(before.get("seconds", {})), "bytes": dict(before.get("bytes", {}))}
-    for table in choose("table", ",".join(names), TABLES):
+    for table in choose("table", names, TABLES):
         made["seconds"][table.name], made["bytes"][table.name] = step_times(table)
     path.write_text(json.dumps(before | made | {"costs": asdict(measured_costs())}) + "\n", encoding="utf-8")
 

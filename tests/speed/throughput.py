@@ -84,7 +84,7 @@ def measure(encoding: Encoding, data: Normals, reading: float | None) -> Row:
 def by_jax(encoding: Encoding, data: Normals) -> Task:
     """The program's own row."""
     given = from_arrays("", "", data.n, data.view, np.ones(len(data.n), bool))
-    case = quality.Case(Codec(encoding, STORAGES[STORAGE]), given, "jax")
+    case = quality.QualityCase(Codec(encoding, STORAGES[STORAGE]), given, "jax")
     return lambda: quality.measure(case)
 
 

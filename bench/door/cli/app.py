@@ -27,6 +27,7 @@ from ...ground.machine.memory import lack_of_memory, require_memory
 from ...ground.machine.systems import alarm
 from ...ground.options.code import CodeOptions
 from ...ground.options.option import Sources
+from ...ground.options.words import names
 from ...ground.output.errors import MissingError, UsageError, tell, told
 from ...ground.output.progress import ending
 from ...ground.output.replacing import reads
@@ -119,9 +120,9 @@ def list_command(
     output: PlainOutput = None,
 ) -> None:
     """What there is: encodings, storages, codes of other kinds, sets, layouts, pipelines, effects, scenes, lights."""
-    from ...ground.options.listing import listing
+    from ...subjects.names.listing import listing
 
-    write(listing(what), format_of(format, output), output, SPARED, by="kind")
+    write(listing(names(what)), format_of(format, output), output, SPARED, by="kind")
 
 
 def doctor(
@@ -232,7 +233,7 @@ def columns_command(
     """What a table's columns mean: definitions, units, which way is better."""
     from ...tables.columns import columns
 
-    write(columns(table), format_of(format, output), output, by="table")
+    write(columns(names(table)), format_of(format, output), output, by="table")
 
 
 @app.command(rich_help_panel=Group.KEEP)

@@ -90,7 +90,7 @@ def parameter_of(field: Field, panel: str = MEASURED) -> inspect.Parameter:
     """An option as typer sees it, in a panel of its help; without dashes it is an argument."""
     option, kind = field.option, inspect.Parameter.KEYWORD_ONLY
     if not option.flag.startswith("-"):
-        shown = Annotated[field.type, typer.Argument(help=option.help, metavar=option.flag)]
+        shown = Annotated[_typed(field), typer.Argument(help=option.help, metavar=option.flag)]
         return inspect.Parameter(field.name, kind, annotation=shown)
     more: dict[str, Any] = {"rich_help_panel": panel}
     if field.kind is int:
@@ -98,8 +98,15 @@ def parameter_of(field: Field, panel: str = MEASURED) -> inspect.Parameter:
     if field.name in NAMES:
         more |= {"autocompletion": completion_of(field.name)}
     flags = [one for one in (option.letter, option.flag) if one]
-    shown = Annotated[field.type, typer.Option(*flags, help=option.help, **more)]
-    return inspect.Parameter(field.name, kind, default=field.default, annotation=shown)
+    shown = Annotated[_typed(field), typer.Option(*flags, help=option.help, **more)]
+    return inspect.Parameter(field.name, kind, default=field.typed, annotation=shown)
+
+
+def _typed(field: Field) -> Any:
+    """An option's type as typer knows it: several names are one text."""
+    if not field.has_names:
+        return field.type
+    return str if isinstance(field.default, tuple) else str | None
 
 
 def _whole_number(text: str) -> int:

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from ...ground.options.words import names
 from ...tables.table import Group
 from .formats import FormatOption, format_of
 
@@ -59,5 +60,5 @@ def history(
     """
     from ...keep.history_command import Wanted, history_command
 
-    wanted = Wanted(tables, encoding, storage, column)
+    wanted = Wanted(*(None if text is None else names(text) for text in (tables, encoding, storage, column)))
     return history_command(runs, wanted, by, format_of(format, output), output)

@@ -10,7 +10,7 @@ from typing import Any
 
 from ...ground.output.errors import UsageError
 from ...ground.output.replacing import reads
-from ...shaders.languages.words import file_of, files_in, is_file, split_names
+from ...ground.user_files import file_names, file_of, files_in, is_file
 from .typed import read_values
 
 
@@ -25,7 +25,7 @@ def _files_of(values: Iterable[str]) -> Iterator[Path]:
     """The files that values name, alone or in lists, and those that are read with them."""
     from ...run.measuring import companions
 
-    for word in (word for value in values for word in (value, *split_names(value))):
+    for word in (word for value in values for word in (value, *file_names(value))):
         # What is wrong with a word is said by what reads it.
         with suppress(UsageError):
             for name in (word, *files_in(word)):

@@ -28,10 +28,10 @@ def completion_of(option: str) -> Callable[[str], list[str]]:
     what, kind = NAMES[option]
 
     def complete(incomplete: str) -> list[str]:
-        from ...ground.options.listing import listing
+        from ...subjects.names.listing import listing
 
         before, comma, begun = incomplete.rpartition(",")
-        names = [str(row["name"]) for row in listing(what) if row["kind"] == kind]
+        names = [str(row["name"]) for row in listing((what,)) if row["kind"] == kind]
         return [f"{before}{comma}{name}" for name in names if name.startswith(begun)]
 
     return complete

@@ -6,10 +6,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 
+from ...ground.options.source_options import in_names
 from ...ground.output.errors import UsageError
+from ...ground.user_files import ENDINGS, UserFile, files_in
 from ...shaders.languages.source import Source
-from ...shaders.languages.source_options import in_names
-from ...shaders.languages.words import ENDINGS, files_in, split_names
 from .gates import Gate
 
 
@@ -32,7 +32,7 @@ def _read_by(gate: Gate, path: Path) -> Iterator[Path]:
     if gate.baseline:
         yield gate.baseline
     options = in_names(gate.located())
-    for word in (word for name in gate.files() for word in split_names(str(options[name]))):
+    for word in (word for name in gate.files() for word in map(str, options[name])):
         yield from map(Path, files_in(word))
         if any(Path(file).suffix.lower() in ENDINGS for file in files_in(word)):
             yield from _with_includes(word)
@@ -41,5 +41,5 @@ def _read_by(gate: Gate, path: Path) -> Iterator[Path]:
 def _with_includes(word: str) -> Iterator[Path]:
     """The files of a shader, and the Python next to it. What is wrong with one is said when it is measured."""
     with suppress(UsageError):
-        for file in Source(word).files:
+        for file in Source(UserFile(word)).files:
             yield from (file, file.with_suffix(".py"))

@@ -10,9 +10,10 @@ from typing import Any
 
 from ....encodings.codecs.files import file_toml
 from ...ground.options.option import fields_of
+from ...ground.options.words import Names, text_of
 from ...ground.output.errors import UsageError
+from ...ground.user_files import files_in
 from ...keep.runs import Done, read_run
-from ...shaders.languages.words import files_in, split_names
 from ...tables.table import UNEXPECTED, Role, Row, Table
 from .baseline import Baseline, NoRowError, entry, write_baseline
 from .limits import Limit, limits_on, split_limits
@@ -51,8 +52,8 @@ class Gate:
         Raises:
             UsageError: a file that is in the folder of the shell only.
         """
-        for name, value in self.files().items():
-            for word in split_names(value, self.folder):
+        for name, words in self.files().items():
+            for word in map(str, words):
                 there = files_in(word, self.folder)
                 # A name without an ending may be one of the catalogue's.
                 lost = [path for path in files_in(word) if Path(path).suffix and path not in there]
@@ -61,11 +62,11 @@ class Gate:
                     raise UsageError(f"{name}: {said}; write {os.path.relpath(lost[0], self.folder)}")
         return located(self.table, self.options, self.folder)
 
-    def files(self) -> dict[str, str]:
-        """The options whose words may be files, as the file of gates has them."""
+    def files(self) -> dict[str, Names]:
+        """Return the options whose words may be files, as the file of gates has them."""
         known = fields_of(self.table.options)
-        may_be = [name for name in self.options if name in known and known[name].option.files]
-        return {name: value for name in may_be if isinstance(value := self.options[name], str)}
+        may_be = {name: self.options[name] for name in self.options if name in known and known[name].option.files}
+        return {name: (value,) if isinstance(value, str) else value for name, value in may_be.items()}
 
 
 def read_gates(path: Path) -> list[Gate]:
@@ -97,7 +98,9 @@ def _gate(place: str, values: dict[str, Any], folder: Path) -> Gate:
             if not isinstance(value, str | int | float):
                 raise UsageError(f"{name} is {value!r}; it must be a text or a number")
         table = table_named(values.pop("table", USUAL))
-        options, limits = split_limits(values, table, may_lack=named is not None)
+        said, limits = split_limits(values, table, may_lack=named is not None)
+        known = fields_of(table.options)
+        options = {name: known[name].read(value, folder) if name in known else value for name, value in said.items()}
         for limit in limits:
             limit.check(table)
     except UsageError as error:
@@ -139,12 +142,11 @@ def _rows_of_run(run: Path) -> Measure:
                 raise UsageError(f"{gate.place}: rows of {name} have no {option!r}; they are named by {keys}")
             if not any(_is(row.get(option), gate.options[option]) for row in tables[name]):
                 there = ", ".join(dict.fromkeys(str(row.get(option)) for row in tables[name]))
-                raise UsageError(
-                    f"{gate.place}: no row of {name} in {run} has {option} {gate.options[option]!r}; there are {there}"
-                )
+                wanted = f"{option} {_typed(gate.options[option])!r}"
+                raise UsageError(f"{gate.place}: no row of {name} in {run} has {wanted}; there are {there}")
         rows = [row for row in _finished(done, gate, run) if all(_is(row.get(n), v) for n, v in gate.options.items())]
         if not rows:
-            asked = ", ".join(f"{option} {value!r}" for option, value in gate.options.items())
+            asked = ", ".join(f"{option} {_typed(value)!r}" for option, value in gate.options.items())
             raise UsageError(f"{gate.place}: {run} has rows with each of {asked}, but none with all of them")
         for limit in gate.limits:
             _check_was_measured(gate, limit, rows, run)
@@ -172,8 +174,13 @@ def _check_was_measured(gate: Gate, limit: Limit, rows: list[Row], run: Path) ->
 
 
 def _is(value: Any, asked: Any) -> bool:
-    """Whether a row's value is what was asked for: one of the names, where those are comma-separated."""
-    return value in [word.strip() for word in asked.split(",")] if isinstance(asked, str) else value == asked
+    """Tell whether a row's value is what was asked for: one of the names, where those are several."""
+    return value in asked if isinstance(asked, tuple) else value == asked
+
+
+def _typed(asked: Any) -> Any:
+    """Return what was asked for as the file has it."""
+    return text_of(asked) if isinstance(asked, tuple) else asked
 
 
 def checked(

@@ -11,13 +11,14 @@ from typing import Any
 
 from ...ground.choose import names_a_file, unknown_name
 from ...ground.options.option import checked_options, fields_of
+from ...ground.options.source_options import NAMED
+from ...ground.options.words import Names
 from ...ground.output.errors import UsageError, noting_what_is_left_out
 from ...ground.spelling import spelled
+from ...ground.user_files import INCLUDE, UserFile, file_of, files_in, names_an_encoder, with_files
 from ...measures.metrics.totals import Worst
 from ...run.measuring import Nothing, asked
 from ...run.measuring import measured as find_measured
-from ...shaders.languages.source_options import NAMED
-from ...shaders.languages.words import INCLUDE, file_of, files_in, names_an_encoder, split_names, twin_of, with_files
 from ...tables.registry import TABLES
 from ...tables.table import Role, Row, Step, Table
 from .limits import Limit
@@ -76,7 +77,7 @@ def measured(table: Table, values: Mapping[str, Any], usual: Mapping[str, Any] |
     with noting_what_is_left_out() as left_out:
         ask = asked(table, options)
     # What is named and not there would pass unseen; of "all" some never fit.
-    if left_out and not any(str(value) == "all" for value in given.values()):
+    if left_out and ("all",) not in given.values():
         raise UsageError(f"a row that is asked for cannot be measured: {left_out[0]}")
     done = find_measured(ask, Nothing())
     # By name: a finished row may be another object.
@@ -102,7 +103,7 @@ def named_rows(table: Table, given: Mapping[str, Any], rows: Sequence[Row]) -> l
 
 
 def _words(value: Any) -> set[str]:
-    return {_word(word.strip()) for word in value.split(",")} if isinstance(value, str) else {_word(value)}
+    return {*map(_word, value)} if isinstance(value, tuple) else {_word(value)}
 
 
 def _word(value: Any) -> str:
@@ -117,12 +118,12 @@ def located(table: Table, options: Mapping[str, Any], folder: Path) -> dict[str,
     """Options with the words that are files by their paths from here: they are looked for in a folder."""
     known = fields_of(table.options)
     placed: Mapping[str, Callable[[Path, str], str]] = {INCLUDE: _root_in}
-    return {
-        name: ",".join(placed.get(name, path_in)(folder, word) for word in split_names(value, folder))
-        if isinstance(value, str) and name in known and known[name].option.files
-        else value
-        for name, value in options.items()
+    files = {name for name in options if name in known and known[name].option.files}
+    words = {name: (value,) if isinstance(value := options[name], str) else value for name in files}
+    located = {
+        name: tuple(placed.get(name, path_in)(folder, str(word)) for word in words[name] or ()) for name in files
     }
+    return {**options, **{name: located[name] if known[name].has_names else "".join(located[name]) for name in files}}
 
 
 def _root_in(folder: Path, word: str) -> str:
@@ -147,15 +148,15 @@ def single(table: Table, given: Mapping[str, Any]) -> dict[str, Any]:
     A layout is measured as it is. A shader without a Python twin is measured by GLSL.
     """
     usual = {} if given.get("layout") is not None else dict(table.single)
-    if "backend" in usual and any(_is_in_glsl_only(str(given.get(name) or "")) for name in NAMED):
+    if "backend" in usual and any(_is_in_glsl_only(given.get(name) or ()) for name in NAMED):
         usual["backend"] = "glsl"
     return {**usual, **given}
 
 
-def _is_in_glsl_only(names: str) -> bool:
-    """Whether one of the names is a file with a user's encoder without a Python twin."""
-    words = [word for word in split_names(names) if names_an_encoder(word)]
-    return any(names_a_file(str(file_of(word))) and not names_a_file(str(twin_of(word))) for word in words)
+def _is_in_glsl_only(names: Names) -> bool:
+    """Tell whether one of the names is a file with a user's encoder without a Python twin."""
+    words = [word for word in map(str, names) if names_an_encoder(word)]
+    return any(names_a_file(str(file_of(word))) and not names_a_file(str(UserFile(word).twin)) for word in words)
 
 
 def with_their_options(table: Table, values: Mapping[str, Any], limits: Iterable[Limit]) -> dict[str, Any]:

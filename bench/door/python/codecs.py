@@ -85,7 +85,7 @@ def codec_of(codec: Codec | str) -> Codec:
         name, _, storage = before.rpartition("/")
         if not (name and storage):
             raise UsageError(f'codec {codec!r}: name an encoding and a storage, such as "octahedral/rg8"')
-        several = codecs_named(name, storage, rounding)
+        several = codecs_named((name,), (storage,), (rounding,))
         if len(several) != 1:
             raise UsageError(f"codec {codec!r}: one codec at a time, not {len(several)}")
         (found,) = several

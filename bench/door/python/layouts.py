@@ -79,7 +79,7 @@ def unpack(layout: Layout | str, targets: Sequence[Any], **settings: Any) -> dic
 
 def _code_of(layout: Layout | str) -> GBufferCode:
     if isinstance(layout, str):
-        named = layouts_named(layout)
+        named = layouts_named((layout,))
         if len(named) != 1:
             raise UsageError(f"{layout}: {len(named)} layouts; name one")
         layout = named[0]

@@ -14,7 +14,7 @@ from ....encodings.codecs.encoding import Encoding
 from ....encodings.storages.storage import Storage
 from ....reports.charts.drawings import of
 from ...ground.options.option import checked_options, fields_of
-from ...ground.options.words import Words
+from ...ground.options.words import Given
 from ...ground.output.errors import UsageError
 from ...run.measuring import Nothing, asked, measured
 from ...run.workers.places import place
@@ -97,16 +97,15 @@ def _framed(table: Table, done: Measured) -> Rows:
 
 
 def _typed(key: str, value: Any) -> Any:
-    """An argument as an option has it: several become one text, values of the caller's own among them."""
-    several = list(value) if isinstance(value, list | tuple) else [value]
+    """Return an argument as an option has it: several are names, values of the caller's own among them."""
     if isinstance(value, Mapping):
-        return Words(list(value), {name: _value(key, name, one) for name, one in value.items()})
+        return tuple(Given(name, _value(key, name, array)) for name, array in value.items())
+    several = value if isinstance(value, list | tuple) else [value]
     if key == "size" and len(several) == 2 and all(isinstance(side, int) for side in several):
         return f"{several[0]}x{several[1]}"
-    if not any(isinstance(one, Encoding | Storage) for one in several) and not isinstance(value, list | tuple):
-        return value
-    own = {one.name: one for one in several if isinstance(one, Encoding | Storage)}
-    return Words([one.name if isinstance(one, Encoding | Storage) else str(one) for one in several], own)
+    if isinstance(value, list | tuple | Encoding | Storage):
+        return tuple(Given(word.name, word) if isinstance(word, Encoding | Storage) else str(word) for word in several)
+    return value
 
 
 def _check_unit(name: str, array: np.ndarray) -> None:

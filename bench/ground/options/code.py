@@ -5,15 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from .option import Names, Option, Sources
+from .option import NAMED, Option, Sources
+from .words import Names
 
 
 @dataclass(frozen=True, kw_only=True)
 class CodeOptions(Sources):
     """Which codecs, in which languages."""
 
-    codec: Annotated[str, Option("CODEC", f"Encodings or files, {Names}; layouts with --of layout.", files=True)] = (
-        "octahedral"
+    codec: Annotated[Names, Option("CODEC", f"Encodings or files, {NAMED}; layouts with --of layout.", files=True)] = (
+        "octahedral",
     )
     of: Annotated[
         str,
@@ -24,12 +25,12 @@ class CodeOptions(Sources):
         ),
     ] = ""
     storage: Annotated[
-        str | None, Option("--storage", f"Storages, {Names}. Default: rgba8; with --check, those that people ship.")
+        Names | None, Option("--storage", f"Storages, {NAMED}. Default: rgba8; with --check, those that people ship.")
     ] = None
-    rounding: Annotated[str, Option("--rounding", "nearest, truncate, truncate_half; comma-separated, or all.")] = (
-        "nearest"
+    rounding: Annotated[Names, Option("--rounding", "nearest, truncate, truncate_half; comma-separated, or all.")] = (
+        "nearest",
     )
-    to: Annotated[str, Option("--to", "glsl, essl, hlsl, slang, wgsl, msl, c; comma-separated, or all.")] = "hlsl"
+    to: Annotated[Names, Option("--to", "glsl, essl, hlsl, slang, wgsl, msl, c; comma-separated, or all.")] = ("hlsl",)
     prefix: Annotated[
         str,
         Option(

@@ -7,12 +7,14 @@ from collections.abc import Callable
 from typing import Any, TypeVar
 
 from ..output.errors import UsageError
+from .words import Names, text_of
 
 N = TypeVar("N", int, float)
 
 DEFAULT_COUNT = 2**22
 MAX_COUNT = 2**40
 MAX_REPEATS = 1000
+MAX_POWER = 2048
 # Issue slots that a limit may be.
 MOST_INSTRUCTIONS = 10**6
 MAX_OBJECTS, MAX_LIGHTS = 100_000, 10_000
@@ -65,15 +67,14 @@ def checked_sides(text: str, most: int, where: str) -> tuple[int, int]:
     return int(match[1]), int(match[2])
 
 
-def checked_numbers(option: str, text: str, kind: Callable[[str], N], least: N, most: N) -> tuple[N, ...]:
-    """Comma-separated numbers, each once. Raises UsageError for none, or one that is none or out of range."""
-    words = [word.strip() for word in text.split(",") if word.strip()]
+def checked_numbers(option: str, words: Names, kind: Callable[[str], N], least: N, most: N) -> tuple[N, ...]:
+    """Return numbers, each once. Raises UsageError for none, or one that is none or out of range."""
     try:
         read: Any = whole_number if kind is int else kind
-        found: tuple[N, ...] = tuple(dict.fromkeys(map(read, words)))
+        numbers: tuple[N, ...] = tuple(dict.fromkeys(read(str(word)) for word in words))
     except ValueError:
-        found = ()
-    if not found or not all(least <= number <= most for number in found):
+        numbers = ()
+    if not numbers or not all(least <= number <= most for number in numbers):
         between = f"whole numbers from {least} to {most}" if kind is int else f"numbers from {least:g} to {most:g}"
-        raise UsageError(f"{option} {text}: {between}, comma-separated")
-    return found
+        raise UsageError(f"{option} {text_of(words)}: {between}, comma-separated")
+    return numbers

@@ -15,7 +15,9 @@ from types import MappingProxyType, NoneType
 from typing import Annotated, Any, get_args, get_type_hints
 
 from ..output.errors import UsageError
+from ..user_files import file_names
 from .counts import whole_number
+from .words import Names, names, text_of
 
 
 @dataclass(frozen=True)
@@ -28,6 +30,7 @@ class Option:
         files: whether its words may be files.
         in_run: whether `run` takes it too, for every table that has an option of this name in `run`.
         letter: a short way to type it: "-D".
+        repeats: whether a name that is given twice counts twice.
     """
 
     flag: str
@@ -35,65 +38,65 @@ class Option:
     files: bool = False
     in_run: bool = False
     letter: str = ""
+    repeats: bool = False
 
 
-Names = "comma-separated, or all; `normalbench list` shows them"
+NAMED = "comma-separated, or all; `normalbench list` shows them"
 Encodings = Annotated[
-    str, Option("--encoding", f"Encodings or files of GLSL, HLSL, Slang or WGSL, {Names}.", files=True, in_run=True)
+    Names, Option("--encoding", f"Encodings or files of GLSL, HLSL, Slang or WGSL, {NAMED}.", files=True, in_run=True)
 ]
 StorageNames = Annotated[
-    str,
+    Names,
     Option(
-        "--storage", f"Storages, {Names}. Any bits are one too: unorm:9:7, snorm:12:12, unorm:4:4..16:16.", in_run=True
+        "--storage", f"Storages, {NAMED}. Any bits are one too: unorm:9:7, snorm:12:12, unorm:4:4..16:16.", in_run=True
     ),
 ]
 Roundings = Annotated[
-    str, Option("--rounding", "nearest, truncate, truncate_half; comma-separated, or all.", in_run=True)
+    Names, Option("--rounding", "nearest, truncate, truncate_half; comma-separated, or all.", in_run=True)
 ]
-# The tables that add noise, and their option.
-WITH_NOISE = ("quality", "frames", "vectors", "curves", "depth", "render", "effects")
+# Of tables that add noise.
 RoundingsAndDithered = Annotated[
-    str, Option("--rounding", "nearest, truncate, truncate_half, dithered; comma-separated, or all.", in_run=True)
+    Names, Option("--rounding", "nearest, truncate, truncate_half, dithered; comma-separated, or all.", in_run=True)
 ]
-Normals = Annotated[str, Option("--normals", f"Normal sets or files, {Names}.", files=True, in_run=True)]
-Backends = Annotated[str, Option("--backend", "jax, glsl; comma-separated, or all.", in_run=True)]
+Normals = Annotated[Names, Option("--normals", f"Normal sets or files, {NAMED}.", files=True, in_run=True)]
+Backends = Annotated[Names, Option("--backend", "jax, glsl; comma-separated, or all.", in_run=True)]
 # Of a table that measures by WGSL on Vulkan as well.
-BackendsAndWgsl = Annotated[str, Option("--backend", "jax, glsl, wgsl; comma-separated, or all.", in_run=True)]
+BackendsAndWgsl = Annotated[Names, Option("--backend", "jax, glsl, wgsl; comma-separated, or all.", in_run=True)]
 Count = Annotated[int, Option("--count", "Normals in a uniform set.", in_run=True)]
 Seed = Annotated[int, Option("--seed", "The random seed of uniform sets, points and scenes.", in_run=True)]
-Pipelines = Annotated[str, Option("--pipeline", f"Pipelines, {Names}.", in_run=True)]
-Layouts = Annotated[str | None, Option("--layout", "Layouts: names or TOML files.", files=True, in_run=True)]
+Pipelines = Annotated[Names, Option("--pipeline", f"Pipelines, {NAMED}.", in_run=True)]
+Layouts = Annotated[Names | None, Option("--layout", "Layouts: names or TOML files.", files=True, in_run=True)]
 Scenes = Annotated[
-    str, Option("--scene", f"Scenes, mesh files or captured frames (gbuffer.json), {Names}.", files=True, in_run=True)
+    Names, Option("--scene", f"Scenes, mesh files or captured frames (gbuffer.json), {NAMED}.", files=True, in_run=True)
 ]
 Powers = Annotated[
-    str | None,
+    Names | None,
     Option("--power", "Specular powers of all materials, comma-separated. Default: each material's own.", in_run=True),
 ]
 LightBuffers = Annotated[
-    str,
+    Names,
     Option(
         "--light-buffer",
-        f"Light buffers or files of yours, {Names}. Any bits are one too: ufloat:6:9, linear/unorm:10:10:10.",
+        f"Light buffers or files of yours, {NAMED}. Any bits are one too: ufloat:6:9, linear/unorm:10:10:10.",
         files=True,
         in_run=True,
     ),
 ]
 Effects = Annotated[
-    str | None, Option("--effects", "Effects in the image, all at once, with settings: gtao:size=half,lpv.")
+    Names | None, Option("--effects", "Effects in the image, all at once, with settings: gtao:size=half,lpv.")
 ]
-LightTargets = Annotated[str, Option("--light-targets", "1, 2; comma-separated, or all.")]
-Shadow = Annotated[str, Option("--shadow", "on, off; comma-separated, or all.")]
+LightTargets = Annotated[Names, Option("--light-targets", "1, 2; comma-separated, or all.")]
+Shadow = Annotated[Names, Option("--shadow", "on, off; comma-separated, or all.")]
 Size = Annotated[str, Option("--size", "WIDTHxHEIGHT of the image.")]
 Samples = Annotated[int, Option("--samples", "Samples per pixel; the device may give more.")]
 Scale = Annotated[float, Option("--scale", "Size of inferred's buffers relative to the image's, up to 1.")]
 Objects = Annotated[int, Option("--objects", "Objects in the scene `objects`.")]
 Lights = Annotated[int, Option("--lights", "Point lights.")]
 Families = Annotated[
-    str, Option("--family", "GPU families that issue slots are counted for, comma-separated; the dearest counts.")
+    Names, Option("--family", "GPU families that issue slots are counted for, comma-separated; the dearest counts.")
 ]
 Arithmetics = Annotated[
-    str,
+    Names,
     Option(
         "--arithmetic",
         "What codes are computed in: float (32 bits), half (every step rounded to 16 bits), or declared: float, and "
@@ -111,7 +114,16 @@ Plot = Annotated[Path | None, Option("--plot", "Draw the table into this PNG, SV
 
 
 @dataclass(frozen=True, kw_only=True)
-class Sources:
+class Options:
+    """Options whose texts of several names are split where they are made, and nowhere else."""
+
+    def __post_init__(self) -> None:
+        for name, field in fields_of(type(self)).items():
+            object.__setattr__(self, name, field.read(getattr(self, name)))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sources(Options):
     """How users' files of encodings are read; comma-separated.
 
     Attributes:
@@ -123,13 +135,13 @@ class Sources:
     """
 
     define: Annotated[
-        str | None, Option("--define", "Shader files: macros, NAME or NAME=VALUE.", in_run=True, letter="-D")
+        Names | None, Option("--define", "Shader files: macros, NAME or NAME=VALUE.", in_run=True, letter="-D")
     ] = None
     prelude: Annotated[
-        str | None, Option("--prelude", "Shader files: files that are put in front.", files=True, in_run=True)
+        Names | None, Option("--prelude", "Shader files: files that are put in front.", files=True, in_run=True)
     ] = None
     include: Annotated[
-        str | None,
+        Names | None,
         Option("--include", "Shader files: where includes lie: FOLDER, or NAME=FOLDER of NAME/file.", True, True),
     ] = None
     language: Annotated[
@@ -142,7 +154,7 @@ class Sources:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Reading:
+class Reading(Options):
     """How files of normals are read.
 
     Attributes:
@@ -206,15 +218,37 @@ class Field:
     option: Option
 
     @property
+    def has_names(self) -> bool:
+        """Whether it is several names, typed as one text."""
+        return self.type in (Names, Names | None)
+
+    @property
     def kind(self) -> type:
-        """str, int, float, bool or Path."""
-        return next(kind for kind in get_args(self.type) or (self.type,) if kind is not NoneType)
+        """As it is typed: str, int, float, bool or Path."""
+        return str if self.has_names else next(k for k in get_args(self.type) or (self.type,) if k is not NoneType)
+
+    @property
+    def typed(self) -> Any:
+        """The default as it is typed."""
+        return text_of(self.default) if isinstance(self.default, tuple) else self.default
+
+    def read(self, value: Any, folder: Path = Path()) -> Any:
+        """Return what an option holds for what was given: names in place of the text of several.
+
+        Args:
+            folder: where files are looked for.
+        """
+        if not self.has_names or not isinstance(value, str):
+            return value
+        return file_names(value, folder) if self.option.files else names(value, repeats=self.option.repeats)
 
     def checked(self, value: Any) -> Any:
         """A value from a file or a test. A text option takes numbers as well. Raises UsageError."""
         number = isinstance(value, int | float) and not isinstance(value, bool)
         if self.kind is str and (number or hasattr(value, "__fspath__")):
-            return str(value)
+            value = str(value)
+        if self.has_names and isinstance(value, str | tuple):
+            return self.read(value)
         if isinstance(value, self.kind) and (self.kind is bool or not isinstance(value, bool)):
             return value
         if self.kind is float and number:

@@ -1,30 +1,45 @@
-"""Names as typed, and values that stand for names: what a Python caller gives where the command line has text."""
+"""Names as people give them: comma-separated in a text, or several from Python, some of which stand for values."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Iterable
+from typing import Any, NamedTuple, TypeAlias
+
+# In the name of a file.
+MOST_COMMAS = 4
 
 
-class Words(str):
-    """Comma-separated names, some of which stand for values of the caller's own.
+class Given(NamedTuple):
+    """A value of a Python caller's own, under a name."""
 
-    Attributes:
-        given: those values by their names.
+    name: str
+    value: Any
+
+    def __str__(self) -> str:
+        return self.name
+
+
+Word: TypeAlias = str | Given
+Names: TypeAlias = tuple[Word, ...]
+
+
+def names(text: str, is_whole: Callable[[str], bool] = lambda _: False, repeats: bool = False) -> tuple[str, ...]:
+    """Split comma-separated names: the only place where such a text is split.
+
+    Args:
+        is_whole: whether several that commas separate are one name, such as that of a file.
+        repeats: whether a name that is there twice counts twice.
     """
-
-    given: Mapping[str, Any]
-
-    def __new__(cls, names: list[str], given: Mapping[str, Any]) -> Words:
-        made = super().__new__(cls, ",".join(names))
-        made.given = given
-        return made
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        # A text's own way has no values.
-        return Words, ([str(self)], self.given)
+    parts, words = text.split(","), list[str]()
+    while parts:
+        several = (size for size in range(min(len(parts), MOST_COMMAS + 1), 1, -1))
+        size = next((size for size in several if is_whole(",".join(parts[:size]).strip())), 1)
+        words.append(",".join(parts[:size]).strip())
+        parts = parts[size:]
+    words = [word for word in words if word]
+    return tuple(words if repeats else dict.fromkeys(words))
 
 
-def given_in(names: str) -> Mapping[str, Any]:
-    """The caller's own values among names; none in plain text."""
-    return names.given if isinstance(names, Words) else {}
+def text_of(words: Iterable[Word]) -> str:
+    """Return names as they are typed."""
+    return ",".join(map(str, words))

@@ -39,7 +39,7 @@ class Channel(TypedDict):
 
 
 @with_config(STRICT)
-class Table(TypedDict):
+class LookUpRecord(TypedDict):
     """A look-up table, float32 in base64."""
 
     width: Annotated[int, Field(ge=1, le=4096)]
@@ -80,7 +80,7 @@ class Kept(TypedDict):
     bytes: Annotated[int, Field(ge=0, le=4)]
     takes_view: bool
     channels: Annotated[list[Channel], Field(min_length=1, max_length=4)]
-    tables: dict[Name, Table]
+    tables: dict[Name, LookUpRecord]
     checks: Checks | None
 
 

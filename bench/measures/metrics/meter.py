@@ -24,7 +24,7 @@ from ....encodings.vec import Vec3, cross, dot, minimum, select
 from ...ground.angles import angles_deg
 from ...ground.machine.cores import on_all_cores
 from .histogram import bin_of, bins_of, tally
-from .totals import Figures, Part, Statistics, Total, Worst, statistics
+from .totals import ChunkTotal, ErrorTotal, Figures, Statistics, Worst, statistics
 
 # Lanes that are summed apart, and the rows added to them at a time. XLA copies a computation into each of its uses, up
 # to 15, and computes it anew for each. With 16 rows each number is computed once.
@@ -172,7 +172,7 @@ class Measures(Protocol):
         """What compiled it."""
         ...
 
-    def parts(self, loads: Sequence[Load], met_deg: float = 0.0, device: Any = None) -> list[Part]:
+    def parts(self, loads: Sequence[Load], met_deg: float = 0.0, device: Any = None) -> list[ChunkTotal]:
         """What they add up to, in one part or several; as for `Meter.one`."""
         ...
 
@@ -213,7 +213,7 @@ class Meter:
         """What a block is decoded as."""
         return self._decode(block, *self._given)
 
-    def one(self, load: Load, met_deg: float = 0.0, device: Any = None) -> Part:
+    def one(self, load: Load, met_deg: float = 0.0, device: Any = None) -> ChunkTotal:
         """One chunk's part of the statistics, by one of JAX's devices. Its worst normal is not looked for where an
         angle of `met_deg`, which another chunk has, is larger than all of its own."""
         with jax.enable_x64(True), jax.default_device(device):
@@ -225,11 +225,11 @@ class Meter:
             return figures, histogram, None
         return figures, histogram, _worst(bins, figures.largest, chunk.n, decoded)
 
-    def parts(self, loads: Sequence[Load], met_deg: float = 0.0, device: Any = None) -> list[Part]:
+    def parts(self, loads: Sequence[Load], met_deg: float = 0.0, device: Any = None) -> list[ChunkTotal]:
         """The parts of several chunks; as for `one`."""
         return [self.one(load, met_deg, device) for load in loads]
 
-    def total(self, loads: Iterable[Load], tick: Callable[[], None] = idle) -> Total:
+    def total(self, loads: Iterable[Load], tick: Callable[[], None] = idle) -> ErrorTotal:
         """What the chunks of a set, shared among the cores, add up to.
 
         Args:
@@ -249,17 +249,17 @@ def measure_together(
     loads: Iterable[Load],
     tick: Callable[[int], None],
     at_once: int = 1,
-) -> list[Total]:
+) -> list[ErrorTotal]:
     """What each meter measures of one set, each chunk of which is made once; `tick` is told whose chunk is done.
 
     Chunks are dealt to all devices that JAX has, so many at once. The rest is as for `Meter.total`.
     """
-    totals = [Total() for _ in meters]
+    totals = [ErrorTotal() for _ in meters]
     whose = itertools.cycle(range(len(meters)))
     dealt = zip(in_groups(map(Once, loads), at_once), itertools.cycle(jax.local_devices()), strict=False)
     work = ((*each, *group) for group in dealt for each in zip(meters, totals, strict=True))
 
-    def measured(item: tuple[Measures, Total, list[Load], Any]) -> tuple[int, list[Part]]:
+    def measured(item: tuple[Measures, ErrorTotal, list[Load], Any]) -> tuple[int, list[ChunkTotal]]:
         meter, total, chunks, device = item
         return len(chunks), meter.parts(chunks, total.met_deg, device)
 

@@ -78,10 +78,10 @@ def psnr_db(mse: float) -> float:
 
 
 # Figures, how many normals lie in each bin of the histogram, and the normal with the largest angle.
-Part = tuple[Figures, np.ndarray, "Worst | None"]
+ChunkTotal = tuple[Figures, np.ndarray, "Worst | None"]
 
 
-class Total:
+class ErrorTotal:
     """What chunks add up to. Sums are exact, so that parts of a set give the same figures as all of it at once."""
 
     def __init__(self):
@@ -93,7 +93,7 @@ class Total:
         """The largest angle so far, in float64; other threads may ask."""
         return self.worst.angle_deg if self.worst else 0.0
 
-    def add(self, part: Part) -> None:
+    def add(self, part: ChunkTotal) -> None:
         """One chunk's figures, histogram and worst normal."""
         figures, counts, worst = part
         exact = Figures(*map(Fraction, figures))
@@ -103,7 +103,7 @@ class Total:
         if worst and (self.worst is None or worst.angle_deg > self.worst.angle_deg):
             self.worst = worst
 
-    def add_total(self, other: Total) -> None:
+    def add_total(self, other: ErrorTotal) -> None:
         """What further chunks add up to."""
         self.add((other.figures, other.histogram, other.worst))
 
@@ -116,9 +116,9 @@ class Total:
         return json.dumps({"sums": [*map(str, self.figures)], "counts": packed, "worst": worst})
 
 
-def total_of(text: str) -> Total:
-    """The total that a text of `Total.as_text` stands for."""
-    said, made = json.loads(text), Total()
+def total_of(text: str) -> ErrorTotal:
+    """The total that a text of `ErrorTotal.as_text` stands for."""
+    said, made = json.loads(text), ErrorTotal()
     steps, counts = np.frombuffer(zlib.decompress(base64.b64decode(said["counts"])), "<i8").reshape(2, -1)
     made.figures = Figures(*map(Fraction, said["sums"]))
     made.histogram[np.cumsum(steps)] = counts
@@ -128,7 +128,7 @@ def total_of(text: str) -> Total:
     return made
 
 
-def statistics(pixels: int, total: Total) -> Statistics:
+def statistics(pixels: int, total: ErrorTotal) -> Statistics:
     """Those of a set with so many pixels, background included."""
     figures, histogram = Figures(*map(float, total.figures)), total.histogram
     count = int(histogram[:BINS].sum())

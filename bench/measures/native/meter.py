@@ -16,7 +16,7 @@ from ...ground.native.elementwise import c_function, c_type
 from ...ground.native.library import address, compiler, library, source
 from ..metrics.histogram import BINS, bin_of, bins_of, lower_edge
 from ..metrics.meter import Load, errors, is_smaller, worst_of
-from ..metrics.totals import Figures, Part, Worst
+from ..metrics.totals import ChunkTotal, Figures, Worst
 
 HERE = Path(__file__).parent
 FLOAT = np.dtype(np.float32)
@@ -99,7 +99,7 @@ class NativeMeter:
         """What compiled it."""
         return compiler()
 
-    def parts(self, loads: Sequence[Load], met_deg: float = 0.0, device: Any = None) -> list[Part]:  # noqa: ARG002
+    def parts(self, loads: Sequence[Load], met_deg: float = 0.0, device: Any = None) -> list[ChunkTotal]:  # noqa: ARG002
         """The statistics of chunks, as `Meter.parts` gives them; JAX's device is of no concern."""
         figures, counts = np.zeros(len(Figures._fields)), np.zeros(BINS + 1, np.uint32)
         chunks = _Chunks([load() for load in loads])

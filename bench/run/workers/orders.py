@@ -9,11 +9,11 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
-from ...ground.options.words import given_in
+from ...ground.options.words import Given
 from ...ground.output.errors import UsageError
+from ...ground.user_files import file_of, files_in, parts_of, with_files
 from ...keep.plain import key_text
-from ...shaders.languages.words import file_of, files_in, parts_of, with_files
-from ...tables.table import Row, Step
+from ...tables.table import Row
 from ..measuring import Asked, companions, words_of
 
 # Where a worker keeps files that do not lie below the folder in which the command was typed.
@@ -42,19 +42,11 @@ class Order:
     files: Mapping[str, bytes] = field(default_factory=dict, repr=False)
     typed: Mapping[str, str] = field(default_factory=dict)
 
-    def as_typed(self, value: Any) -> Any:
-        """A value of a row or a key with files as the user named them."""
-        if isinstance(value, str):
-            for own, typed in sorted(self.typed.items(), key=lambda one: -len(one[0])):
-                value = value.replace(own, typed)
-            return value
-        if isinstance(value, dict):
-            return {self.as_typed(name): self.as_typed(one) for name, one in value.items()}
-        return [self.as_typed(one) for one in value] if isinstance(value, list) else value
-
-    def name_of(self, step: Step) -> str:
-        """What a step is known by, the same here and on every worker that has the same files."""
-        return step_name(self.table, self.as_typed(step.key))
+    def as_typed(self, line: str) -> str:
+        """Return a line with files as the user named them."""
+        for own, typed in sorted(self.typed.items(), key=lambda place: -len(place[0])):
+            line = line.replace(own, typed)
+        return line
 
 
 def step_name(table: str, key: Row) -> str:
@@ -124,11 +116,9 @@ def order_of(ask: Asked) -> Order:
 def _packed(options: Any, packing: Packing) -> dict[str, Any]:
     values = {one.name: getattr(options, one.name) for one in fields(options)}
     for name, value in values.items():
-        if own := given_in(value):
+        if own := [word.name for word in value if isinstance(word, Given)] if isinstance(value, tuple) else []:
             raise UsageError(f"{name}: {', '.join(own)} is a value of this process; workers measure names and files")
     for name, words in words_of(options).items():
-        packed = [packing.packed(word) if word else word for word in words]
-        # A text without files stays as it is, to the last blank.
-        if packed != words:
-            values[name] = ",".join(packed)
+        packed = tuple(map(packing.packed, words))
+        values[name] = packed if isinstance(values[name], tuple) else "".join(packed) or values[name]
     return values

@@ -18,7 +18,7 @@ from ...tables.table import Row, Step
 from ..measuring import HERE, Asked, asked_together, with_parts
 from .about import marks, named
 from .carrier import Answer
-from .orders import PICTURES, Order
+from .orders import PICTURES, Order, step_name
 
 # Of how many orders a worker keeps the steps, with whatever these hold in memory.
 KEPT_ORDERS = 3
@@ -70,7 +70,7 @@ def measure(order: Order | str, needs: Set[str], wanted: Sequence[str]) -> Answe
 def _answers(laid: Laid, wanted: Sequence[str]) -> Iterator[tuple[list[Row], dict[str, bytes]]]:
     """Measure steps: of each its rows and its pictures."""
     for _, rows in HERE.measure(laid.ask, [laid.steps[name] for name in wanted], lambda _: None):
-        yield laid.order.as_typed(rows), _taken(laid.folder)
+        yield rows, _taken(laid.folder)
 
 
 def _taken(folder: Path) -> dict[str, bytes]:
@@ -109,7 +109,7 @@ def _laid_of(order: Order) -> Laid:
     # The process that asks has said what is left out.
     with _in_folder(folder), _listening():
         ask = asked_together(table, [table.options(**values) for values in order.options], outputs)
-    return Laid(order, folder, ask, {order.name_of(step): step for step in with_parts(ask.steps)})
+    return Laid(order, folder, ask, {step_name(order.table, step.key): step for step in with_parts(ask.steps)})
 
 
 @contextlib.contextmanager

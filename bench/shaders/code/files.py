@@ -8,9 +8,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from ....encodings.codecs.kind import NORMAL
+from ....encodings.kinds import NORMAL
 from ...ground.output.errors import UsageError
-from ..languages.words import is_translated
+from ...ground.user_files import UserFile
 from ..translator.tokens import in_a_comment
 from ..translator.tree import TranslationError
 from ..translator.writer import identifier
@@ -129,7 +129,7 @@ def _untranslatable_reason(codec: Any, said: str) -> str:
     """Why a file is not translated; the place is in the user's file where that is GLSL."""
     encoding = codec.encoding
     source = getattr(encoding, "source", None)
-    if source is None or not is_translated(source):
+    if source is None or not UserFile(str(source)).is_translated:
         return said if re.match(r"\S+:\d+: ", said) else f"{encoding.glsl}: {said}"
     what = re.sub(r"^\S*?:?\d+:(\d+:)? ", "", said).replace("is not a type that is known here", "parameters or types")
     return f"{source}: it is measured, but cannot be written in other languages: {what}"

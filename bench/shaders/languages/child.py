@@ -2,8 +2,8 @@
 
     python -m normalbench.bench.shaders.languages.child FOLDER WORD LANGUAGE KIND
 
-FOLDER is an empty one to work in. WORD names the file: see `words.py`. LANGUAGE is what reads it, a name of `BY_NAME`;
-empty for its own. KIND is what its code is of, of `shapes.SHAPES`; empty for normals. Prints a line of JSON: `error`,
+FOLDER is an empty one to work in. WORD names it: see `user_files.py`. LANGUAGE is what reads it, a name of `BY_NAME`;
+empty for its own. KIND is what its code is of: see `encodings.kinds`. Prints a line of JSON: `error`,
 what is wrong with the file, `pairs`, the names of several, and `alone`, what is known of an encoder or a decoder alone;
 `missing`, what to install; else what `Translated` has.
 """
@@ -20,13 +20,16 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from ....encodings import kinds
 from ....encodings.codecs.files import called
+from ....encodings.kinds import Kind
 from ...ground.compilers import tools
 from ...ground.compilers.tools import ToolError
 from ...ground.machine import children
 from ...ground.machine.systems import landlock, walls
 from ...ground.machine.systems.walls import Wall
 from ...ground.output.errors import MissingError, UsageError
+from ...ground.user_files import UserFile
 from . import hlsl, programs, slang
 from .blocks import programs_of
 from .items import functions_in, reached, words_of
@@ -49,7 +52,6 @@ from .programs import Read, TranslationError
 from .shaped import shaped_pair
 from .source import Source
 from .wiring import Wiring, candidates, wired, wiring_of
-from .words import file_of, functions_of
 
 _A = {"uint": "a uint", "int": "an int", "float": "a float"}
 # What compilers say of a name that nothing defines.
@@ -62,16 +64,16 @@ MOST_NAMED, MOST_OTHERS = 12, 4
 
 
 def answer(
-    word: str | Path,
+    file: UserFile,
     folder: Path,
     by: str = "",
-    kind: str = "",
+    kind: Kind = kinds.NORMAL,
     once_read: Callable[[Source], None] = lambda _: None,
 ) -> dict[str, Any]:
     """Return what there is to say of a file; see above. `once_read` is called before any compiler is."""
-    path = file_of(word)
+    path = file.path
     try:
-        source = Source(word)
+        source = Source(file)
         once_read(source)
         return _facts_of_a_program(source, folder, by, kind)
     except (UsageError, TranslationError) as error:
@@ -100,14 +102,14 @@ def _wall_in(source: Source, folder: Path) -> None:
     landlock.forget_variables()
 
 
-def _facts_of_a_program(whole: Source, folder: Path, by: str, kind: str) -> dict[str, Any]:
+def _facts_of_a_program(whole: Source, folder: Path, by: str, kind: Kind) -> dict[str, Any]:
     """Of the first program of a file that has an encoder and its decoder. Raises what is said of the others."""
     errors: list[Exception] = []
     for source in programs_of(whole):
         try:
-            if kind:
-                return _shaped_facts(source, functions_of(whole.word), folder, by, kind)
-            return _translation_facts(source, functions_of(whole.word), folder, by)
+            if kind is not kinds.NORMAL:
+                return _shaped_facts(source, whole.file.functions, folder, by, kind)
+            return _translation_facts(source, whole.file.functions, folder, by)
         except (TranslationError, NoPairError) as error:
             errors.append(error)
     # What is wrong with a pair says more than that there is none.
@@ -116,7 +118,7 @@ def _facts_of_a_program(whole: Source, folder: Path, by: str, kind: str) -> dict
 
 def _translation_facts(source: Source, asked: tuple[str, str] | None, folder: Path, by: str) -> dict[str, Any]:
     path = source.path
-    found = language_of(source.word, by).read(source, folder)
+    found = language_of(source.file, by).read(source, folder)
     try:
         pair, text, named = _pair_and_text(found, asked, path)
     except SeveralPairsError:
@@ -144,9 +146,9 @@ def _check_refused(found: Read, asked: tuple[str, str] | None) -> None:
         raise TranslationError(why) from None
 
 
-def _shaped_facts(source: Source, asked: tuple[str, str] | None, folder: Path, by: str, kind: str) -> dict[str, Any]:
+def _shaped_facts(source: Source, asked: tuple[str, str] | None, folder: Path, by: str, kind: Kind) -> dict[str, Any]:
     """As `_translation_facts`, of a code of something else than normals."""
-    language = language_of(source.word, by)
+    language = language_of(source.file, by)
     found = language.read(source, folder)
     if asked and not all(wiring_of(text).is_plain for text in asked):
         raise NoPairError("what a function is given is said of normals alone; name the two functions")
@@ -287,9 +289,9 @@ def _wired_pair(wirings: Sequence[Wiring], found: Read) -> tuple[Pair, str, str]
 def _texts_by_whoever_reads_it(source: Source, by: str, texts: _Texts, prefix: str) -> tuple[str, list[str]]:
     """What has read functions, if not the compiler of their language; and they as texts."""
     try:
-        return by, texts(language_of(source.word, by), source, prefix)
+        return by, texts(language_of(source.file, by), source, prefix)
     except TranslationError:
-        if by or name_of(source.word) != "HLSL":
+        if by or name_of(source.file) != "HLSL":
             raise
         with suppress(TranslationError, NotPlainError, ToolError, MissingError):
             return GLSLANG, texts(BY_NAME[GLSLANG], source, prefix)
@@ -349,5 +351,6 @@ def _function_texts(source: Source, language: Language, pair: Pair, prefix: str,
 
 if __name__ == "__main__":
     children.limit_this_process()
-    work, word, language, kind = sys.argv[1:]
-    print(json.dumps(answer(word, Path(work), language, kind, lambda source: _wall_in(source, Path(work)))))
+    work, word, language, name = sys.argv[1:]
+    kind = kinds.BY_NAME[name]
+    print(json.dumps(answer(UserFile(word), Path(work), language, kind, lambda source: _wall_in(source, Path(work)))))

@@ -11,12 +11,12 @@ from types import MappingProxyType
 from ....encodings.codecs.files import file_text
 from ...ground.compilers import tools
 from ...ground.compilers.lines import without_comments
+from ...ground.user_files import TRANSLATED, UserFile
 from . import hlsl, slang, wgsl, wiring
 from .pairs import Function
 from .programs import Read
 from .shaped import Adapter
 from .source import Source
-from .words import TRANSLATED, file_of, settings_of
 
 GLSL_NAME = "GLSL"
 # What is a type in GLSL, and in no other language that files of its endings have.
@@ -58,20 +58,19 @@ BY_NAME: Mapping[str, Language] = MappingProxyType(
 )
 
 
-def language_of(word: str | Path, by: str = "") -> Language:
-    """The language of a word's file, or what a name says that reads it."""
-    return BY_NAME[by or name_of(word)]
+def language_of(file: UserFile, by: str = "") -> Language:
+    """Return the language of a file, or what a name says that reads it."""
+    return BY_NAME[by or name_of(file)]
 
 
-def name_of(word: str | Path) -> str:
-    """What the language of a word's file is called: as the word says, by its ending, or by its text where the ending is
+def name_of(file: UserFile) -> str:
+    """Return what the language of a file is called: as its name says, by its ending, or by its text where the ending is
     of several."""
-    path = file_of(word)
-    language = settings_of(word).language or TRANSLATED.get(path.suffix.lower(), GLSL_NAME)
+    language = file.settings.language or TRANSLATED.get(file.path.suffix.lower(), GLSL_NAME)
     if language:
         return language
     try:
-        return GLSL_NAME if _GLSL.search(without_comments(file_text(path))) else "HLSL"
+        return GLSL_NAME if _GLSL.search(without_comments(file_text(file.path))) else "HLSL"
     except (OSError, ValueError):
         return "HLSL"
 

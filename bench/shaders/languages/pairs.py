@@ -10,7 +10,8 @@ from functools import cache
 from types import MappingProxyType
 from typing import Any
 
-from .shapes import LIGHT, OF_NORMALS, WORD, WORDS, kind_spoken_of, words_in
+from ....encodings import kinds
+from ....encodings.kinds import WORD, kind_spoken_of, words_in
 
 NORMAL = 3
 # One value of 32 bits, and how many numbers it is measured as.
@@ -298,7 +299,7 @@ def speaks_of_others(pair: Pair) -> bool:
     named = f"{pair.encode.name} {pair.decode.name}"
     kind = kind_spoken_of(named)
     # A code of two numbers is of a direction, such as that to a light.
-    is_of_another = bool(kind) and not (kind == LIGHT and pair.components < NORMAL)
+    is_of_another = bool(kind) and not (kind is kinds.LIGHT and pair.components < NORMAL)
     return not speaks_of_normals(pair) and (bool(OF_COLOURS & words_in(named)) or is_of_another)
 
 
@@ -354,7 +355,7 @@ def _of_something_else(found: Sequence[Function], file: str) -> str:
     """That a file without a pair is of something else, by the names of its functions; else empty."""
     for name in (one.name for one in found if role(one.name)):
         if kind := kind_spoken_of(name):
-            return OF_OTHERS.format(name, WORDS[kind].plural, OF_NORMALS.plural, WORDS[kind].command.format(file))
+            return OF_OTHERS.format(name, kind.plural, kinds.NORMAL.plural, kind.command.format(file))
     return ""
 
 

@@ -21,6 +21,7 @@ from ...ground.compilers.tools import ToolError
 from ...ground.machine import children
 from ...ground.machine.systems.processes import signal_name
 from ...ground.output.errors import MissingError
+from ...ground.user_files import UserFile
 from . import by_spirv, slang
 from .language import GLSL_NAME, name_of
 from .programs import LARGEST, TranslationError, macros, template
@@ -53,7 +54,7 @@ class NoSecondWayError(Exception):
         self.is_of_the_file = is_of_the_file
 
 
-def second_way(path: Path, encoder: Translated, folder: Path) -> Way:
+def second_way(file: UserFile, encoder: Translated, folder: Path) -> Way:
     """The second way of a file.
 
     Args:
@@ -63,8 +64,8 @@ def second_way(path: Path, encoder: Translated, folder: Path) -> Way:
     Raises:
         NoSecondWayError: a compiler is missing or refuses the file.
     """
-    make = _naga_runner if name_of(path) == "WGSL" else _spirv_runner
-    run = make(Source(path), encoder, folder)
+    make = _naga_runner if name_of(file) == "WGSL" else _spirv_runner
+    run = make(Source(file), encoder, folder)
 
     def way(n: np.ndarray, codes: np.ndarray, view: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         given = np.zeros((len(n), 3, 4), "<f4")
@@ -105,7 +106,7 @@ def _of_halves(encoder: Translated) -> str:
 
 def _spirv_runner(source: Source, encoder: Translated, folder: Path) -> Callable[[int], None]:
     """Slang's SPIR-V by OpenGL, in a process that the driver may end."""
-    of_language = list(slang.GLSL) if name_of(source.word) == GLSL_NAME else []
+    of_language = list(slang.GLSL) if name_of(source.file) == GLSL_NAME else []
     used = macros(source.with_text(encoder.text), slang.TYPES)
     defined = [*of_language, *(word for macro in used for word in ("-D", macro))]
     defined.append("-enable-machine-readable-diagnostics")

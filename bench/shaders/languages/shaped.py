@@ -11,6 +11,7 @@ import itertools
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from ....encodings.kinds import LIGHT, NORMAL, Kind, kind_spoken_of, words_in
 from .pairs import (
     NORMALS,
     OF_COLOURS,
@@ -23,7 +24,7 @@ from .pairs import (
     role,
     stem,
 )
-from .shapes import OF_NORMALS, SHAPES, WORDS, Part, Shape, Words, kind_spoken_of, words_in
+from .shapes import SHAPES, CodeArgument, Shape
 from .wiring import inputs_of, outputs_of
 
 # What an adapter is given and gives: seven numbers, and four.
@@ -43,8 +44,8 @@ class Fitted:
     """
 
     function: Function
-    given: Mapping[Place, Part]
-    made: Mapping[Part, Place]
+    given: Mapping[Place, CodeArgument]
+    made: Mapping[CodeArgument, Place]
 
     def size(self, part: str) -> int:
         """How many numbers a part has here; 0 where it has none."""
@@ -103,7 +104,7 @@ def _adapted(fitted: Fitted, letter: str, results: Sequence[str], adapter: Adapt
 
 def shaped_pair(
     found: Sequence[Function],
-    kind: str,
+    kind: Kind,
     asked: tuple[str, str] | None = None,
     file: str = "",
     own: Collection[str] = (),
@@ -127,7 +128,7 @@ def shaped_pair(
     return next(iter(named.values()))
 
 
-def _all_pairs(found: Sequence[Function], kind: str, asked: tuple[str, str] | None) -> Iterator[ShapedPair]:
+def _all_pairs(found: Sequence[Function], kind: Kind, asked: tuple[str, str] | None) -> Iterator[ShapedPair]:
     for shape in SHAPES[kind]:
         encoders = [one for one in found if _may_be(one, "encode", asked)]
         decoders = [one for one in found if _may_be(one, "decode", asked)]
@@ -144,7 +145,9 @@ def _may_be(function: Function, side: str, asked: tuple[str, str] | None) -> boo
     return function.name == asked[side == "decode"] if asked else role(function.name) == side
 
 
-def _fitted(function: Function, given: Sequence[Part], made: Sequence[Part], shape: Shape) -> Fitted | None:
+def _fitted(
+    function: Function, given: Sequence[CodeArgument], made: Sequence[CodeArgument], shape: Shape
+) -> Fitted | None:
     """A function as one of what it is given and gives; None where it is not."""
     inputs = _assigned(inputs_of(function), [*given, *shape.settings])
     outputs = _assigned(outputs_of(function), made)
@@ -153,12 +156,12 @@ def _fitted(function: Function, given: Sequence[Part], made: Sequence[Part], sha
     return Fitted(function, inputs, {part: place for place, part in outputs.items()})
 
 
-def _assigned(places: Sequence[Place], parts: Sequence[Part]) -> dict[Place, Part] | None:
+def _assigned(places: Sequence[Place], parts: Sequence[CodeArgument]) -> dict[Place, CodeArgument] | None:
     """The part that each place is: by its name, then by the order; None where a part or a place is left.
 
     What a structure has besides may be left.
     """
-    found: dict[Place, Part] = {}
+    found: dict[Place, CodeArgument] = {}
     likely = sorted(
         ((_likeness(place, part), place, part) for place in places for part in parts if _fits(place, part)),
         key=lambda one: -one[0],
@@ -175,62 +178,62 @@ def _assigned(places: Sequence[Place], parts: Sequence[Part]) -> dict[Place, Par
     return {place: found[place] for place in places if place in found} if is_whole and is_used else None
 
 
-def _fits(place: Place, part: Part) -> bool:
+def _fits(place: Place, part: CodeArgument) -> bool:
     return place.kind == "float" and place.size in part.sizes
 
 
-def _likeness(place: Place, part: Part) -> int:
+def _likeness(place: Place, part: CodeArgument) -> int:
     return part.likeness(place.path.rpartition(".")[2].lower())
 
 
-def _likeliest(pairs: Sequence[ShapedPair], kind: str) -> list[ShapedPair]:
+def _likeliest(pairs: Sequence[ShapedPair], kind: Kind) -> list[ShapedPair]:
     """Those of the same name otherwise that speak of the kind, or of none."""
     same = [pair for pair in pairs if stem(pair.encode.function.name) == stem(pair.decode.function.name)] or pairs
-    spoken = [pair for pair in same if kind_spoken_of(pair.named) == kind]
+    spoken = [pair for pair in same if kind_spoken_of(pair.named) is kind]
     silent = [pair for pair in same if not kind_spoken_of(pair.named) and not _is_of_colours(pair, kind)]
     best = spoken or silent
     # Of two shapes of a kind the first one that fits.
     return [pair for pair in best if pair.shape == best[0].shape]
 
 
-def _is_of_colours(pair: ShapedPair, kind: str) -> bool:
-    return kind != "light" and bool(OF_COLOURS & words_in(pair.named))
+def _is_of_colours(pair: ShapedPair, kind: Kind) -> bool:
+    return kind is not LIGHT and bool(OF_COLOURS & words_in(pair.named))
 
 
-def _why_not(found: Sequence[Function], kind: str, asked: tuple[str, str]) -> str:
+def _why_not(found: Sequence[Function], kind: Kind, asked: tuple[str, str]) -> str:
     """Why two functions that are asked for are no pair."""
     names = {one.name for one in found}
     if missing := [name for name in asked if name not in names]:
         return f"no function is named {missing[0]}; there are: {', '.join(dict.fromkeys(names)) or 'none'}"
-    return f"{asked[0]} and {asked[1]} are no code of {WORDS[kind].plural}; the two functions must be {_wanted(kind)}"
+    return f"{asked[0]} and {asked[1]} are no code of {kind.plural}; the two functions must be {_wanted(kind)}"
 
 
-def _why_none(found: Sequence[Function], kind: str, file: str) -> str:
+def _why_none(found: Sequence[Function], kind: Kind, file: str) -> str:
     """Why no functions of a file are a pair of a kind."""
     wanted = f"the two functions must be {_wanted(kind)}"
     sides = {side: [one for one in found if role(one.name) == side] for side in ("encode", "decode")}
     spoken = [one for several in sides.values() for one in several]
     of_kind = [one for one in spoken if not _other_kind(one.name, kind)]
     if spoken and not of_kind:
-        other = _other_kind(spoken[0].name, kind) or OF_NORMALS
-        return OF_OTHERS.format(spoken[0].name, other.plural, WORDS[kind].plural, other.command.format(file))
+        other = _other_kind(spoken[0].name, kind) or NORMAL
+        return OF_OTHERS.format(spoken[0].name, other.plural, kind.plural, other.command.format(file))
     if packs := next((one for one in of_kind if one.kind in PACKED[:2]), None):
-        return f"{packs.name} gives a {packs.kind}, but a code of {WORDS[kind].plural} is numbers; {wanted}"
+        return f"{packs.name} gives a {packs.kind}, but a code of {kind.plural} is numbers; {wanted}"
     for side, other in (("encode", "decode"), ("decode", "encode")):
         if sides[side] and not sides[other]:
             return f"{sides[side][0].name} has no {other}r; {wanted}"
     if of_kind:
-        return f"{of_kind[0].name} and its partner have other types than a code of {WORDS[kind].plural}; {wanted}"
+        return f"{of_kind[0].name} and its partner have other types than a code of {kind.plural}; {wanted}"
     return f"no encoder and decoder found; {wanted}"
 
 
-def _other_kind(name: str, kind: str) -> Words | None:
+def _other_kind(name: str, kind: Kind) -> Kind | None:
     """What a function's name says that it is of, if that is not a kind."""
     spoken = kind_spoken_of(name)
-    if spoken == kind:
+    if spoken is kind:
         return None
-    return WORDS[spoken] if spoken else OF_NORMALS if any(word in name.lower() for word in NORMALS) else None
+    return spoken or (NORMAL if any(word in name.lower() for word in NORMALS) else None)
 
 
-def _wanted(kind: str) -> str:
+def _wanted(kind: Kind) -> str:
     return "; or ".join(shape.wanted for shape in SHAPES[kind])

@@ -13,8 +13,8 @@ from typing import NamedTuple
 from ....encodings.codecs.files import MOST_TEXT, file_text
 from ...ground.compilers.lines import bare
 from ...ground.output.errors import UsageError
+from ...ground.user_files import ENDINGS, TRANSLATED, UserFile, is_file
 from .items import defined_in
-from .words import ENDINGS, TRANSLATED, files_of, functions_of, is_file, settings_of
 
 # Some engines have no marks around the name; in place of one, a macro is a name of no file.
 _INCLUDE = re.compile(r'[ \t]*#[ \t]*include[ \t]*(?:"([^"]+)"|<([^>]+)>|(?<=[ \t])([\w./\\-]+))[ \t]*')
@@ -166,11 +166,11 @@ class Source:
         UsageError: a file cannot be read, they are too large or too many together, or they include each other too deep.
     """
 
-    def __init__(self, word: str | Path):
-        self.word = word
-        self.mains = files_of(word)
+    def __init__(self, file: UserFile):
+        self.file = file
+        self.mains = file.paths
         self.path = path = self.mains[0]
-        self.settings = settings_of(word)
+        self.settings = file.settings
         self.files: dict[Path, Path] = {}
         # The one that is read, and where its includes are searched.
         self._main = self.path
@@ -204,9 +204,9 @@ class Source:
 
     def _of_two(self) -> Iterator[Line]:
         """The encoder's file and the decoder's, each as if it were alone: what both define gets another name in one."""
-        encode, decode = (name.partition("::")[0] for name in functions_of(self.word) or ("", ""))
+        encode, decode = (name.partition("::")[0] for name in self.file.functions or ("", ""))
         if encode == decode:
-            raise UsageError(f"{self.word}: both functions are called {encode}; rename one")
+            raise UsageError(f"{self.file}: both functions are called {encode}; rename one")
         before = {own: list(branches) for own, branches in self._read_in.items()}
         first, second = (self._alone(path, before) for path in self.mains)
         clash = _defined(first) & _defined(second)

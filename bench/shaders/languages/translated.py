@@ -11,14 +11,16 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from ....encodings import kinds
+from ....encodings.kinds import Kind
 from ...ground.compilers import tools
 from ...ground.machine import children
 from ...ground.output import cache as kept
 from ...ground.output.errors import MissingError, UsageError
+from ...ground.user_files import UserFile
 from ..translator import tree
 from .language import language_of
 from .source import Source
-from .words import file_of
 
 # Of one file: a hundred times what it takes.
 TIME_LIMIT = 60.0
@@ -85,36 +87,36 @@ class AloneError(UsageError):
         self.made = made
 
 
-def translated(word: str | Path, by: str = "", kind: str = "") -> Translated:
-    """The encoder that a word names: see `words.py`.
+def translated(file: UserFile, by: str = "", kind: Kind = kinds.NORMAL) -> Translated:
+    """Return the encoder of a user's file.
 
     Args:
         by: what reads the file, if not the compiler of its own language: see `BY_NAME`.
-        kind: what its code is of, of `shapes.SHAPES`; empty for normals.
+        kind: what its code is of.
 
     Raises:
         UsageError: it cannot be read or translated; one line with the user's file, and line and column if known.
         SeveralEncodersError: it has several, and none is named.
         MissingError: what to install.
     """
-    source = Source(word)
+    source = Source(file)
     read = [str(path) for path in source.files.values()]
-    key = kept.key_of("translated", source.text, str(word), *read, by, kind, *_tool_stamps(word, by), own())
+    key = kept.key_of("translated", source.text, file.word, *read, by, kind.name, *_tool_stamps(file, by), own())
     found = _translated_or_none(kept.read(key))
     if found is None:
-        found = _translated_or_none(made := _by_child(word, by, kind))
+        found = _translated_or_none(made := _by_child(file, by, kind))
         if found is None:
             raise UsageError(f"{source.path}: its translation ended without a result")
         kept.write(key, made)
     return found
 
 
-def _tool_stamps(word: str | Path, by: str) -> list[str]:
-    language = language_of(word, by)
+def _tool_stamps(file: UserFile, by: str) -> list[str]:
+    language = language_of(file, by)
     try:
         return [*map(tools.stamp, language.tools), *map(tools.stamp_or_empty, language.others)]
     except MissingError as error:
-        raise MissingError(f"{file_of(word)}: {error}") from error
+        raise MissingError(f"{file.path}: {error}") from error
 
 
 @cache
@@ -126,7 +128,7 @@ def own() -> str:
 def sources_of_this() -> list[Path]:
     """What `own` is a hash of."""
     folders = (Path(file).parent for file in (__file__, tree.__file__, tools.__file__))
-    return sorted(file for folder in folders for file in folder.iterdir() if file.is_file())
+    return sorted([Path(kinds.__file__), *(file for folder in folders for file in folder.iterdir() if file.is_file())])
 
 
 def _translated_or_none(value: Any) -> Translated | None:
@@ -144,11 +146,11 @@ _KINDS = dict.fromkeys(("name", "prefix", "packed", "text", "read_by", "named"),
 _KINDS |= {"components": int, "notes": list, "texts": list, "functions": list, "shaped": dict}
 
 
-def _by_child(word: str | Path, by: str, kind: str) -> dict[str, Any]:
+def _by_child(file: UserFile, by: str, kind: Kind) -> dict[str, Any]:
     """The answer of the child process that translates a file: its fields, as JSON has them."""
-    path = file_of(word)
+    path = file.path
     with tempfile.TemporaryDirectory() as folder:
-        command = children.python("normalbench.bench.shaders.languages.child", folder, str(word), by, kind)
+        command = children.python("normalbench.bench.shaders.languages.child", folder, file.word, by, kind.name)
         try:
             done = children.finished(command, TIME_LIMIT)
         except subprocess.TimeoutExpired as error:

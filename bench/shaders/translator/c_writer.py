@@ -47,7 +47,7 @@ from .tree import (
 from .tree import SCALARS as LETTERS
 from .writer import CHOICE, FIELDS, INDENT, PRIMARY, UNARY, Writer, words
 
-Part = tuple[str, int]
+ScalarText = tuple[str, int]
 # Scalars in, a scalar out, component by component.
 FUNCTIONS: Mapping[str, str] = MappingProxyType(
     {
@@ -135,7 +135,7 @@ class CWriter(Writer):
             size, scalar = size_of(kind), SCALARS[scalar_of(kind)]
         return f"typedef struct {{ {scalar} {', '.join(FIELDS[:size])}; }} {self._kind(kind)};"
 
-    def _helper(self, name: str, *given: str) -> Part:
+    def _helper(self, name: str, *given: str) -> ScalarText:
         """A call of a function of the file's own."""
         if name not in self._helpers:
             self._helpers[name] = self._global_name(name)
@@ -287,7 +287,7 @@ class CWriter(Writer):
 
     # Values: a vector is the list of its components.
 
-    def _text_and_level(self, value: Expression) -> Part:
+    def _text_and_level(self, value: Expression) -> ScalarText:
         """A scalar; or a whole vector that has a name."""
         if isinstance(value, Name):
             return self._name(value.name), PRIMARY
@@ -297,7 +297,7 @@ class CWriter(Writer):
         (part,) = self._parts(value)
         return part
 
-    def _parts(self, value: Expression) -> list[Part]:
+    def _parts(self, value: Expression) -> list[ScalarText]:
         match value:
             case Literal():
                 return [(self._literal(value), PRIMARY)]
@@ -329,7 +329,7 @@ class CWriter(Writer):
                 return self._indexed_parts(value)
         raise TranslationError(f"a {type(value).__name__} of {value.kind} cannot be written in C")
 
-    def _indexed_parts(self, value: Index) -> list[Part]:
+    def _indexed_parts(self, value: Index) -> list[ScalarText]:
         inner, at = value.value, value.at
         base = inner
         while isinstance(base, Index | Swizzle | Member):
@@ -352,7 +352,7 @@ class CWriter(Writer):
             return sum(map(self._count_of, self._structs[kind].kinds.values()))
         return int(kind[3]) ** 2 if kind in MATRICES else size_of(kind)
 
-    def _member_parts(self, name: str, kind: str) -> list[Part]:
+    def _member_parts(self, name: str, kind: str) -> list[ScalarText]:
         if kind in self._structs:
             fields = self._fields(self._structs[kind]).items()
             return [part for field, inner in fields for part in self._member_parts(f"{name}.{field}", inner)]
@@ -363,7 +363,7 @@ class CWriter(Writer):
             return [(name, PRIMARY)]
         return [(f"{name}.{field}", PRIMARY) for field in FIELDS[: size_of(kind)]]
 
-    def _once(self, part: Part, kind: str) -> Part:
+    def _once(self, part: ScalarText, kind: str) -> ScalarText:
         """A scalar that is used several times, computed once."""
         if PLAIN.issuperset(part[0].removeprefix("-")):
             return part
@@ -381,12 +381,12 @@ class CWriter(Writer):
             self._count += 1
         return name
 
-    def _broad_parts(self, value: Expression, size: int) -> list[Part]:
+    def _broad_parts(self, value: Expression, size: int) -> list[ScalarText]:
         """A value's components, a scalar as many times."""
         parts = self._parts(value)
         return [self._once(parts[0], scalar_of(value.kind))] * size if len(parts) == 1 < size else parts
 
-    def _combined_parts(self, value: Binary) -> list[Part]:
+    def _combined_parts(self, value: Binary) -> list[ScalarText]:
         left, right, mark = value.left, value.right, value.operator
         if mark == "*" and "mat" in left.kind and right.kind != "float":
             return self._product_parts(value)
@@ -436,7 +436,7 @@ class CWriter(Writer):
                 return range_of(mark, self._range(left), self._range(right))
         return None
 
-    def _logical(self, value: Binary) -> Part:
+    def _logical(self, value: Binary) -> ScalarText:
         """The text of && or ||, and how tightly it binds; a right side that takes statements is an `if` before it."""
         level = BINDING[value.operator]
         left = self._operand(value, value.left, level)
@@ -449,7 +449,7 @@ class CWriter(Writer):
         self._hoisted.append(f"{self._indent}if ({no}{name}) {{\n{inner}{self._indent}}}\n")
         return name, PRIMARY
 
-    def _product_parts(self, value: Binary) -> list[Part]:
+    def _product_parts(self, value: Binary) -> list[ScalarText]:
         """A matrix's columns by a vector from the left, or summed by a vector's components."""
         left, right = value.left, value.right
         size = int((left if "mat" in left.kind else right).kind[3])
@@ -465,11 +465,11 @@ class CWriter(Writer):
             for row in range(size)
         ]
 
-    def _named_parts(self, value: Expression) -> list[Part]:
+    def _named_parts(self, value: Expression) -> list[ScalarText]:
         """A vector's components, each computed once."""
         return [self._once(part, scalar_of(value.kind)) for part in self._parts(value)]
 
-    def _choice_parts(self, value: Choice) -> list[Part]:
+    def _choice_parts(self, value: Choice) -> list[ScalarText]:
         count = self._count_of(value.kind)
         if size_of(value.condition.kind) > 1:
             parts = zip(*(self._parts(one) for one in (value.condition, value.chosen, value.other)), strict=True)
@@ -492,8 +492,8 @@ class CWriter(Writer):
         )
         return self._member_parts(name, value.kind)
 
-    def _parts_apart(self, value: Expression, indent: str) -> tuple[list[Part], str]:
-        parts: list[Part] = []
+    def _parts_apart(self, value: Expression, indent: str) -> tuple[list[ScalarText], str]:
+        parts: list[ScalarText] = []
 
         def write() -> str:
             parts.extend(self._parts(value))
@@ -501,7 +501,7 @@ class CWriter(Writer):
 
         return parts, self._apart(write, indent)[1]
 
-    def _assembled_text(self, parts: list[Part], kind: str) -> str:
+    def _assembled_text(self, parts: list[ScalarText], kind: str) -> str:
         texts = self._braced_text(kind, iter([text for text, _ in parts]))
         return texts if kind in SCALARS else f"({self._kind(kind)}){texts}"
 
@@ -516,7 +516,7 @@ class CWriter(Writer):
             inner = list(self._structs[kind].kinds.values())
         return f"{{{', '.join(self._braced_text(one, texts) for one in inner)}}}"
 
-    def _call_parts(self, value: Call) -> list[Part]:
+    def _call_parts(self, value: Call) -> list[ScalarText]:
         if value.is_own:
             text = self._text_and_level(value)[0]
             return [(text, PRIMARY)] if value.kind in SCALARS else self._made_parts(text, value.kind)
@@ -537,11 +537,11 @@ class CWriter(Writer):
             return [(f"1.0f / sqrtf({x})", BINDING["/"]) for ((x, _),) in zip(*given, strict=True)]
         return [self._scalar_call(value.name, scalar, parts) for parts in zip(*given, strict=True)]
 
-    def _made_parts(self, text: str, kind: str) -> list[Part]:
+    def _made_parts(self, text: str, kind: str) -> list[ScalarText]:
         """A structure under a name, as its components."""
         return self._member_parts(self._temporary(self._kind(kind), text), kind)
 
-    def _scalar_call(self, name: str, scalar: str, parts: tuple[Part, ...]) -> Part:
+    def _scalar_call(self, name: str, scalar: str, parts: tuple[ScalarText, ...]) -> ScalarText:
         texts, sign = [text for text, _ in parts], LETTERS[scalar]
         if name == "clamp":
             return self._helper(f"{sign}min", self._helper(f"{sign}max", *texts[:2])[0], texts[2])
@@ -553,29 +553,29 @@ class CWriter(Writer):
             raise TranslationError(f"{name} cannot be written in C")
         return f"{FUNCTIONS[name]}({', '.join(texts)})", PRIMARY
 
-    def _smoothstep(self, low: Part, high: Part, x: Part) -> Part:
+    def _smoothstep(self, low: ScalarText, high: ScalarText, x: ScalarText) -> ScalarText:
         share = f"({_bracketed(x, 10)} - {_bracketed(low, 11)}) / ({_bracketed(high, 10)} - {_bracketed(low, 11)})"
         t = self._temporary("float", self._helper("min", self._helper("max", share, "0.0f")[0], "1.0f")[0])
         return f"{t} * {t} * (3.0f - 2.0f * {t})", BINDING["*"]
 
-    def _dot(self, a: Expression, b: Expression) -> list[Part]:
+    def _dot(self, a: Expression, b: Expression) -> list[ScalarText]:
         return [_sum_of_products(list(zip(self._named_parts(a), self._named_parts(b), strict=True)))]
 
-    def _length(self, value: Expression) -> list[Part]:
+    def _length(self, value: Expression) -> list[ScalarText]:
         parts = self._named_parts(value)
         return [(f"sqrtf({_sum_of_products(list(zip(parts, parts, strict=True)))[0]})", PRIMARY)]
 
-    def _distance(self, a: Expression, b: Expression) -> list[Part]:
+    def _distance(self, a: Expression, b: Expression) -> list[ScalarText]:
         return self._length(Binary(a.kind, "-", a, b))
 
-    def _reflect(self, incident: Expression, normal: Expression) -> list[Part]:
+    def _reflect(self, incident: Expression, normal: Expression) -> list[ScalarText]:
         i, n = self._named_parts(incident), self._named_parts(normal)
         twice = self._once((f"2.0f * ({_sum_of_products(list(zip(n, i, strict=True)))[0]})", BINDING["*"]), "float")
         return [
             (f"{_bracketed(a, 10)} - {twice[0]} * {_bracketed(b, 12)}", BINDING["-"]) for a, b in zip(i, n, strict=True)
         ]
 
-    def _cross(self, a: Expression, b: Expression) -> list[Part]:
+    def _cross(self, a: Expression, b: Expression) -> list[ScalarText]:
         u, v = self._named_parts(a), self._named_parts(b)
         pairs = ((1, 2), (2, 0), (0, 1))
         minus = BINDING["-"]
@@ -587,23 +587,23 @@ class CWriter(Writer):
             for i, j in pairs
         ]
 
-    def _normalize(self, value: Expression) -> list[Part]:
+    def _normalize(self, value: Expression) -> list[ScalarText]:
         parts = self._named_parts(value)
         length2 = _sum_of_products(list(zip(parts, parts, strict=True)))
         scale = self._once((f"1.0f / sqrtf({length2[0]})", BINDING["/"]), "float")
         return [(f"{_bracketed(part, 11)} * {scale[0]}", 11) for part in parts]
 
-    def _transpose(self, value: Expression) -> list[Part]:
+    def _transpose(self, value: Expression) -> list[ScalarText]:
         size, parts = int(value.kind[3]), self._parts(value)
         return [parts[size * row + column] for column in range(size) for row in range(size)]
 
-    def _all(self, value: Expression) -> list[Part]:
+    def _all(self, value: Expression) -> list[ScalarText]:
         return [_joined_part("&&", self._parts(value))]
 
-    def _any(self, value: Expression) -> list[Part]:
+    def _any(self, value: Expression) -> list[ScalarText]:
         return [_joined_part("||", self._parts(value))]
 
-    def _fetched_parts(self, value: Call) -> list[Part]:
+    def _fetched_parts(self, value: Call) -> list[ScalarText]:
         table, place, _ = value.arguments
         name = getattr(table, "name", "")
         texels = self._texels[name]
@@ -618,7 +618,7 @@ class CWriter(Writer):
         parts = [(f"{one} / 255.0f", BINDING["/"]) if texels.is_bytes else (one, PRIMARY) for one in numbers]
         return parts + [("0.0f", PRIMARY)] * (4 - texels.channels)
 
-    def _constructed_parts(self, value: Construct) -> list[Part]:
+    def _constructed_parts(self, value: Construct) -> list[ScalarText]:
         parts = [(part, scalar_of(a.kind)) for a in value.arguments for part in self._parts(a)]
         if value.kind in MATRICES:
             return [part for part, _ in parts]
@@ -629,7 +629,7 @@ class CWriter(Writer):
             parts = [(self._once(parts[0][0], parts[0][1]), parts[0][1])] * size
         return [self._cast_part(part, kind, scalar) for part, kind in parts[:size]]
 
-    def _cast_part(self, part: Part, kind: str, scalar: str) -> Part:
+    def _cast_part(self, part: ScalarText, kind: str, scalar: str) -> ScalarText:
         if kind == scalar:
             return part
         if kind == "float" and scalar in WHOLE:
@@ -645,18 +645,18 @@ def _without_comments(statement: Statement) -> Statement:
     return replace(statement, above=[])
 
 
-def _bracketed(part: Part, least: int) -> str:
+def _bracketed(part: ScalarText, least: int) -> str:
     return f"({part[0]})" if part[1] < least else part[0]
 
 
-def _choice_part(condition: Part, chosen: Part, other: Part) -> Part:
+def _choice_part(condition: ScalarText, chosen: ScalarText, other: ScalarText) -> ScalarText:
     return f"{_bracketed(condition, CHOICE + 1)} ? {_bracketed(chosen, CHOICE + 1)} : {other[0]}", CHOICE
 
 
-def _joined_part(mark: str, parts: list[Part]) -> Part:
+def _joined_part(mark: str, parts: list[ScalarText]) -> ScalarText:
     level = BINDING[mark]
     return f" {mark} ".join(_bracketed(part, level + 1) for part in parts), level
 
 
-def _sum_of_products(pairs: list[tuple[Part, Part]]) -> Part:
+def _sum_of_products(pairs: list[tuple[ScalarText, ScalarText]]) -> ScalarText:
     return " + ".join(f"{_bracketed(a, 11)} * {_bracketed(b, 12)}" for a, b in pairs), BINDING["+"]

@@ -28,7 +28,7 @@ from .tree import (
     Return,
     Statement,
     Struct,
-    Table,
+    TexelTable,
     Unary,
     While,
     one_error_type,
@@ -103,7 +103,7 @@ class GlslParser(Parser):
         self._take("sampler2D")
         name = self._word_token().text
         self._take(";")
-        self._made.tables.append(Table(name))
+        self._made.tables.append(TexelTable(name))
         self._declared(name, "sampler2D")
 
     def _struct(self) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from .parser import COMPARISONS
-from .tree import Binary, Choice, Expression, Table, Unary, size_of
+from .tree import Binary, Choice, Expression, TexelTable, Unary, size_of
 from .writer import PRIMARY, Writer, words
 
 NAMES: Mapping[str, str] = MappingProxyType({mark: name for name, mark in COMPARISONS.items()})
@@ -60,5 +60,5 @@ class EsslWriter(GlslWriter):
     # WebGL 2 has no `layout(binding)`.
     binding_advice = "Bind it by glUniform1i."
 
-    def _declared_table(self, table: Table, binding: int) -> str:  # noqa: ARG002 (others have it in the text)
+    def _declared_table(self, table: TexelTable, binding: int) -> str:  # noqa: ARG002 (others have it in the text)
         return f"uniform highp sampler2D {table.name};"

@@ -21,7 +21,7 @@ from .tree import (
     Program,
     Statement,
     Struct,
-    Table,
+    TexelTable,
     inside,
     size_of,
 )
@@ -106,7 +106,7 @@ class HlslWriter(Writer):
         body = f"{INDENT}{struct.name} {made};\n{sets}{INDENT}return {made};\n"
         return f"{super()._struct(struct)}\n\n{struct.name} {name}({given}) {{\n{body}}}"
 
-    def _declared_table(self, table: Table, binding: int) -> str:
+    def _declared_table(self, table: TexelTable, binding: int) -> str:
         return f"Texture2D<float4> {table.name} : register(t{binding});"
 
     def _global_text(self, constant: Declare) -> str:

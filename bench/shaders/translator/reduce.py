@@ -22,7 +22,7 @@ from .tree import (
     Name,
     Program,
     Struct,
-    Table,
+    TexelTable,
     TranslationError,
     inside,
     plain_name,
@@ -77,7 +77,7 @@ def reduced(
     tables = [table for table in program.tables if table.name in used]
     names = {table.name: table_name(table.name, prefix, own) for table in tables}
     _replace(functions, names)
-    tables = [Table(name) for name in names.values()]
+    tables = [TexelTable(name) for name in names.values()]
     _rename_constants(constants, functions, prefix, own)
     return Program(constants, tables, functions, _named_structs(program, constants, functions, prefix, own))
 

@@ -268,7 +268,7 @@ class Function(Statement):
 
 
 @dataclass
-class Table:
+class TexelTable:
     """A texture that is read texel by texel."""
 
     name: str
@@ -287,7 +287,7 @@ class Program:
     """Structures, constants, tables and functions, in an order in which each uses only those before it."""
 
     constants: list[Declare]
-    tables: list[Table]
+    tables: list[TexelTable]
     functions: list[Function]
     structs: list[Struct] = field(default_factory=list)
 

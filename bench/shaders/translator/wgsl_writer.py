@@ -18,7 +18,7 @@ from .tree import (
     Function,
     Literal,
     Struct,
-    Table,
+    TexelTable,
     Unary,
     scalar_of,
     size_of,
@@ -76,7 +76,7 @@ class WgslWriter(Writer):
         # Parameters that a function assigns to: variables, which begin as what it is given.
         self._copied: dict[str, str] = {}
 
-    def _declared_table(self, table: Table, binding: int) -> str:
+    def _declared_table(self, table: TexelTable, binding: int) -> str:
         return f"@group({self.group}) @binding({binding}) var {table.name}: texture_2d<f32>;"
 
     def _global_text(self, constant: Declare) -> str:

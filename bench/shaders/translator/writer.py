@@ -33,7 +33,7 @@ from .tree import (
     Statement,
     Struct,
     Swizzle,
-    Table,
+    TexelTable,
     TranslationError,
     Unary,
     While,
@@ -140,13 +140,13 @@ class Writer:
         """A field's name, which no word of the language is."""
         return f"{name}_" if name in self.reserved else name
 
-    def _table(self, table: Table) -> str:
+    def _table(self, table: TexelTable) -> str:
         """A table's declaration, below what has to be bound there. Tables are bound in the order of their names."""
         declared = self._declared_table(table, self._bindings)
         self._bindings += 1
         return self._table_note(table.name) + declared
 
-    def _declared_table(self, table: Table, binding: int) -> str:
+    def _declared_table(self, table: TexelTable, binding: int) -> str:
         return f"layout(binding = {binding}) uniform sampler2D {table.name};"
 
     def _table_note(self, name: str) -> str:

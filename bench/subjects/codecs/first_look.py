@@ -25,7 +25,6 @@ import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import astuple
-from pathlib import Path
 from typing import Any
 
 import jax
@@ -41,12 +40,12 @@ from ....gbuffer.gl.shader import ShaderError, read_shader
 from ...ground.directions import directions
 from ...ground.machine import children
 from ...ground.output.errors import MissingError, UsageError
+from ...ground.user_files import UserFile
 from ...shaders.code.twin import NoTwinError
 from ...shaders.languages.language import GLSL_NAME
 from ...shaders.languages.pairs import NO_PAIR
 from ...shaders.languages.translated import AloneError, SeveralEncodersError, Translated
 from ...shaders.languages.wiring import Wiring, wiring_of
-from ...shaders.languages.words import functions_of, is_translated, twin_of, with_pair, with_settings
 from .doctor.diagnoses import bad, diagnosed
 from .doctor.domains import SPHERE, Domain, guessed
 from .doctor.exact import OF_A_HALF, SAME_DEG, bits_used, is_unit, spared
@@ -56,7 +55,7 @@ from .doctor.probe import VIEW, Probe, Trip, probe_of, trip_of
 from .names import check_twin
 from .second_look import second_look
 from .signatures import NO_FUNCTION, OWN_MAIN, OWN_VERSION, of_hlsl
-from .user_encodings import ANY, encoding_alone, path_with, read_encoding, twin_is_looked_at
+from .user_encodings import ANY, encoding_alone, file_with, read_encoding, twin_is_looked_at
 
 # What one function of a pair is called.
 SIDES = ("encode", "decode")
@@ -71,68 +70,68 @@ LONGEST = 1000
 APART, APART_SHARE = 1e-3, 0.01
 
 
-def first_look(path: Path, domain: str = "") -> dict[str, Any]:
+def first_look(file: UserFile, domain: str = "") -> dict[str, Any]:
     """What there is to say of a file; see above.
 
     Args:
         domain: what its author says that it is made for, or ANY, to look closely.
     """
-    found = _first_look(path, domain, "")
-    if "error" not in found or is_translated(path):
+    found = _first_look(file, domain, "")
+    if "error" not in found or file.is_translated:
         return found
-    if _is_hlsl(path):
-        again = _first_look(Path(with_settings(str(path), language="hlsl")), domain, "")
+    if _is_hlsl(file):
+        again = _first_look(file.with_language("hlsl"), domain, "")
         return found if {"error", "missing"} & again.keys() else again | {"language": "hlsl"}
     # What the device does not compile as it lies may have more in it than the two functions.
-    again = _first_look(path, domain, GLSL_NAME)
+    again = _first_look(file, domain, GLSL_NAME)
     # Those that the device refuses for their form alone are read here.
     is_of_form = found["error"].endswith((OWN_MAIN, OWN_VERSION))
     is_nearer = (is_of_form or NO_FUNCTION in found["error"]) and NO_PAIR not in again.get("error", "")
     return again if is_nearer or not {"error", "missing"} & again.keys() else found
 
 
-def _is_hlsl(path: Path) -> bool:
+def _is_hlsl(file: UserFile) -> bool:
     try:
-        return bool(of_hlsl(read_shader(path)))
+        return bool(of_hlsl(read_shader(file.path)))
     except ShaderError:
         return True
 
 
-def _first_look(path: Path, domain: str, by: str) -> dict[str, Any]:
+def _first_look(file: UserFile, domain: str, by: str) -> dict[str, Any]:
     try:
-        return _look_at_one(path, domain, by)
+        return _look_at_one(file, domain, by)
     except SeveralEncodersError as error:
         try:
-            kept = _that_undo_themselves(path, error.pairs, by)
+            kept = _that_undo_themselves(file, error.pairs, by)
         except NoDeviceError as missing:
-            named = ", ".join(dict.fromkeys(str(with_pair(path, one)) for one in error.pairs[:MOST_PAIRS]))
-            return {"error": f"{path}: name one of its pairs, which none is tried of here ({missing}): {named}"}
+            named = ", ".join(dict.fromkeys(str(file.with_pair(one)) for one in error.pairs[:MOST_PAIRS]))
+            return {"error": f"{file}: name one of its pairs, which none is tried of here ({missing}): {named}"}
         if len(kept) == 1:
-            return _look_at_one(with_pair(path, kept[0]), domain, by) | {"pair": kept[0]}
+            return _look_at_one(file.with_pair(kept[0]), domain, by) | {"pair": kept[0]}
         how = "name one, or take --all-pairs"
         said = f"{len(kept)} of its pairs undo themselves; {how}" if kept else "none of its pairs undoes itself"
-        named = ", ".join(str(with_pair(path, one)) for one in kept or error.pairs)
-        tried = len({_functions_of(with_pair(path, pair)) for pair in error.pairs})
+        named = ", ".join(str(file.with_pair(one)) for one in kept or error.pairs)
+        tried = len({_functions_of(file.with_pair(pair)) for pair in error.pairs})
         more = f" (the first {MOST_PAIRS} of {tried} were tried)" if tried > MOST_PAIRS else ""
-        return {"error": f"{path}: {said}{more}: {named}", "pairs": kept}
+        return {"error": f"{file}: {said}{more}: {named}", "pairs": kept}
 
 
-def _wirings_of(path: Path) -> list[Wiring]:
+def _wirings_of(file: UserFile) -> list[Wiring]:
     """How the two functions are called that a word names."""
-    return [wiring_of(text) for text in functions_of(path) or ()]
+    return [wiring_of(text) for text in file.functions or ()]
 
 
-def _functions_of(path: Path) -> tuple[str, ...]:
+def _functions_of(file: UserFile) -> tuple[str, ...]:
     """The names of these functions."""
-    return tuple(one.function for one in _wirings_of(path))
+    return tuple(one.function for one in _wirings_of(file))
 
 
-def _that_undo_themselves(path: Path, pairs: Sequence[str], by: str) -> list[str]:
+def _that_undo_themselves(file: UserFile, pairs: Sequence[str], by: str) -> list[str]:
     """Those of some pairs that undo themselves; of two functions, as they are called where that holds most normals."""
     found: dict[tuple[str, ...], tuple[bool, str]] = {}
     tries = Counter()
     for pair in pairs:
-        word = with_pair(path, pair)
+        word = file.with_pair(pair)
         functions = _functions_of(word)
         is_whole, _ = found.get(functions, (False, ""))
         tries[functions] += 1
@@ -143,51 +142,51 @@ def _that_undo_themselves(path: Path, pairs: Sequence[str], by: str) -> list[str
     return [pair for _, pair in found.values()]
 
 
-def _undone(path: Path, by: str) -> str:
+def _undone(file: UserFile, by: str) -> str:
     """The domain on which a decoder undoes its encoder; empty where it does on none."""
     try:
-        encoding, gl = read_encoding(path, NOT_ASKED, by=by), device()
+        encoding, gl = read_encoding(file, NOT_ASKED, by=by), device()
         with np.errstate(invalid="ignore"):
             # What lacks a part of its code comes back nearly.
-            within = OF_A_WIRING_DEG if any(one.made for one in _wirings_of(path)) else OF_A_PAIR_DEG
+            within = OF_A_WIRING_DEG if any(one.made for one in _wirings_of(file)) else OF_A_PAIR_DEG
             return guessed(trip_of(probe_of(gl, encoding), directions()), within).name
     except (UsageError, ShaderError):
         return ""
 
 
-def _look_at_one(path: Path, domain: str, by: str) -> dict[str, Any]:
+def _look_at_one(file: UserFile, domain: str, by: str) -> dict[str, Any]:
     """The same of a file of which one pair is meant. Raises SeveralEncodersError."""
     try:
-        encoding, gl = read_encoding(path, NOT_ASKED, by=by), device()
+        encoding, gl = read_encoding(file, NOT_ASKED, by=by), device()
         broken = _endless(gl, encoding)
         other = {"by": by} if by else {}
-        if not broken and (by or is_translated(path)):
-            other |= _second_look(path, gl, encoding)
+        if not broken and (by or file.is_translated):
+            other |= _second_look(file, gl, encoding)
         if "error" in other:
             return other
         may_be_unit = not broken and not encoding.is_packed
         unit = {"is_unit": True} if may_be_unit and _is_unit(probe_of(gl, encoding)) else {}
         if unit:
-            encoding = read_encoding(path, NOT_ASKED, is_unit=True, by=by)
+            encoding = read_encoding(file, NOT_ASKED, is_unit=True, by=by)
         return (broken or _judged(probe_of(gl, encoding), gl, domain)) | unit | other
     except (NoDeviceError, MissingError) as error:
         return {"missing": str(error)} | ({"by": by} if by else {})
     except SeveralEncodersError:
         raise
     except AloneError as error:
-        return {"error": f"{error}; {_of_one(path, error.made)}"}
+        return {"error": f"{error}; {_of_one(file, error.made)}"}
     except UsageError as error:
         return {"error": str(error)}
     except ShaderError as error:
-        return {"error": _of_compiler(path, str(error))}
+        return {"error": _of_compiler(file, str(error))}
 
 
-def _of_one(path: Path, made: Translated) -> str:
+def _of_one(file: UserFile, made: Translated) -> str:
     """What an encoder or a decoder is that has no partner, in words."""
     side, (name, _) = next((side, one) for side, one in zip(SIDES, made.functions, strict=True) if one[0])
     try:
         gl = device()
-        like = names_alone(gl, probe_of(gl, encoding_alone(path, made)), side == SIDES[0])
+        like = names_alone(gl, probe_of(gl, encoding_alone(file, made)), side == SIDES[0])
     except (NoDeviceError, ShaderError) as error:
         return f"it is not compared with the catalogue: {' '.join(str(error).split())[:300]}"
     return f"{name} is the {side} of {like[0]}" if like else f"{name} is the {side} of no encoding of the catalogue"
@@ -209,18 +208,18 @@ def _is_unit(probe: Probe) -> bool:
     return bool(domain.name) and is_unit(domain.held(trip).codes, OF_A_HALF)
 
 
-def _second_look(path: Path, gl: Device, encoding: Encoding) -> dict[str, Any]:
-    return second_look(path, gl, encoding, directions(), lambda by: read_encoding(path, NOT_ASKED, by=by))
+def _second_look(file: UserFile, gl: Device, encoding: Encoding) -> dict[str, Any]:
+    return second_look(file, gl, encoding, directions(), lambda by: read_encoding(file, NOT_ASKED, by=by))
 
 
-def _of_compiler(path: Path, said: str) -> str:
+def _of_compiler(file: UserFile, said: str) -> str:
     """A compiler's message with the user's file at its begin."""
     line = " ".join(said.partition("=\n")[2].split()) or " ".join(said.split())
-    if is_translated(path):
+    if file.is_translated:
         said = re.sub(r"\S+\.glsl:(\d+)", r"line \1", line)[:LONGEST]
-        return f"{path}: the GLSL that was made of it does not compile on this device: {said}"
-    named = line if path.name in line else f"{path}: {line}"
-    hint = of_hlsl(read_shader(path))
+        return f"{file}: the GLSL that was made of it does not compile on this device: {said}"
+    named = line if file.path.name in line else f"{file}: {line}"
+    hint = of_hlsl(read_shader(file.path))
     return (named if len(named) <= LONGEST else f"{named[:LONGEST]} ...") + (f" ({hint})" if hint else "")
 
 
@@ -261,7 +260,7 @@ def _closely(probe: Probe, gl: Device, domain: Domain) -> dict[str, Any]:
     }
 
 
-def twin_look(path: Path, found: Mapping[str, Any]) -> dict[str, Any]:
+def twin_look(file: UserFile, found: Mapping[str, Any]) -> dict[str, Any]:
     """What there is to say of a file's Python twin; see above.
 
     Args:
@@ -270,14 +269,14 @@ def twin_look(path: Path, found: Mapping[str, Any]) -> dict[str, Any]:
     n = directions()
     view = np.tile(np.array([*VIEW, 0.0], np.float32), (len(n), 1))
     try:
-        encoding = read_encoding(path_with(path, found), by=found.get("by", ""))
+        encoding = read_encoding(file_with(file, found), by=found.get("by", ""))
         check_twin(encoding)
         codes = _by_twin(encoding.encode, n, view)
         decoded = _by_twin(encoding.decode, codes, view)
     except NoDeviceError:
         return {}
     except BaseException as error:  # whatever a user's own file raises
-        where = twin_of(path)
+        where = file.twin
         said = (
             str(error) if isinstance(error, UsageError | NoTwinError) else f"{where}: {type(error).__name__}: {error}"
         )
@@ -321,18 +320,18 @@ def _alone() -> int:
     return said
 
 
-def _looks(path: Path, domain: str = "") -> Iterator[dict[str, Any]]:
-    found = first_look(path, domain)
+def _looks(file: UserFile, domain: str = "") -> Iterator[dict[str, Any]]:
+    found = first_look(file, domain)
     yield found
-    if twin_is_looked_at(path, found):
-        yield twin_look(path, found)
+    if twin_is_looked_at(file, found):
+        yield twin_look(file, found)
 
 
 def main(words: Sequence[str]) -> None:
     """What the command does; see above."""
     children.limit_this_process()
     answer = _alone()
-    for look in _looks(Path(words[0]), *words[1:]):
+    for look in _looks(UserFile(words[0]), *words[1:]):
         os.write(answer, json.dumps(look).encode() + b"\n")
 
 

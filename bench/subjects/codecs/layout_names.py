@@ -14,15 +14,14 @@ from ....encodings.codecs.variants import MARK, TABLE
 from ....gbuffer.layouts.layout import Layout, read_layout
 from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.layouts.words import LayoutError
-from ...ground.choose import choose, file_names
+from ...ground.choose import choose
+from ...ground.options.words import Names
 from ...ground.output.errors import MissingError, UsageError
-from ...shaders.languages.words import (
+from ...ground.user_files import (
+    UserFile,
     files_in,
-    files_of,
     lacks_a_function,
     names_an_encoder,
-    settings_of,
-    split_names,
     with_files,
 )
 from .names import check_twin
@@ -32,22 +31,17 @@ from .user_encodings import encodings_named
 _TABLE_FILE = re.compile(rf"(?<={MARK}{TABLE}=)(?:[^{MARK}]|{MARK}(?=[\\/]))+")
 
 
-def layouts_named(names: str) -> list[Layout]:
-    """The layouts that comma-separated names stand for.
+def layouts_named(names: Names) -> list[Layout]:
+    """Return the layouts that names stand for.
 
     Raises:
         UsageError: an unknown name, a file that is not a layout, or an encoder that cannot be measured.
         MissingError: the compiler of an encoder's language is not there.
     """
-    words = file_names(names)
     # The first look at an encoder takes seconds: layouts that name the same one share it.
     shared = cache(_encoding_named)
-    found = {name: _layout_from_file(Path(name), shared) for name in words if name.endswith(".toml")}
-    known = {**LAYOUTS, **found}
-    # A file's name may have a comma of its own.
-    known = {name.replace(",", ";"): layout for name, layout in known.items()}
-    asked = ",".join(name.replace(",", ";") for name in words)
-    chosen = choose("layout", asked, known) if "all" not in words else list(known.values())
+    files = {name: _layout_from_file(Path(name), shared) for name in map(str, names) if name.endswith(".toml")}
+    chosen = choose("layout", names, {**LAYOUTS, **files})
     called = [layout.name for layout in chosen]
     for name in called:
         if called.count(name) > 1:
@@ -77,9 +71,9 @@ def _layout_from_file(path: Path, encoding_named: Callable[[str], Encoding]) -> 
 
 def _encoding_named(word: str) -> Encoding:
     """The encoding that --encoding would take by this name. Raises UsageError and MissingError."""
-    if len(split_names(word)) > 1 or word == "all":
+    if word == "all":
         raise UsageError(f"encoding {word!r}: a layout has one encoding")
-    (encoding,) = encodings_named(word)
+    (encoding,) = encodings_named((word,))
     check_twin(encoding)
     return encoding
 
@@ -91,8 +85,9 @@ def _from_here(path: Path, word: str) -> str:
         LayoutError: the file lies outside the layout's folder: it would not travel to workers with the layout.
     """
     if names_an_encoder(word) or lacks_a_function(word):
-        settings = settings_of(word)
-        for file in (*map(str, files_of(word)), *settings.preludes, *(root for _, root in settings.roots)):
+        named_file = UserFile(word)
+        settings = named_file.settings
+        for file in (*map(str, named_file.paths), *settings.preludes, *(root for _, root in settings.roots)):
             _check_inside(path.parent, file)
         named = files_in(word, path.parent)
         return with_files(word, {file: str(path.parent / file) for file in named}) if named else str(path.parent / word)

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -16,23 +15,25 @@ from ....encodings.codecs.variants import ARITHMETICS, DECLARED, FLOAT, HALF, in
 from ....encodings.storages.storage import ROUNDINGS
 from ....encodings.vec import Vec3
 from ...ground.choose import choose, names_a_file
-from ...ground.options.storage_names import roundings_named, storages_named
-from ...ground.options.words import Words, given_in
+from ...ground.options.words import Given, Names, Word
 from ...ground.output.errors import MissingError, UsageError, by_reason, tell
+from ...ground.user_files import CHAIN, file_of
 from ...shaders.code.twin import NoTwinError, has_twin
-from ...shaders.languages.words import CHAIN, file_of, split_names
+from ..names.storages import roundings_named, storages_named
 from .half.compute import half_device
 from .user_encodings import encodings_named
 
+NEAREST = "nearest"
+
 
 def codecs_named(
-    encodings: str,
-    storages: str,
-    roundings: str,
-    arithmetics: str = FLOAT,
+    encodings: Names,
+    storages: Names,
+    roundings: Names,
+    arithmetics: Names = (FLOAT,),
     known_roundings: Sequence[str] = ROUNDINGS,
 ) -> list[Codec]:
-    """Every combination of comma-separated names, users' encodings from files among them.
+    """Return every combination of names, users' encodings from files among them.
 
     Args:
         known_roundings: what names of roundings may be.
@@ -41,7 +42,8 @@ def codecs_named(
         UsageError: an unknown name.
     """
     named = _with_chains(encodings)
-    chosen = with_arithmetics(named, FLOAT if arithmetics == DECLARED and not _computes_halves(named) else arithmetics)
+    has_no_half = arithmetics == (DECLARED,) and not _computes_halves(named)
+    chosen = with_arithmetics(named, (FLOAT,) if has_no_half else arithmetics)
     made = (
         Codec(encoding, storage, rounding)
         for storage in storages_named(storages)
@@ -52,27 +54,26 @@ def codecs_named(
     return list(dict.fromkeys(made))
 
 
-def _with_chains(names: str) -> list[Encoding]:
-    """Encodings by name; CODEC+ENCODING is that encoding of what comes back from a codec. Raises UsageError."""
-    words, own = split_names(names), given_in(names)
-    if not any(_is_chain(word) for word in words):
-        return encodings_named(names)
-    single = [word for word in words if not _is_chain(word)]
-    found = encodings_named(Words(single, own)) if single else []
-    return [*found, *(_chained_encoding(word, own) for word in words if _is_chain(word))]
+def _with_chains(words: Names) -> list[Encoding]:
+    """Return encodings by name; CODEC+ENCODING is that encoding of what comes back from a codec. Raises UsageError."""
+    own = [word for word in words if isinstance(word, Given)]
+    chains = [word for word in words if isinstance(word, str) and _is_chain(word)]
+    single = tuple(word for word in words if word not in chains)
+    encodings = encodings_named(single) if single or not chains else []
+    return [*encodings, *(_chained_encoding(word, own) for word in chains)]
 
 
 def _is_chain(word: str) -> bool:
     return CHAIN in word and not names_a_file(str(file_of(word)))
 
 
-def _chained_encoding(word: str, own: Mapping[str, Any]) -> Encoding:
+def _chained_encoding(word: str, own: Sequence[Given]) -> Encoding:
     before, _, then = word.rpartition(CHAIN)
     name, is_codec, storage = before.rpartition("/")
     if not (is_codec and name and then):
         raise UsageError(f"{word}: a chain is ENCODING/STORAGE+ENCODING, such as octahedral/rgb8_12_12+xyz")
-    codecs = codecs_named(Words([name], own), storage, "nearest")
-    encodings = encodings_named(Words([then], own))
+    first, second = (next((one for one in own if one.name == part), part) for part in (name, then))
+    codecs, encodings = codecs_named((first,), (storage,), (NEAREST,)), encodings_named((second,))
     if len(codecs) != 1 or len(encodings) != 1:
         raise UsageError(f"{word}: one codec and one encoding at a time")
     if encodings[0].domain == "view" or codecs[0].encoding.sign_bits:
@@ -80,8 +81,8 @@ def _chained_encoding(word: str, own: Mapping[str, Any]) -> Encoding:
     return encodings[0].behind(codecs[0])
 
 
-def with_arithmetics(encodings: Sequence[Encoding], names: str) -> list[Encoding]:
-    """Encodings computed in each of comma-separated arithmetics, those of a name that says half once.
+def with_arithmetics(encodings: Sequence[Encoding], names: Iterable[Word]) -> list[Encoding]:
+    """Return encodings computed in each of some arithmetics, those of a name that says half once.
 
     DECLARED is both for files that declare numbers of 16 bits, and float for all others. Raises UsageError.
     """

@@ -17,6 +17,7 @@ from ....gbuffer.gl.device import Device
 from ...ground.compilers import tools
 from ...ground.output import cache as kept
 from ...ground.output.errors import MissingError, UsageError
+from ...ground.user_files import UserFile
 from ...shaders.languages.language import GLSLANG, language_of, name_of
 from ...shaders.languages.second import NoSecondWayError, UndefinedError, Way, second_way
 from ...shaders.languages.source import Source
@@ -41,12 +42,12 @@ Function = Callable[[np.ndarray], np.ndarray]
 
 
 def second_look(
-    path: Path, gl: Device, encoding: Encoding, hard: np.ndarray, read: Callable[[str], Encoding]
+    file: UserFile, gl: Device, encoding: Encoding, hard: np.ndarray, read: Callable[[str], Encoding]
 ) -> dict[str, Any]:
     """What the second way of a file says of its first; kept in the cache by the file and both ways.
 
     Args:
-        path: what names it.
+        file: the file.
         encoding: it, by its first way.
         hard: normals of shape (count, 3), beside random ones.
         read: makes the encoding as a reader of a name of `BY_NAME` has it.
@@ -54,67 +55,67 @@ def second_look(
     Returns:
         Nothing where they agree. `error`: where they do not; `notes`: lines that are to be said.
     """
-    source, language = Source(path), language_of(path)
+    source, language = Source(file), language_of(file)
     stamps = [tools.stamp_or_empty(tool) for tool in (tools.SLANG, *language.tools, *language.others)]
-    key = kept.key_of("second", source.text, str(path), *stamps, own(), gl.renderer, gl.version)
+    key = kept.key_of("second", source.text, file.word, *stamps, own(), gl.renderer, gl.version)
     if (found := kept.read(key)) is None:
         try:
-            found = _disagreement(path, source.text, gl, encoding, hard, read)
+            found = _disagreement(file, source.text, gl, encoding, hard, read)
         except UndefinedError as error:
-            found = {"error": f"{path}: {error}; its language does not define that"}
+            found = {"error": f"{file}: {error}; its language does not define that"}
         except NoSecondWayError as error:
-            found = _unchecked_finding(path, str(error))
+            found = _unchecked_finding(file, str(error))
             if not error.is_of_the_file:
                 return found
         kept.write(key, found)
     return found
 
 
-def _unchecked_finding(path: Path, why: str) -> dict[str, Any]:
+def _unchecked_finding(file: UserFile, why: str) -> dict[str, Any]:
     """What is said of a file that one compiler alone has read; it is refused where that one is known to be wrong."""
-    encoder = translated(path)
+    encoder = translated(file)
     if encoder.read_by == GLSLANG:
         if not (used := MISREAD.search(encoder.text)):
             return {}
         what = f"it uses {used[0].strip('( ')}, which glslang reads otherwise than HLSL defines it"
-        return {"error": f"{path}: {what}, and no second compiler reads the file: {why}"}
+        return {"error": f"{file}: {what}, and no second compiler reads the file: {why}"}
     return {"notes": [f"no second compiler has checked its translation: {why}"]}
 
 
 def _disagreement(
-    path: Path, text: str, gl: Device, encoding: Encoding, hard: np.ndarray, read: Callable[[str], Encoding]
+    file: UserFile, text: str, gl: Device, encoding: Encoding, hard: np.ndarray, read: Callable[[str], Encoding]
 ) -> dict[str, Any]:
     random = np.random.default_rng(0).normal(size=(RANDOM, 3))
     n = np.concatenate([hard, random / np.linalg.norm(random, axis=1, keepdims=True)]).astype(np.float32)
     tolerance = BY_POLYNOMIALS if POLYNOMIALS.search(text) else EXACT
 
     def difference(way: Way, names: tuple[str, str]) -> str:
-        return _difference(path, gl, encoding, way, n, tolerance, names)
+        return _difference(file, gl, encoding, way, n, tolerance, names)
 
     try:
-        said, why = _by_second_way(path, difference), None
+        said, why = _by_second_way(file, difference), None
     except NoSecondWayError as error:
         said, why = "", error
-    by_glslang = _by_glslang(path, gl, read, difference)
+    by_glslang = _by_glslang(file, gl, read, difference)
     if why and by_glslang is None:
         raise why
     if said or (why and by_glslang):
         advice = "write it without what is read in two ways, such as % of negative whole numbers"
-        return {"error": f"{path}: two compilers disagree: {said or by_glslang}; {advice}"}
+        return {"error": f"{file}: two compilers disagree: {said or by_glslang}; {advice}"}
     return {"notes": [f"{by_glslang}; the former is measured, as the language defines it"]} if by_glslang else {}
 
 
-def _by_second_way(path: Path, difference: Callable[[Way, tuple[str, str]], str]) -> str:
+def _by_second_way(file: UserFile, difference: Callable[[Way, tuple[str, str]], str]) -> str:
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
-        is_wgsl = name_of(path) == "WGSL"
-        return difference(second_way(path, translated(path), Path(folder)), OF_WGSL if is_wgsl else SLANG_S)
+        is_wgsl = name_of(file) == "WGSL"
+        return difference(second_way(file, translated(file), Path(folder)), OF_WGSL if is_wgsl else SLANG_S)
 
 
 def _by_glslang(
-    path: Path, gl: Device, read: Callable[[str], Encoding], difference: Callable[[Way, tuple[str, str]], str]
+    file: UserFile, gl: Device, read: Callable[[str], Encoding], difference: Callable[[Way, tuple[str, str]], str]
 ) -> str | None:
     """Where glslang differs; None where it has not read the file, or has read it alone."""
-    if name_of(path) != "HLSL" or translated(path).read_by:
+    if name_of(file) != "HLSL" or translated(file).read_by:
         return None
     try:
         encoding = read(GLSLANG)
@@ -130,7 +131,7 @@ def _by_glslang(
 
 
 def _difference(
-    path: Path, gl: Device, encoding: Encoding, way: Way, n: np.ndarray, tolerance: float, ways: tuple[str, str]
+    file: UserFile, gl: Device, encoding: Encoding, way: Way, n: np.ndarray, tolerance: float, ways: tuple[str, str]
 ) -> str:
     """Where the two ways, which have these names, differ, in words; empty where they do not."""
     size = encoding.components
@@ -144,7 +145,7 @@ def _difference(
     codes = encode(n)
     given = np.pad(codes, ((0, 0), (0, 3 - size)))
     second_codes, second_normals = way(n, given, np.array(VIEW, np.float32))
-    names = [name for name, _ in translated(path).functions]
+    names = [name for name, _ in translated(file).functions]
     for name, function, values, mine, theirs, count in (
         (names[0], encode, n, codes, second_codes[:, :size], 3),
         (names[1], decode, given, decode(given), second_normals, size),

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import re
 from itertools import takewhile
-from pathlib import Path
 from typing import NamedTuple
 
 from ...ground.output.errors import UsageError
+from ...ground.user_files import UserFile
 
 # Type, name and parameters, of a definition or of a declaration; not of a call or a macro.
 FUNCTION = r"\b(?!return\b|else\b|define\b)(\w+)\s+({name})\s*\(([^(){{}};]*)\)"
@@ -40,7 +40,7 @@ class Encode(NamedTuple):
     others: tuple[str, ...]
 
 
-def encode_of(path: Path, text: str) -> Encode:
+def encode_of(file: UserFile, text: str) -> Encode:
     """The encode of a file's text.
 
     Raises:
@@ -48,28 +48,28 @@ def encode_of(path: Path, text: str) -> Encode:
     """
     code = COMMENT.sub(" ", text)
     if "/*" in code:
-        raise UsageError(f"{path}: a comment that begins with /* is not closed")
+        raise UsageError(f"{file}: a comment that begins with /* is not closed")
     if MAIN.search(code):
-        raise UsageError(f"{path}: {OWN_MAIN}")
+        raise UsageError(f"{file}: {OWN_MAIN}")
     if VERSION.search(code):
-        raise UsageError(f"{path}: {OWN_VERSION}")
+        raise UsageError(f"{file}: {OWN_VERSION}")
     found = [match.groups() for match in ENCODE.finditer(code)]
     right = list(dict.fromkeys(one[:2] for one in found if _is_encode(one)))
     if not right:
-        raise UsageError(f"{path}: {_no_encode(found)}")
+        raise UsageError(f"{file}: {_no_encode(found)}")
     (kind, name), *others = [(kind, name.removesuffix("_encode")) for kind, name in right]
-    _check_decode(path, code, name, kind)
+    _check_decode(file, code, name, kind)
     return Encode(name, int(kind[-1]), tuple(other for _, other in others if f"{other}_decode" in code))
 
 
-def check_given(path: Path, code: str) -> None:
+def check_given(file: UserFile, code: str) -> None:
     """Raises UsageError where a shader reads what it is given from outside: a uniform, a texture or a buffer.
 
     Args:
         code: the file with what it includes, without comments.
     """
     if given := _given_and_read(code):
-        raise UsageError(f"{path}: it reads {given}, which has no value here; write a constant in its place")
+        raise UsageError(f"{file}: it reads {given}, which has no value here; write a constant in its place")
 
 
 def _given_and_read(code: str) -> str:
@@ -111,12 +111,12 @@ def _no_encode(found: list[tuple[str, ...]]) -> str:
     return _should_be(found[0], wanted)
 
 
-def _check_decode(path: Path, code: str, name: str, kind: str) -> None:
+def _check_decode(file: UserFile, code: str, name: str, kind: str) -> None:
     """Raises UsageError where there is a decode, but not one of the right types."""
     found = [match.groups() for match in re.finditer(FUNCTION.format(name=f"{name}_decode"), code)]
     if found and not any(one[0] == "vec3" and _types(one[2]) in ([kind], [kind, "vec3"]) for one in found):
         wanted = f"vec3 {name}_decode({kind} e, vec3 view)"
-        raise UsageError(f"{path}: {_should_be(found[0], wanted)}")
+        raise UsageError(f"{file}: {_should_be(found[0], wanted)}")
 
 
 def _should_be(function: tuple[str, ...], wanted: str) -> str:

@@ -21,36 +21,22 @@ from ....encodings.vec import Vec2, Vec3
 from ....gbuffer.codecs.harness import takes_view
 from ....gbuffer.gl.shader import ShaderError, read_shader
 from ....gbuffer.gl.shader import Source as Shader
-from ...ground.choose import choose
 from ...ground.compilers.lines import bare
 from ...ground.machine import children
-from ...ground.machine.cores import on_all_cores
 from ...ground.machine.systems import forks
-from ...ground.options.words import given_in
-from ...ground.output.errors import NO_TWIN, MissingError, UsageError, leave_out, tell
+from ...ground.options.words import Names
+from ...ground.output.errors import NO_TWIN, MissingError, UsageError
 from ...ground.spelling import spelled
+from ...ground.user_files import ENDINGS, UserFile, check_word, names_an_encoder
 from ...shaders.code.twin import NoTwinError, lacking_twin
 from ...shaders.languages.pairs import NORMAL, Function
 from ...shaders.languages.programs import has_halves, pair
 from ...shaders.languages.source import Source
 from ...shaders.languages.translated import Translated, glsl_file, translated
-from ...shaders.languages.words import (
-    ENDINGS,
-    check_word,
-    file_of,
-    functions_of,
-    is_translated,
-    names_an_encoder,
-    settings_of,
-    split_names,
-    twin_of,
-    with_pair,
-    with_settings,
-    without_settings,
-)
 from . import tuned_names
 from .doctor.domains import SPHERE, Domain
 from .doctor.nearly import Lattice
+from .looked_at import TAKEN, Looked, choose_or_look
 from .signatures import check_given, encode_of
 
 # A first look takes a second or two of processor time, which is limited too; one that sleeps takes for ever.
@@ -58,7 +44,6 @@ TIME_LIMIT = 60.0
 # In place of a domain, to look closely at a file whose author does not say what it is made for.
 ANY = "any"
 FIRST_LOOK = "normalbench.bench.subjects.codecs.first_look"
-TAKEN = "there is an encoding named {} already; rename its two functions"
 DECLARES_HALF = (
     "it declares numbers of 16 bits: quality and cost have rows in half arithmetic as well, and pick goes by them; all "
     "other tables compute in 32 bits"
@@ -67,9 +52,8 @@ IN_32_BITS = "it declares numbers of 16 bits, but its code is an integer: it is 
 UNIT = "{} are in [0, 1]; every storage holds them as they are, signed and float ones as well"
 
 
-def encodings_named(names: str) -> list[Encoding]:
-    """The encodings that comma-separated names stand for: the catalogue's, tuned ones, or files that end in one of
-    ENDINGS.
+def encodings_named(names: Names) -> list[Encoding]:
+    """Return the encodings that names stand for: the catalogue's, tuned ones, or files that end in one of ENDINGS.
 
     A file's encoding is looked at first, in a process of its own: what does not compile, does not end or is not finite
     is named on standard error and left out.
@@ -78,64 +62,37 @@ def encodings_named(names: str) -> list[Encoding]:
         UsageError: an unknown name, or nothing left.
         MissingError: nothing left, because a compiler is missing.
     """
-    own = given_in(names)
-    for word in (word for word in split_names(names) if word not in own):
-        check_word(word, ENCODINGS)
-    words = [one for word in split_names(names) for one in _pairs_meant(word)]
-    files, complaints, notes = _read_all([word for word in words if names_an_encoder(word)])
-    rest = [word for word in words if word in files or not names_an_encoder(word)]
-    if complaints and not rest:
-        raise complaints[0]
-    tuned = {word: tuned_names.tuned(word) for word in rest if tuned_names.MARK in word and word not in files}
-    # A word may have a comma of its own.
-    whole = {word: word.replace(",", ";") for word in files}
-    known = {whole.get(word, word): one for word, one in {**ENCODINGS, **files, **tuned, **own}.items()}
-    picked = choose("encoding", ",".join(whole.get(word, word) for word in rest), known)
-    # At last: an error is one line alone.
-    for error in complaints:
-        leave_out(str(error))
-    for line in notes:
-        tell(line)
-    return picked
+    for word in names:
+        if isinstance(word, str):
+            check_word(word, ENCODINGS)
+    pairs = [_pairs_meant(word) if isinstance(word, str) else [word] for word in names]
+    words = tuple(word for several in pairs for word in several)
+    settings = [word for word in words if isinstance(word, str) and tuned_names.MARK in word]
+    tuned = {word: tuned_names.tuned(word) for word in settings if not names_an_encoder(word)}
+    return choose_or_look("encoding", words, {**ENCODINGS, **tuned}, _looked_at, _what_names)
 
 
 def _pairs_meant(word: str) -> list[str]:
     """A word, or in its place one for each pair of its file that undoes itself, where all are meant."""
-    if not (names_an_encoder(word) and settings_of(word).is_all) or functions_of(word):
+    file = UserFile(word)
+    if not (names_an_encoder(word) and file.settings.is_all) or file.functions:
         return [word]
-    found = _look(Path(word)).glsl
+    found = _look(file).glsl
     pairs = found.get("pairs") or ([found["pair"]] if "pair" in found else [])
-    return [str(with_pair(word, pair)) for pair in pairs] or [word]
+    return [file.with_pair(pair).word for pair in pairs] or [word]
 
 
-def _read_all(words: list[str]) -> tuple[dict[str, Encoding], list[Exception], list[str]]:
-    """The encodings of files, why others are left out, and lines that are to be said of those that are not."""
-    found: dict[str, Encoding] = {}
-    complaints: list[Exception] = []
-    notes: list[str] = []
-    for word, (looked, said) in zip(words, on_all_cores(_looked_at, map(Path, words), forks.stop), strict=True):
-        try:
-            found[word] = _with_a_name(looked, Path(word), [encoding.name for encoding in found.values()])
-            notes += said
-        except (UsageError, MissingError) as error:
-            complaints.append(error)
-    return found, complaints, notes
-
-
-def _looked_at(path: Path) -> tuple[Encoding | Exception, list[str]]:
-    """A file's encoding after the first look, or why there is none; and what is to be said of it."""
-    try:
-        found = _look(path)
-        _check(path, found.glsl)
-        encoding = found.encoding()
-        # That codes are in [0, 1] is said by doctor, and in rows by a column.
-        of = without_settings(path)
-        said = [f"{of}: {line}" for line in (*found.wrong, *found.notes) if line != found.unit_note]
-        said += [f"{of}: {DECLARES_HALF if encoding.is_also_half else IN_32_BITS}"] if encoding.declares_half else []
-        said += [f"{twin_of(path)}: {found.twin['apart']}"] if "apart" in found.twin else []
-        return encoding, said
-    except (UsageError, MissingError) as error:
-        return error, []
+def _looked_at(file: UserFile) -> Looked[Encoding]:
+    """Return a file's encoding after the first look, and what is to be said of it. Raises UsageError and MissingError
+    where there is none."""
+    found = _look(file)
+    _check(file, found.glsl)
+    encoding = found.encoding()
+    # That codes are in [0, 1] is said by doctor, and in rows by a column.
+    of = file.plain
+    said = [f"{of}: {line}" for line in (*found.wrong, *found.notes) if line != found.unit_note]
+    said += [f"{of}: {DECLARES_HALF if encoding.is_also_half else IN_32_BITS}"] if encoding.declares_half else []
+    return encoding, said + ([f"{file.twin}: {found.twin['apart']}"] if "apart" in found.twin else [])
 
 
 class Examined(NamedTuple):
@@ -164,7 +121,7 @@ class Examined(NamedTuple):
     functions: str
 
 
-def examined(path: Path, domain: str = ANY) -> Examined:
+def examined(file: UserFile, domain: str = ANY) -> Examined:
     """What there is to say of a file.
 
     Args:
@@ -174,14 +131,14 @@ def examined(path: Path, domain: str = ANY) -> Examined:
         UsageError: it is not an encoding, or does not compile.
         MissingError: there is no GL device to look at it with.
     """
-    check_word(str(path), ENCODINGS)
-    known = spelled("encoding", str(path), ENCODINGS)
-    if known and not path.exists():
+    check_word(str(file), ENCODINGS)
+    known = spelled("encoding", str(file), ENCODINGS)
+    if known and not file.path.exists():
         command = f"normalbench quality --encoding {known}"
-        raise UsageError(f"{path} is in the catalogue; doctor examines a file of yours. `{command}` measures it")
-    if path.is_file() and not names_an_encoder(str(path)):
-        raise UsageError(f"{path}: its name does not end in {', '.join(ENDINGS[:-1])} or {ENDINGS[-1]}")
-    found = _look(path, domain)
+        raise UsageError(f"{file} is in the catalogue; doctor examines a file of yours. `{command}` measures it")
+    if file.path.is_file() and not names_an_encoder(str(file)):
+        raise UsageError(f"{file}: its name does not end in {', '.join(ENDINGS[:-1])} or {ENDINGS[-1]}")
+    found = _look(file, domain)
     if "missing" in found.glsl:
         raise MissingError(found.glsl["missing"])
     if "error" in found.glsl:
@@ -190,32 +147,21 @@ def examined(path: Path, domain: str = ANY) -> Examined:
     of_twin = [f"its Python twin: {found.twin['apart']}"] if "apart" in found.twin else []
     of_twin += [found.fault] if found.fault else []
     encoding = found.encoding()
-    taken = [TAKEN.format(encoding.name)] if encoding.name in ENCODINGS else []
+    taken = [TAKEN.format(encoding.name, _what_names(encoding))] if encoding.name in ENCODINGS else []
     notes = [*found.notes, *found.glsl.get("spared", []), *taken]
     wrong = [*broken, *found.wrong, *of_twin]
     lattice = Lattice(*found.glsl["lattice"]) if "lattice" in found.glsl else None
-    functions = _functions_in(found.path, found.glsl.get("by", ""))
+    functions = _functions_in(found.file, found.glsl.get("by", ""))
     close = found.glsl.get("like", ""), found.glsl.get("bad", []), lattice, functions
     return Examined(encoding, found.domain, wrong, notes, not broken, *close)
 
 
-def _functions_in(path: Path, by: str) -> str:
+def _functions_in(file: UserFile, by: str) -> str:
     """The two functions of a file that are examined."""
-    if by or is_translated(path):
-        return translated(path).named
-    name, *_ = encode_of(path, read_shader(path))
+    if by or file.is_translated:
+        return translated(file).named
+    name, *_ = encode_of(file, read_shader(file.path))
     return f"{name}_encode:{name}_decode"
-
-
-def _with_a_name(encoding: Encoding | Exception, path: Path, taken: list[str]) -> Encoding:
-    """The encoding. Raises what was raised where there is none, and UsageError where rows could not tell its name."""
-    if isinstance(encoding, Exception):
-        raise encoding
-    if encoding.name in ENCODINGS:
-        raise UsageError(f"{path}: {TAKEN.format(encoding.name)}")
-    if encoding.name in taken:
-        raise UsageError(f"{path}: another file has an encoding named {encoding.name}; rename {_what_names(encoding)}")
-    return encoding
 
 
 def _what_names(encoding: Encoding) -> str:
@@ -223,11 +169,11 @@ def _what_names(encoding: Encoding) -> str:
     return "the file" if encoding.source and encoding.name.startswith(encoding.source.name) else "its two functions"
 
 
-def read_encoding(path: Path, fault: str = "", is_unit: bool = False, by: str = "") -> Encoding:
+def read_encoding(file: UserFile, fault: str = "", is_unit: bool = False, by: str = "") -> Encoding:
     """An encoding from its file, and from the Python file of the same name where there is one.
 
     Args:
-        path: of the file, with the names of its functions behind it where they are needed: see `languages/words.py`.
+        file: of a name with its functions behind it where they are needed.
         fault: why the Python file is not to be used; what it would measure says so.
         is_unit: whether its codes lie in [0, 1].
         by: the language whose compiler reads it, if not its own.
@@ -236,29 +182,29 @@ def read_encoding(path: Path, fault: str = "", is_unit: bool = False, by: str = 
         UsageError: it cannot be read, or does not define its two functions.
         MissingError: the compiler of its language is not there.
     """
-    text = _text(path, is_unit, by)
-    encode, decode = _lacking_functions(fault) if fault else _twin_functions(twin_of(path))
+    text = _text(file, is_unit, by)
+    encode, decode = _lacking_functions(fault) if fault else _twin_functions(file.twin)
     twin = _of_unit(encode, decode) if is_unit else (encode, decode)
-    made = _encoding(path, text, *twin)
-    source = file_of(path).absolute() if is_unit or by or is_translated(path) else None
+    made = _encoding(file, text, *twin)
+    source = file.path.absolute() if is_unit or by or file.is_translated else None
     return replace(made, source=source, is_unit=is_unit and not text.is_packed)
 
 
-def encoding_alone(path: Path, made: Translated) -> Encoding:
+def encoding_alone(file: UserFile, made: Translated) -> Encoding:
     """The encoding of a file that has one of the two functions alone; its other one gives nothing."""
     text = _Text(made.name, made.components, made.glsl(False), made.prefix)
-    return _encoding(path, text, *_lacking_functions(NO_TWIN))
+    return _encoding(file, text, *_lacking_functions(NO_TWIN))
 
 
-def _encoding(path: Path, text: _Text, encode: Callable[..., Any], decode: Callable[..., Any]) -> Encoding:
+def _encoding(file: UserFile, text: _Text, encode: Callable[..., Any], decode: Callable[..., Any]) -> Encoding:
     return Encoding(
         name=text.name,
-        title=called(str(path)),
+        title=called(str(file)),
         encode=encode,
         decode=decode,
         components=text.components,
         domain="sphere",
-        citation=called(str(path)),
+        citation=called(str(file)),
         glsl=text.glsl,
         ulps=(0, 0),
         ulps_reason="a user's own",
@@ -284,45 +230,45 @@ class _Text(NamedTuple):
     declares_half: bool = False
 
 
-def _text(path: Path, is_unit: bool, by: str) -> _Text:
-    if by or is_translated(path):
-        made = translated(path, by)
+def _text(file: UserFile, is_unit: bool, by: str) -> _Text:
+    if by or file.is_translated:
+        made = translated(file, by)
         # Rows of the catalogue's have that name; two functions of another language need not be renamed for it.
-        name = called(file_of(path).name) if made.name in ENCODINGS else made.name
+        name = called(file.path.name) if made.name in ENCODINGS else made.name
         declares_half = has_halves(made.text)
         return _Text(name, made.components, made.glsl(is_unit), made.prefix, bool(made.packed), declares_half)
     try:
-        name, components, _ = encode_of(path, read_shader(path))
+        name, components, _ = encode_of(file, read_shader(file.path))
     except ShaderError as error:
         raise UsageError(str(error)) from error
-    whole = _with_includes(path)
-    check_given(path, whole)
-    # Not resolved: the twin lies next to the path that was given.
-    place = path.absolute()
+    whole = _with_includes(file)
+    check_given(file, whole)
+    # Not resolved: the twin lies next to the file that was given.
+    place = file.path.absolute()
     made = _of_unit_text(place, name, components) if is_unit else _Text(name, components, place)
     return made._replace(declares_half=has_halves(whole))
 
 
-def _of_unit_text(path: Path, name: str, components: int) -> _Text:
+def _of_unit_text(file: Path, name: str, components: int) -> _Text:
     """A file that includes one of GLSL whose codes lie in [0, 1], and has functions of codes in [-1, 1]."""
     sizes = {"encode": (components, NORMAL), "decode": (NORMAL, components)}
     encoder, decoder = (
-        Function(f"{name}_{side}", made, (given, NORMAL) if takes_view(path, f"{name}_{side}") else (given,))
+        Function(f"{name}_{side}", made, (given, NORMAL) if takes_view(file, f"{name}_{side}") else (given,))
         for side, (made, given) in sizes.items()
     )
     # Into a text of this program goes no name that could end the line or the quotes.
-    if '"' in str(path) or not str(path).isprintable():
-        raise UsageError(f"{path}: a path with quotes or control characters is not read; rename it")
+    if '"' in str(file) or not str(file).isprintable():
+        raise UsageError(f"{file}: a file with quotes or control characters is not read; rename it")
     prefix = f"unit_{name}"
-    text = f'#include "{path}"\n' + pair(prefix, components, encoder, decoder, is_unit=True)
+    text = f'#include "{file}"\n' + pair(prefix, components, encoder, decoder, is_unit=True)
     return _Text(name, components, glsl_file(prefix, text), prefix)
 
 
-def _with_includes(path: Path) -> str:
+def _with_includes(file: UserFile) -> str:
     """What its compiler is given of a file and of what it includes, without comments. Raises UsageError where it cannot
     be read, or includes a file that lies elsewhere."""
     try:
-        return bare(Shader(path, may_read=Source(path).may_read).text)
+        return bare(Shader(file.path, may_read=Source(file).may_read).text)
     except ShaderError as error:
         raise UsageError(str(error)) from error
 
@@ -374,7 +320,7 @@ class Looks:
     """What a first look found, see first_look.py.
 
     Attributes:
-        path: of the file, with the names of its functions where they are needed.
+        file: of the file, with the names of its functions where they are needed.
         glsl: of the shader.
         said: what a translation says of it.
         twin: of the Python twin; empty where there is none, or the shader is of no use.
@@ -382,7 +328,7 @@ class Looks:
         is_asked: whether the user says what it is made for.
     """
 
-    path: Path
+    file: UserFile
     glsl: dict[str, Any]
     twin: dict[str, Any]
     fault: str
@@ -391,7 +337,7 @@ class Looks:
 
     def encoding(self) -> Encoding:
         """The encoding that was looked at."""
-        read = read_encoding(self.path, self.fault, self.is_unit, self.glsl.get("by", ""))
+        read = read_encoding(self.file, self.fault, self.is_unit, self.glsl.get("by", ""))
         read = replace(read, packed_bits=self.glsl.get("packed_bits", read.packed_bits))
         return self.domain.measured(read)
 
@@ -432,7 +378,7 @@ class Looks:
             yield f"taken to be made for {domain.made_for} alone: {hole or 'no others come back'}{turned}"
 
 
-def _look(path: Path, domain: str = "") -> Looks:
+def _look(file: UserFile, domain: str = "") -> Looks:
     """A first look in a process of its own; see `first_look`.
 
     Raises:
@@ -440,43 +386,44 @@ def _look(path: Path, domain: str = "") -> Looks:
         MissingError: the compiler of its language is not there.
     """
     try:
-        done = forks.finished(FIRST_LOOK, [str(path), *([domain] if domain else [])], TIME_LIMIT)
+        done = forks.finished(FIRST_LOOK, [str(file), *([domain] if domain else [])], TIME_LIMIT)
         said, ended = done.stdout, children.how_it_ended(done)
     except subprocess.TimeoutExpired as error:
         said, ended = str(error.output), f"did not end within {TIME_LIMIT:g} s"
     lines = list(_answers(said))
     if not lines:
-        raise UsageError(f"{path}: its shader {ended}")
-    path = path_with(path, lines[0])
+        raise UsageError(f"{file}: its shader {ended}")
+    file = file_with(file, lines[0])
     said_of_it, is_asked = (
-        () if "error" in lines[0] else _said_of(path, lines[0].get("by", "")),
+        () if "error" in lines[0] else _said_of(file, lines[0].get("by", "")),
         domain not in ("", ANY),
     )
-    has_twin = twin_is_looked_at(path, lines[0])
+    has_twin = twin_is_looked_at(file, lines[0])
     if has_twin and len(lines) < 2:
-        return Looks(path, lines[0], {}, f"{path}: its Python twin {ended}", said_of_it, is_asked)
+        return Looks(file, lines[0], {}, f"{file}: its Python twin {ended}", said_of_it, is_asked)
     twin = lines[1] if has_twin else {}
-    return Looks(path, lines[0], twin, twin.get("error", ""), said_of_it, is_asked)
+    return Looks(file, lines[0], twin, twin.get("error", ""), said_of_it, is_asked)
 
 
-def path_with(path: Path, found: Mapping[str, Any]) -> Path:
+def file_with(file: UserFile, found: Mapping[str, Any]) -> UserFile:
     """A file with what a first look found of it: the language that its ending does not say, and of several pairs the
     only one that undoes itself."""
-    path = Path(with_settings(str(path), language=found["language"])) if "language" in found else path
-    return with_pair(path, found["pair"]) if "pair" in found else path
+    if "language" in found:
+        file = file.with_language(found["language"])
+    return file.with_pair(found["pair"]) if "pair" in found else file
 
 
-def _said_of(path: Path, by: str) -> tuple[str, ...]:
+def _said_of(file: UserFile, by: str) -> tuple[str, ...]:
     """What the text of a file says by itself."""
-    if by or is_translated(path):
-        return tuple(translated(path).notes)
-    name, _, others = encode_of(path, read_shader(path))
+    if by or file.is_translated:
+        return tuple(translated(file).notes)
+    name, _, others = encode_of(file, read_shader(file.path))
     return tuple(f"{name} alone is measured; move {other} into a file of its own" for other in others)
 
 
-def twin_is_looked_at(path: Path, found: dict[str, Any]) -> bool:
+def twin_is_looked_at(file: UserFile, found: dict[str, Any]) -> bool:
     """Whether a shader of which this was found has a twin, and is of use."""
-    return not {"error", "broken"} & set(found) and twin_of(path).exists()
+    return not {"error", "broken"} & set(found) and file.twin.exists()
 
 
 def _answers(said: str) -> Iterator[dict[str, Any]]:
@@ -487,9 +434,9 @@ def _answers(said: str) -> Iterator[dict[str, Any]]:
             return
 
 
-def _check(path: Path, found: dict[str, Any]) -> None:
+def _check(file: UserFile, found: dict[str, Any]) -> None:
     """Raises UsageError where a shader does not compile, or is not finite."""
     if "error" in found:
         raise UsageError(found["error"])
     if "broken" in found:
-        raise UsageError(f"{path}: {found['broken']}")
+        raise UsageError(f"{file}: {found['broken']}")

@@ -12,12 +12,12 @@ from typing import Any, get_type_hints
 from ....encodings.codecs.encoding import Encoding
 from ....encodings.codecs.files import called
 from ....gbuffer.scenes.files import read as files
-from ...ground.choose import choose_or_read, file_names, names_a_folder
+from ...ground.choose import choose_or_read, names_a_folder
 from ...ground.options.counts import checked_sides
 from ...ground.options.option import Count, Reading, fields_of
-from ...ground.options.scene_names import mesh_file, say_notes
-from ...ground.options.words import given_in
+from ...ground.options.words import Given, Names, text_of
 from ...ground.output.errors import UsageError, tell
+from ..scenes.mesh_files import mesh_file, say_notes
 from . import vertices
 from .captures import CODE_SPACES, capture
 from .normal_sets import LACKS_RAYS, NORMAL_SETS, NormalSet, from_arrays
@@ -36,19 +36,23 @@ OTHERS: Mapping[str, str] = MappingProxyType(
 )
 
 
-def normal_sets_named(names: str, count: int, seed: int, reading: Reading, needs_rays: bool = False) -> list[NormalSet]:
-    """The sets that comma-separated names stand for: those of the catalogue, captures, or meshes seen by a camera.
+def normal_sets_named(
+    names: Names, count: int, seed: int, reading: Reading, needs_rays: bool = False
+) -> list[NormalSet]:
+    """Return the sets that names stand for: those of the catalogue, captures, or meshes seen by a camera.
 
     Where something to be measured `needs_rays`, a capture without any is named on standard error.
 
     Raises:
         UsageError: an unknown name, a file that cannot be read, or an option that no file is there for.
     """
-    for word in file_names(names):
+    typed = [word for word in names if isinstance(word, str)]
+    for word in typed:
         _check_kind(word)
-    is_read_so = any(has_normals_alone(Path(word)) for word in file_names(names))
+    is_read_so = any(has_normals_alone(Path(word)) for word in typed)
     if reading != Reading(size=reading.size) and not is_read_so:
-        raise UsageError(f"options of captures are given, but --normals {names} names none ({', '.join(IMAGES)})")
+        said = f"--normals {text_of(names)} names none ({', '.join(IMAGES)})"
+        raise UsageError(f"options of captures are given, but {said}")
 
     notes: dict[Path, list[str]] = {}
 
@@ -65,8 +69,8 @@ def normal_sets_named(names: str, count: int, seed: int, reading: Reading, needs
             made, notes[path] = mesh_set(path, reading.size)
         return given(made)
 
-    known = {**NORMAL_SETS, **{name: given(made) for name, made in given_in(names).items()}}
-    made = [make(count, seed) for make in choose_or_read("normal set", names, known, ENDINGS, read)]
+    words = [Given(word.name, given(word.value)) if isinstance(word, Given) else word for word in names]
+    made = [make(count, seed) for make in choose_or_read("normal set", words, NORMAL_SETS, ENDINGS, read)]
     say_notes(notes)
     return made
 
@@ -98,7 +102,7 @@ def say_count_is_unused(options: Any) -> None:
         return
     if getattr(options, "count", None) == known["count"].default or not _is_of_normals(type(options)):
         return
-    words = file_names(getattr(options, "normals", None) or "sphere")
+    words = [str(word) for word in getattr(options, "normals", None) or ("sphere",)]
     if all(Path(word).suffix.lower() in ENDINGS for word in words):
         tell(f"--count has no effect on files: every normal of {', '.join(words)} is measured")
 

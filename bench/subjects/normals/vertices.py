@@ -13,8 +13,8 @@ from ....gbuffer.scenes.files.mesh_file import NOTHING, Rounding, Stored
 from ....gbuffer.scenes.files.read import MESHES
 from ....gbuffer.scenes.files.source import TOO_LARGE, checked_indices
 from ...ground.choose import PART, VERTICES, whole_file_of
-from ...ground.options.scene_names import read_or_refused
 from ...ground.output.errors import UsageError
+from ..scenes.mesh_files import read_or_refused
 from .normal_sets import OBJECT, NormalSet, from_arrays
 from .own_errors import FINE, all_roundings, bits_text, own_error_deg, own_error_note
 

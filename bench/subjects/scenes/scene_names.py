@@ -12,16 +12,17 @@ from ....gbuffer.scenes.files.read import FRAMES, READERS, file_scene
 from ....gbuffer.scenes.scene import Scene
 from ....gbuffer.scenes.setting import Setting
 from ...ground.choose import choose_or_read
-from ...ground.options.scene_names import mesh_file, say_notes
+from ...ground.options.words import Names
 from ...ground.output.errors import tell
 from .captured_frame import captured_frame, lines_of
 from .frame_file import ENDING, read_frame_file
+from .mesh_files import mesh_file, say_notes
 
 ENDINGS = (*READERS, ENDING)
 
 
-def scene_makers_named(names: str) -> list[SceneMaker]:
-    """The scenes that comma-separated names stand for: those of the catalogue, mesh files, or captured frames.
+def scene_makers_named(names: Names) -> list[SceneMaker]:
+    """Return the scenes that names stand for: those of the catalogue, mesh files, or captured frames.
 
     Raises:
         UsageError: an unknown name, or a file that cannot be read.

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
 
+from ...ground.options.words import Names, Word
 from ...ground.output.errors import UsageError
 from ...ground.spelling import spelled
 from .attributes import EMISSION, MOST_PART, SEEN, Attribute, exact_bits, motion
@@ -35,18 +36,19 @@ KNOWN = (
 NAMES = dict.fromkeys(name for word in (*KNOWN, *EXACT, "depth", "all", "none") for name in word.split(":"))
 
 
-def as_known(words: str) -> str:
-    """Words of attributes, joined in any way, with each name as it is known here."""
-    return re.sub(r"[^,+:]+", lambda match: spelled("attribute", match[0].strip(), NAMES) or match[0], words)
+def as_known(words: Iterable[Word]) -> Names:
+    """Return words of attributes, joined by + or :, with each name as it is known here."""
+    known = re.compile(r"[^+:]+")
+    return tuple(known.sub(lambda match: spelled("attribute", match[0], NAMES) or match[0], str(one)) for one in words)
 
 
-def attributes_held(words: str, speed: float) -> list[Attribute]:
-    """The attributes that comma-separated words stand for, motion up to a speed in pixels a frame.
+def attributes_held(words: Names, speed: float) -> list[Attribute]:
+    """Return the attributes that words stand for, motion up to a speed in pixels a frame.
 
     Raises:
         UsageError: an unknown one, two of one name, or one is missing that images need.
     """
-    found = [_attribute(word, speed) for word in filter(None, map(str.strip, words.split(",")))]
+    found = [_attribute(str(word), speed) for word in words]
     held = [one for one in found if one]
     names = [one.name for one in held]
     if twice := next((name for name in names if names.count(name) > 1), None):
@@ -77,14 +79,14 @@ def _attribute(word: str, speed: float) -> Attribute | None:
     return exact_bits(name, layout_word, int(size))
 
 
-def held_in_stencil(words: str) -> list[str]:
-    """The attributes that comma-separated words put into the stencil."""
-    return [name for word in words.split(",") for name in IN_STENCIL if word.strip() == f"{name}:{STENCIL}"]
+def held_in_stencil(words: Names) -> list[str]:
+    """Return the attributes that words put into the stencil."""
+    return [name for name in IN_STENCIL if f"{name}:{STENCIL}" in words]
 
 
-def names_held(option: str, words: str | None, held: Sequence[str]) -> list[str]:
-    """The attributes that an option names, each of which is held. Raises UsageError."""
-    found = [word.strip() for word in (words or "").split(",") if word.strip() and word.strip() != "depth"]
+def names_held(option: str, words: Names | None, held: Sequence[str]) -> list[str]:
+    """Return the attributes that an option names, each of which is held. Raises UsageError."""
+    found = [str(word) for word in words or () if word != "depth"]
     for word in found:
         if word not in held:
             raise UsageError(f"{option} {word}: not held; held: {', '.join(held)}")

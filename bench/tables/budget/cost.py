@@ -16,7 +16,7 @@ from ...ground.options.gpu_families import FAMILIES
 from ...ground.output.errors import MissingError
 from ...shaders.code.whole.kernel import pack_operation, unpack_operation
 from ...shaders.isa import isa, spirv
-from ..cost.measure import Case, counted
+from ..cost.measure import CostCase, counted
 from ..table import Row
 from .attributes import Code
 from .bins import SHARED, Bin
@@ -71,7 +71,7 @@ class Slots:
         """Counts layouts that are not known, all at once, which takes less time than one by one."""
         new = {one.summary: one for one in layouts if one.summary not in self._known}
         make = {PACK: pack_operation, UNPACK: unpack_operation}
-        cases = [Case(None, key, name, partial(do, one)) for key, one in new.items() for name, do in make.items()]
+        cases = [CostCase(None, key, name, partial(do, one)) for key, one in new.items() for name, do in make.items()]
         found = {family: counted(cases, family, STAGE) for family in self._families} if cases else {}
         for key in new:
             prices = (_price(family, rows.get((key, PACK)), rows.get((key, UNPACK))) for family, rows in found.items())

@@ -12,6 +12,7 @@ from ...ground.choose import choose, choose_one
 from ...ground.machine.devices import require_device
 from ...ground.options.counts import MOST_INSTRUCTIONS, checked_numbers, in_range
 from ...ground.options.targets import checked_target
+from ...ground.options.words import Names, text_of
 from ...ground.output.errors import UsageError
 from ...ground.spelling import spelled
 from ...measures.metrics.images import require_flip
@@ -106,7 +107,7 @@ def question(options: BudgetOptions) -> Question:
         light_bytes = LIGHT_BUFFERS[light].bytes_per_pixel
         webgpu_left = WEBGPU_BYTES - _webgpu_cost(light) if webgpu else 0
     sets = (together,) if len(together) > 1 else ()
-    is_packed = PACKED in [word.strip() for word in options.hold.split(",")]
+    is_packed = PACKED in options.hold
     apart = frozenset() if is_packed else frozenset({MOTION} & {*names})
     left = webgpu_left if webgpu else None
     alone = _read_alone(options.read_alone, names)
@@ -138,9 +139,9 @@ def question(options: BudgetOptions) -> Question:
     )
 
 
-def _read_alone(said: str, names: Sequence[str]) -> frozenset[str]:
+def _read_alone(said: Names, names: Sequence[str]) -> frozenset[str]:
     """What a pass reads by itself. Raises UsageError for what is not held."""
-    return frozenset() if said.strip() == "none" else frozenset(names_held("--read-alone", said, names))
+    return frozenset() if said == ("none",) else frozenset(names_held("--read-alone", said, names))
 
 
 def _webgpu_cost(light: str) -> int:
@@ -154,7 +155,7 @@ def _webgpu_cost(light: str) -> int:
 def _limits(options: BudgetOptions) -> tuple[bool, int | None]:
     """Whether WebGPU's limit holds, and the bytes of a tile's pixel. Raises UsageError for a limit that is none."""
     webgpu, tile = False, None
-    for word in filter(None, map(str.strip, (options.limit or "").split(","))):
+    for word in map(str, options.limit or ()):
         said, _, size = word.partition(":")
         name = spelled("limit", said, (WEB, TILE))
         if name == WEB and not size:
@@ -180,7 +181,7 @@ def _stages(options: BudgetOptions, size: tuple[int, int]) -> list[Stage]:
 def _bins(options: BudgetOptions, webgpu: bool) -> list[Bin]:
     known = {one.format: one.format for one in BINS.values()}
     chosen = set(choose("format", options.formats, known))
-    is_said = options.formats.strip() != "all"
+    is_said = "all" not in options.formats
     found = [one for one in BINS.values() if one.format in chosen and (one.is_usual or is_said)]
     found = [one for one in found if not webgpu or one.format in WEBGPU]
     if not options.fields or not options.integers:
@@ -188,5 +189,7 @@ def _bins(options: BudgetOptions, webgpu: bool) -> list[Bin]:
     if not options.fields:
         found = [replace(one, shares=False) for one in found]
     if not found:
-        raise UsageError(f"--formats {options.formats}: no target is left of what --limit and --no-integers allow")
+        raise UsageError(
+            f"--formats {text_of(options.formats)}: no target is left of what --limit and --no-integers allow"
+        )
     return found

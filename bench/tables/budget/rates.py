@@ -118,12 +118,12 @@ class Exact:
         """The errors that a code makes by itself."""
         return self.errors(self.display.image(self._made.lit(self._texels(trip(self.surfaces)))))
 
-    def of_layout(self, layout: Layout) -> Seen:
+    def of_layout(self, layout: Layout) -> ImageErrors:
         """What a layout makes of the image, drawn by it. Raises ShaderError, FormatError and LayoutError."""
         is_known = is_in_catalogue(layout.encoding)
         key = cache.key_of("budget layout", self.key, layout.summary, str(_has_flip())) if is_known else ""
         found = cache.kept(key, lambda: self._drawn(layout))
-        return Seen(found["errors"], found["flip"])
+        return ImageErrors(found["errors"], found["flip"])
 
     def _drawn(self, layout: Layout) -> dict[str, object]:
         stage = self.stage
@@ -149,7 +149,7 @@ class Exact:
 
 
 @dataclass(frozen=True)
-class Seen:
+class ImageErrors:
     """What an image of a layout is off by: the mean squared error of each class, and FLIP's 99th percentile over what
     is covered; None where FLIP is not installed."""
 

@@ -9,6 +9,7 @@ from types import MappingProxyType
 
 from ....gbuffer.layouts.layout import Layout
 from ...ground.options.counts import in_range
+from ...ground.options.words import Names
 from ...ground.output.errors import UsageError
 
 ALL, JOINED = "all", "+"
@@ -58,11 +59,11 @@ def times(count: float) -> str:
     return TIMES.get(count, f"{count:g} times")
 
 
-def read_readers(words: str) -> Readers:
-    """The passes of comma-separated words: a number of those that read all, `all` for one of them, or attributes joined
+def read_readers(words: Names) -> Readers:
+    """Return the passes of words: a number of those that read all, `all` for one of them, or attributes joined
     by +. Raises UsageError for anything else."""
     full, parts = 0.0, []
-    for word in filter(None, map(str.strip, words.split(","))):
+    for word in map(str, words):
         count = _count(word)
         if count is None:
             parts.append(tuple(_attributes(word)))

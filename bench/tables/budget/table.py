@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Annotated
 
 from ....reports.sheets import View
-from ...ground.options.option import Families, Option, Plot, Size
+from ...ground.options.option import Families, Option, Options, Plot, Size
+from ...ground.options.words import Names
 from .. import shared_columns as shared
 from ..table import Column, Group, Role, Section, Table
 
@@ -17,12 +18,16 @@ PROPOSAL, ENGINE, MINE, IMPROVED = "proposal", "engine", "mine", "improved"
 
 
 @dataclass(frozen=True, kw_only=True)
-class BudgetOptions:
+class BudgetOptions(Options):
     """What `budget` measures. Names and numbers are comma-separated."""
 
-    bytes: Annotated[str, Option("--bytes", "Bytes a pixel without native depth, comma-separated.")] = "12,16,20"
+    bytes: Annotated[Names, Option("--bytes", "Bytes a pixel without native depth, comma-separated.")] = (
+        "12",
+        "16",
+        "20",
+    )
     scene: Annotated[
-        str,
+        Names,
         Option(
             "--scene",
             "Metal/rough scenes that judge: ramps, studio, glTF files, and captured frames (gbuffer.json); "
@@ -30,32 +35,43 @@ class BudgetOptions:
             files=True,
             in_run=True,
         ),
-    ] = "ramps,studio"
+    ] = ("ramps", "studio")
     environment: Annotated[
         str | None,
         Option("--environment", "What they reflect: studio, sky, strips, lamp, or an .hdr or .exr file.", files=True),
     ] = None
     hold: Annotated[
-        str,
+        Names,
         Option(
             "--hold",
             "What is stored: normal, basecolor, roughness, metalness, specular, occlusion, tangent; motion in a target "
             "of its own, or motion:packed; id:BITS, flags:BITS, or either as id:stencil; shadow:BITS, custom:BITS, "
             "other:BITS; emission, or emission:light where the light buffer has it.",
         ),
-    ] = "normal,basecolor,roughness,metalness,specular,occlusion,id:4,flags:4,motion,emission:light"
+    ] = (
+        "normal",
+        "basecolor",
+        "roughness",
+        "metalness",
+        "specular",
+        "occlusion",
+        "id:4",
+        "flags:4",
+        "motion",
+        "emission:light",
+    )
     speed: Annotated[
         float,
         Option("--speed", "Pixels a frame at 1920 x 1080 up to which motion must be within 1/16 pixel, 0 to 500."),
     ] = 64.0
     targets: Annotated[int, Option("--targets", "The most render targets that there may be.")] = 6
-    formats: Annotated[str, Option("--formats", "Formats that targets may have, comma-separated, or all.")] = "all"
+    formats: Annotated[Names, Option("--formats", "Formats that targets may have, comma-separated, or all.")] = ("all",)
     fields: Annotated[
         bool, Option("--fields/--no-fields", "Allow several numbers to share a channel as bit fields.")
     ] = True
     integers: Annotated[bool, Option("--integers/--no-integers", "Allow integer targets.")] = True
     limit: Annotated[
-        str | None,
+        Names | None,
         Option(
             "--limit",
             "webgpu: its 32 bytes a sample and its formats; tile:16, tile:32, tile:64: a GPU's bytes a pixel in tiles.",
@@ -68,35 +84,36 @@ class BudgetOptions:
         float | None,
         Option("--threshold", "The fewest bytes whose FLIP (99th percentile) is at most this, in place of --bytes."),
     ] = None
-    blend: Annotated[str | None, Option("--blend", "What decals blend into, such as basecolor,roughness,normal.")] = (
+    blend: Annotated[Names | None, Option("--blend", "What decals blend into, such as basecolor,roughness,normal.")] = (
         None
     )
     read_alone: Annotated[
-        str,
+        Names,
         Option(
             "--read-alone",
             "What a pass reads by itself: at most 4 bytes for each, in targets with nothing else of 16 bits; or none.",
         ),
-    ] = "normal,roughness"
+    ] = ("normal", "roughness")
     classes: Annotated[
-        str, Option("--classes", "Classes of surfaces that judge: mirror, glossy, rough, emissive; or all.")
-    ] = "all"
+        Names, Option("--classes", "Classes of surfaces that judge: mirror, glossy, rough, emissive; or all.")
+    ] = ("all",)
     overdraw: Annotated[float, Option("--overdraw", "How often a pixel is written.")] = 1.5
     readers: Annotated[
-        str,
+        Names,
         Option(
             "--readers",
             "The passes that read the G-buffer, comma-separated: a number of passes that read all of it, or all for "
             "one of them, and for each other pass its attributes, such as 1,normal+roughness.",
+            repeats=True,
         ),
-    ] = "1,normal+roughness"
-    family: Families = "navi21"
+    ] = ("1", "normal+roughness")
+    family: Families = ("navi21",)
     most_instructions: Annotated[
         int | None, Option("--most-instructions", "The most issue slots that packing and unpacking once may execute.")
     ] = None
     size: Size = "320x240"
     against: Annotated[
-        str | None,
+        Names | None,
         Option("--against", "Layouts to compare with: presets, or TOML files of yours; comma-separated.", files=True),
     ] = None
     engines: Annotated[bool, Option("--engines/--no-engines", "Whether engines' layouts are measured as well.")] = False

@@ -15,7 +15,7 @@ from ....gbuffer.gl.device import Device
 from ....gbuffer.gl.handles import Texture
 from ....gbuffer.gl.shader import ShaderError
 from ....gbuffer.render import Clock, clock_of
-from .measure import Case, Row
+from .measure import CostCase, Row
 
 # The median lies within its interval so surely, whatever the times are distributed like.
 SURE = 0.95
@@ -129,7 +129,7 @@ def _points(size: tuple[int, int], numbers: int) -> np.ndarray:
 
 
 def time_rows(
-    device: Device, chosen: Sequence[Case], size: tuple[int, int], repeats: int, tick: Callable[[str], None]
+    device: Device, chosen: Sequence[CostCase], size: tuple[int, int], repeats: int, tick: Callable[[str], None]
 ) -> Iterator[Row]:
     """Nanoseconds a megapixel of each case: the median of repeated differences, and how wide its interval is.
 
@@ -144,14 +144,14 @@ def time_rows(
         "driver": device.version,
     }
     with ExitStack() as stack:
-        field, made = Field(device, stack, size), dict[Case, Pair | str]()
+        field, made = Field(device, stack, size), dict[CostCase, Pair | str]()
         for case in chosen:
             try:
                 made[case] = Pair(Passes(field, case.make()).milliseconds, math.prod(size))
             except ShaderError as error:
                 made[case] = f"{case.name}: {error}"
             tick(case.name)
-        taken: dict[Case, list[float]] = {case: [] for case in chosen}
+        taken: dict[CostCase, list[float]] = {case: [] for case in chosen}
         for number in range(repeats):
             for case, pair in made.items():
                 if isinstance(pair, Pair):

@@ -27,7 +27,7 @@ class Where:
 
 
 @dataclass(frozen=True)
-class Total:
+class CostSum:
     """A sum, and whether it counts both sides of a branch."""
 
     cost: float
@@ -40,7 +40,7 @@ class Costs:
     def __init__(self, rows: Iterable[Row]):
         self._rows = {tuple(row.get(part) for part in KEY): row for row in rows}
 
-    def of(self, codec: Codec, where: Where, operation: str, column: str) -> Total:
+    def of(self, codec: Codec, where: Where, operation: str, column: str) -> CostSum:
         """What a codec's encode or decode costs.
 
         Raises:
@@ -48,7 +48,7 @@ class Costs:
         """
         rows = [(sign, self._known_row(key, column)) for sign, key in self._parts(codec, where, operation)]
         cost = sum(sign * row[column] for sign, row in rows)
-        return Total(cost, any(row.get("branches") for _, row in rows))
+        return CostSum(cost, any(row.get("branches") for _, row in rows))
 
     def _parts(self, codec: Codec, where: Where, operation: str) -> list[tuple[int, tuple[Any, ...]]]:
         """The keys of the rows that add up to it, each with its sign."""

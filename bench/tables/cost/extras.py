@@ -22,7 +22,7 @@ from ....reports.page.found import Front, Listing, plain_text
 from ....reports.page.verdict import BACKENDS, LEADING, is_number
 from ...ground.options.gpu_families import FAMILIES, usual_stage
 from ...ground.output.writing import files_of
-from ...shaders.languages.words import CHAIN
+from ...ground.user_files import CHAIN
 from ..quality.table import TABLE as QUALITY
 from ..render.table import TABLE as RENDER
 from ..table import UNEXPECTED, Row
@@ -38,8 +38,7 @@ SOURCES = "source"
 
 
 def extras(folder: Path, tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Mapping[str, Any]:
-    """`fronts`: cost against error, as `found.Front`. `listings`: disassemblies, as `found.Listing` by name. `order`:
-    where costs are in another order than the article's, and why, in lines.
+    """Find cost against error, disassemblies, and where costs are in another order than the article's.
 
     Args:
         folder: the run's.

@@ -61,7 +61,7 @@ GLSLANG_STAGES = {"fragment": "frag", "compute": "comp"}
 
 
 @dataclass(frozen=True, eq=False)
-class Case:
+class CostCase:
     """An encoding's operation, a packing's or a layout's.
 
     Attributes:
@@ -86,12 +86,12 @@ class Case:
         return TABLE.empty() | {"measure": measure} | about | more
 
 
-def cases(encodings: Iterable[Encoding], packings: Iterable[Packing], operations: Sequence[str]) -> list[Case]:
+def cases(encodings: Iterable[Encoding], packings: Iterable[Packing], operations: Sequence[str]) -> list[CostCase]:
     """Every operation of each encoding, and what the packings add to it."""
-    found = [Case(e, None, name, partial(_operation, e, name)) for e in encodings for name in operations]
+    found = [CostCase(e, None, name, partial(_operation, e, name)) for e in encodings for name in operations]
     for packing in packings:
         by_name = {"encode": packing.pack, "decode": packing.unpack}
-        found += [Case(None, packing.name, PACKING_OPERATIONS[name], by_name[name]) for name in operations]
+        found += [CostCase(None, packing.name, PACKING_OPERATIONS[name], by_name[name]) for name in operations]
     return found
 
 
@@ -118,7 +118,7 @@ class Prepared:
         return self.cuda if _takes_cuda(family) else (self.job, self.empty)
 
 
-def prepare(case: Case, stage: str, as_cuda: bool = False) -> Prepared | Failure:
+def prepare(case: CostCase, stage: str, as_cuda: bool = False) -> Prepared | Failure:
     """A case's kernels, as CUDA where that is asked, or why there are none. Raises MissingError where there is no
     compiler of SPIR-V."""
     try:
@@ -134,7 +134,7 @@ def prepare(case: Case, stage: str, as_cuda: bool = False) -> Prepared | Failure
     return Prepared(job, empty, more, _cuda_jobs(case, operation, stage) if as_cuda else NOT_ASKED)
 
 
-def _cuda_jobs(case: Case, operation: Operation, stage: str) -> tuple[Job, Job] | Failure:
+def _cuda_jobs(case: CostCase, operation: Operation, stage: str) -> tuple[Job, Job] | Failure:
     if case.encoding and case.encoding.is_half:
         return Failure(f"{case.name}: half arithmetic is not counted for NVIDIA")
     try:
@@ -156,7 +156,7 @@ def _job_and_instructions(operation: Operation, stage: str, counted: bool) -> tu
 
 
 def isa_rows(
-    chosen: Sequence[Case],
+    chosen: Sequence[CostCase],
     stages: Sequence[str],
     families: Sequence[str],
     lacks: list[str],
@@ -291,7 +291,7 @@ def _listed(assembly: str, total: int, family: str) -> Mapping[str, int | None] 
     return {"issue_slots": read.issue_slots(counts, family), **counts, **some, "branches": branches, "loops": loops}
 
 
-def _executed_slots(case: Case, row: Row, assembly: str) -> float | None:
+def _executed_slots(case: CostCase, row: Row, assembly: str) -> float | None:
     """The issue slots that a case's loops make of its static ones; None where that is not known."""
     read, family = listings_of(row["family"]), row["family"]
     if (rates := read.rates(family)) is None or any(row[kind] is None for kind in read.KINDS):
@@ -315,7 +315,7 @@ def listings_of(family: str) -> Any:
     return READERS[known.vendor] if known else disassembly
 
 
-def counted(chosen: Sequence[Case], family: str, stage: str) -> dict[tuple[str, str], Row]:
+def counted(chosen: Sequence[CostCase], family: str, stage: str) -> dict[tuple[str, str], Row]:
     """The rows of one family with instructions, by encoding, packing or layout, and operation. Where there are no
     compilers, those that another machine's counted, which have `recorded_by`."""
     try:

@@ -9,7 +9,8 @@ from typing import Annotated
 from ....reports.sheets import View
 from ...ground.options.gpu_families import CHOICES, titled
 from ...ground.options.option import Arithmetics, Encodings, Option
-from ...shaders.languages.source_options import SourceOptions
+from ...ground.options.source_options import SourceOptions
+from ...ground.options.words import Names
 from .. import shared_columns as shared
 from ..quality.table import COMMON
 from ..table import Column, Role, Section, Table
@@ -21,25 +22,29 @@ KEY, HOW, TIME = Role.KEY, Role.HOW, Role.TIME
 class CostOptions(SourceOptions):
     """What `cost` measures. Names are comma-separated."""
 
-    encoding: Encodings = "all"
+    encoding: Encodings = ("all",)
     isa: Annotated[bool, Option("--isa", "Instructions that compilers make of the GLSL; needs no GPU.")] = False
     time: Annotated[bool, Option("--time", "Nanoseconds a megapixel on the GL device.")] = False
     article: Annotated[bool, Option("--article", "The figures of Pranckevicius' article next to them.")] = False
     family: Annotated[
-        str,
+        Names,
         Option(
             "--family",
             f"GPUs, comma-separated: {', '.join(CHOICES['radeon'])}, or radeon for these; {titled('intel')}, or intel "
             f"for these; {titled('nvidia')}, or nvidia for these; all.",
             in_run=True,
         ),
-    ] = "radeon"
-    stage: Annotated[str, Option("--stage", "fragment, compute; comma-separated, or all.")] = "fragment,compute"
-    operation: Annotated[str, Option("--operation", "encode, decode; comma-separated, or all.")] = "encode,decode"
-    arithmetic: Arithmetics = "declared"
+    ] = ("radeon",)
+    stage: Annotated[Names, Option("--stage", "fragment, compute; comma-separated, or all.")] = ("fragment", "compute")
+    operation: Annotated[Names, Option("--operation", "encode, decode; comma-separated, or all.")] = (
+        "encode",
+        "decode",
+    )
+    arithmetic: Arithmetics = ("declared",)
     storage: Annotated[
-        str, Option("--storage", "Storages and packings whose own cost is shown, comma-separated, or all.", in_run=True)
-    ] = "rgba8,rgba8_snorm,11:11,12:12,16:16,11:10:11,depth16,depth24,depth24_sign"
+        Names,
+        Option("--storage", "Storages and packings whose own cost is shown, comma-separated, or all.", in_run=True),
+    ] = ("rgba8", "rgba8_snorm", "11:11", "12:12", "16:16", "11:10:11", "depth16", "depth24", "depth24_sign")
     size: Annotated[
         str | None,
         Option("--size", "WIDTHxHEIGHT of the target that is timed. Default: 64x64 in software, or 1024x1024."),

@@ -18,11 +18,12 @@ from ....reports.charts.chart import Chart
 from ...ground.choose import choose
 from ...ground.options import gpu_families as families
 from ...ground.options.counts import MAX_REPEATS, in_range
-from ...ground.options.storage_names import storages_said
+from ...ground.options.words import Names
 from ...ground.output.errors import MissingError, UsageError
 from ...ground.output.writing import check_folder, whole_file
 from ...shaders.isa import isa, spirv
 from ...subjects.codecs.user_encodings import encodings_named
+from ...subjects.names.storages import storages_said
 from ..families_named import families_named
 from ..table import Measured, Row, Sheet, Step, Tick, Work, each
 from . import measure, sheets
@@ -41,21 +42,21 @@ def measures(options: CostOptions) -> list[str]:
     return asked or list(MEASURES)
 
 
-def packings(names: str) -> list[Packing]:
-    """What `--storage` names: packings, and storages by their bits alone. Raises UsageError."""
-    said = storages_said(names, PACKINGS)
+def packings(names: Names) -> list[Packing]:
+    """Return what `--storage` names: packings, and storages by their bits alone. Raises UsageError."""
+    said = storages_said(map(str, names), PACKINGS)
     known = {**PACKINGS, **{word: packings_of(storage) for word, storage in said.items() if storage}}
     if few := next((word for word, several in known.items() if not several), None):
         raise UsageError(f"--storage {few}: a code of a normal has two numbers or three")
-    chosen = choose("storage", ",".join(said), known)
+    chosen = choose("storage", said, known)
     return list(dict.fromkeys(packing for several in chosen for packing in several))
 
 
-def chosen_families(names: str) -> list[str]:
+def chosen_families(names: Names) -> list[str]:
     """What `--family` names: families, and vendors for all of theirs. NVIDIA's, whose compiler
     people install themselves, are among all of them where it is there. Raises UsageError."""
     found = families_named(names)
-    if names.strip().lower() != "all" or not isa.missing(families.NVRTC):
+    if names != ("all",) or not isa.missing(families.NVRTC):
         return found
     return [name for name in found if families.FAMILIES[name].library != families.NVRTC]
 
@@ -74,7 +75,7 @@ class Costing:
     missing: list[str] = field(default_factory=list)
 
     @property
-    def cases(self) -> list[measure.Case]:
+    def cases(self) -> list[measure.CostCase]:
         """What is compiled or timed: encodings, and what packings add."""
         return measure.cases(self.encodings, self.packings, self.operations)
 
@@ -106,7 +107,7 @@ def costing(options: CostOptions) -> Costing:
 def _encodings(options: CostOptions) -> list[Encoding]:
     named = encodings_named(options.encoding)
     is_usual = options.arithmetic == CostOptions.arithmetic
-    if options.arithmetic == FLOAT or (is_usual and not any(one.is_also_half for one in named)):
+    if options.arithmetic == (FLOAT,) or (is_usual and not any(one.is_also_half for one in named)):
         return named
     from ...subjects.codecs.names import with_arithmetics
 
@@ -122,8 +123,11 @@ def _steps(options: CostOptions, outputs: CostOutputs) -> list[Step]:
         "isa": key | {"stages": asked.stages, "families": asked.families},
         "time": key | {"size": options.size, "repeats": options.repeats},
     }
-    made = [Step({"measure": name} | keys[name], Part(asked, name, MEASURED[name]), name) for name in measures(options)]
-    article = [Step({"measure": "article"} | key, Part(asked, "article", _article), "article")]
+    made = [
+        Step({"measure": name} | keys[name], CostMeasure(asked, name, MEASURED[name]), name)
+        for name in measures(options)
+    ]
+    article = [Step({"measure": "article"} | key, CostMeasure(asked, "article", _article), "article")]
     return made + (article if options.article else [])
 
 
@@ -137,7 +141,7 @@ def _check(asked: Costing, outputs: CostOutputs) -> None:
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class CostMeasure:
     """One measure of what is asked for."""
 
     asked: Costing
@@ -241,7 +245,7 @@ def _write(done: Measured, _: Tick) -> None:
 
 def _front_charts(found: Any) -> Iterator[Chart]:
     """Draw instructions against each error of a run."""
-    for at, front in enumerate(found.extras.get("fronts", ())):
+    for at, front in enumerate(found.fronts):
         yield front_chart(f"cost-{at}", front.label, front.panels)
 
 

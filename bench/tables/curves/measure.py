@@ -31,7 +31,7 @@ How = dict[str, str]
 
 
 @dataclass(frozen=True)
-class Case:
+class CurveCase:
     """One row to measure."""
 
     codec: CurveCodec
@@ -67,7 +67,7 @@ Backend = Callable[[CurveCodec], AbstractContextManager[tuple[Trip, How]]]
 BACKENDS: Mapping[str, Backend] = MappingProxyType({"jax": _trip_by_jax, "glsl": _trip_by_glsl})
 
 
-def measure(case: Case) -> Row:
+def measure(case: CurveCase) -> Row:
     """One row; one that the device cannot give has its reason in `skipped` and no figures."""
     codec = case.codec
     row = TABLE.empty() | {
@@ -87,7 +87,7 @@ def measure(case: Case) -> Row:
         return row | {"skipped": str(error)}
 
 
-def _figures(case: Case, trip: Trip) -> Row:
+def _figures(case: CurveCase, trip: Trip) -> Row:
     largest = case.codec.range
     # Not the even steps themselves, which may be the codes of a storage.
     linear = (np.arange(case.count) + np.random.default_rng(case.seed).random(case.count)) / case.count
@@ -108,7 +108,7 @@ def _figures(case: Case, trip: Trip) -> Row:
     }
 
 
-def _display_columns(case: Case, trip: Trip, shown: np.ndarray) -> Row:
+def _display_columns(case: CurveCase, trip: Trip, shown: np.ndarray) -> Row:
     """How far colours are off on the sRGB curve; `shown` are values of that curve."""
     largest = case.codec.range
     x = np.asarray(from_srgb(shown.astype(np.float32))) * np.float32(largest)
@@ -117,7 +117,7 @@ def _display_columns(case: Case, trip: Trip, shown: np.ndarray) -> Row:
     return {"display_mean": float(apart.mean()), "display_max": float(apart.max())}
 
 
-def _through(case: Case, trip: Trip, x: np.ndarray, is_still: bool = False) -> np.ndarray:
+def _through(case: CurveCase, trip: Trip, x: np.ndarray, is_still: bool = False) -> np.ndarray:
     """Quantities (float32, any number) through a codec, dithered where that is asked for unless `is_still`."""
     noise = np.zeros_like(x)
     if case.codec.is_dithered and not is_still:
@@ -127,7 +127,7 @@ def _through(case: Case, trip: Trip, x: np.ndarray, is_still: bool = False) -> n
     return trip(x, noise)
 
 
-def _least(case: Case, trip: Trip, zero: np.float32) -> float | None:
+def _least(case: CurveCase, trip: Trip, zero: np.float32) -> float | None:
     """The smallest quantity that is told from 0, to a thousandth; None where the range is not."""
     low, high = LEAST * case.codec.range, case.codec.range
     for _ in range(2):

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from ...ground.options.option import Backends, Names, Option, RoundingsAndDithered, Seed
-from ...shaders.languages.source_options import SourceOptions
+from ...ground.options.option import NAMED, Backends, Option, RoundingsAndDithered, Seed
+from ...ground.options.source_options import SourceOptions
+from ...ground.options.words import Names
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
@@ -17,12 +18,13 @@ KEY, HOW = Role.KEY, Role.HOW
 class CurvesOptions(SourceOptions):
     """What `curves` measures. Names and numbers are comma-separated; no storage: where each curve usually lies."""
 
-    encoding: Annotated[str, Option("--encoding", f"Curves or files of yours, {Names}.", files=True)] = "all"
-    storage: Annotated[str | None, Option("--storage", f"Storages, {Names}. Default: each curve's usual.")] = None
-    rounding: RoundingsAndDithered = "nearest"
-    backend: Backends = "jax,glsl"
+    encoding: Annotated[Names, Option("--encoding", f"Curves or files of yours, {NAMED}.", files=True)] = ("all",)
+    storage: Annotated[Names | None, Option("--storage", f"Storages, {NAMED}. Default: each curve's usual.")] = None
+    rounding: RoundingsAndDithered = ("nearest",)
+    backend: Backends = ("jax", "glsl")
     range: Annotated[
-        str | None, Option("--range", "Largest quantities that are kept, comma-separated. Default: each curve's usual.")
+        Names | None,
+        Option("--range", "Largest quantities that are kept, comma-separated. Default: each curve's usual."),
     ] = None
     count: Annotated[int, Option("--count", "Quantities, one at random in each of as many steps to the range.")] = 2**16
     seed: Seed = 0

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
-from ....encodings.catalogue import CURVE_ENCODINGS
 from ....encodings.codecs.curve_codec import CurveCodec
-from ....encodings.codecs.kind import CURVE
-from ....encodings.storages.storage import CURVE_STORAGES, ROUNDINGS_AND_DITHERED
-from ...ground.machine.devices import require_device, require_jax
-from ...ground.options.backends import backends_named
+from ....encodings.kinds import CURVE
+from ....encodings.storages.storage import ROUNDINGS_AND_DITHERED
 from ...ground.options.counts import check_seed, checked_numbers, in_range
-from ...ground.options.storage_names import roundings_named, storages_named
 from ...ground.options.targets import that_fit
-from ...subjects.codecs.kinds.named import own_codes_named
+from ...subjects.codecs.kinds.codecs import codecs_of_kind
+from ...subjects.names.backends import backends_here
+from ...subjects.names.storages import roundings_named
 from ..charts import one_backend
 from ..table import NoOutputs, Row, Sheet, Step, Work, each
 from . import measure
@@ -24,7 +23,7 @@ from .table import CurvesOptions
 MAX_QUANTITIES, RANGES = 2**22, (1e-4, 65504.0)
 
 
-def cases(options: CurvesOptions) -> list[measure.Case]:
+def cases(options: CurvesOptions) -> list[measure.CurveCase]:
     """One case for each curve, range, storage, rounding and back end.
 
     Raises:
@@ -34,25 +33,18 @@ def cases(options: CurvesOptions) -> list[measure.Case]:
     check_seed(options.seed)
     in_range("--count", options.count, 2, MAX_QUANTITIES)
     chosen = codecs(options)
-    backends = backends_named(options.backend, measure.BACKENDS)
-    require_jax()
-    if backends == ["glsl"]:
-        require_device()
-    return [measure.Case(codec, backend, options.count, options.seed) for codec in chosen for backend in backends]
+    backends = backends_here(options.backend, measure.BACKENDS)
+    return [measure.CurveCase(codec, backend, options.count, options.seed) for codec in chosen for backend in backends]
 
 
 def codecs(options: CurvesOptions) -> list[CurveCodec]:
-    """The codecs asked for; those that do not fit are named on standard error."""
+    """Return the codecs asked for; those that do not fit are named on standard error."""
     roundings = roundings_named(options.rounding, ROUNDINGS_AND_DITHERED)
-    said = options.range and checked_numbers("--range", options.range, float, *RANGES)
-    # A user's file is looked at once, however many ways to round are named.
-    encodings = own_codes_named(CURVE, options.encoding, CURVE_ENCODINGS)
+    said = None if options.range is None else checked_numbers("--range", options.range, float, *RANGES)
     return that_fit(
-        CurveCodec(encoding, storage, largest, rounding)
-        for rounding in roundings
-        for encoding in encodings
-        for storage in storages_named(options.storage or ",".join(encoding.storages), CURVE_STORAGES, "curve storage")
-        for largest in said or (encoding.usual_range,)
+        replace(codec, range=largest)
+        for codec in codecs_of_kind(CURVE, options.encoding, options.storage, roundings)
+        for largest in said or (codec.range,)
     )
 
 
@@ -60,7 +52,7 @@ def _steps(options: CurvesOptions, _: NoOutputs) -> list[Step]:
     return [Step(_key(case), case, case.name) for case in cases(options)]
 
 
-def _key(case: measure.Case) -> Row:
+def _key(case: measure.CurveCase) -> Row:
     key: Row = {"codec": case.codec.name, "rounding": case.codec.rounding, "backend": case.backend}
     return key | {"range": case.codec.range, "count": case.count, "seed": case.seed}
 

@@ -10,12 +10,12 @@ from pathlib import Path
 import numpy as np
 
 from ....encodings.shared.position import Camera
-from ...ground.choose import choose_one, file_names
-from ...ground.options.scene_names import say_notes
-from ...ground.options.words import given_in
+from ...ground.choose import choose_one
+from ...ground.options.words import Given, Names, Word
 from ...ground.output.errors import UsageError, tell
 from ...subjects.depths.depth_images import CODES, VIEW, DepthImage, DepthReading, depth_image, read_depths
 from ...subjects.normals.pixel_files import Pixels
+from ...subjects.scenes.mesh_files import say_notes
 from .points import Points
 from .table import DepthOptions
 
@@ -25,7 +25,7 @@ MOST_PIXELS = 2**22
 
 
 @dataclass(frozen=True, eq=False)
-class Seen:
+class DepthFrame:
     """A frame through a camera.
 
     Attributes:
@@ -40,7 +40,7 @@ class Seen:
 
 
 @lru_cache(maxsize=4)
-def seen(frame: DepthImage, camera: Camera) -> Seen:
+def seen(frame: DepthImage, camera: Camera) -> DepthFrame:
     """What is measured of a frame."""
     surface = frame.surface(camera)
     index = np.flatnonzero(surface)
@@ -49,7 +49,7 @@ def seen(frame: DepthImage, camera: Camera) -> Seen:
     row, column = np.divmod(index[::every], width)
     places = np.stack([(column + 0.5) / width * 2 - 1, 1 - (row + 0.5) / height * 2], axis=1).astype(np.float32)
     points = Points(places if frame.fov is not None else np.zeros_like(places), surface[row, column])
-    return Seen(points, surface.size - len(index) - frame.not_finite, every)
+    return DepthFrame(points, surface.size - len(index) - frame.not_finite, every)
 
 
 def frames_named(options: DepthOptions) -> list[DepthImage]:
@@ -61,17 +61,20 @@ def frames_named(options: DepthOptions) -> list[DepthImage]:
     if options.depths is None:
         _check_unused(options)
         return []
-    words = [word for word in file_names(options.depths) if word]
-    options, own = _checked(words, options), given_in(options.depths)
+    words = options.depths
+    options = _checked(words, options)
     names = ("channel", "depths_are", "depth_unit", "fov")
     reading = DepthReading(**{name: getattr(options, name) for name in names})
-    found = {w: _pixels_of(own[w]) if w in own else read_depths(Path(w), reading.channel) for w in words}
-    return [depth_image(Path(word), pixels, reading) for word, pixels in found.items()]
+    return [depth_image(Path(str(word)), _read(word, reading), reading) for word in words]
 
 
-def _checked(words: Sequence[str], options: DepthOptions) -> DepthOptions:
+def _read(word: Word, reading: DepthReading) -> Pixels:
+    return _pixels_of(word.value) if isinstance(word, Given) else read_depths(Path(word), reading.channel)
+
+
+def _checked(words: Names, options: DepthOptions) -> DepthOptions:
     """The options with what the numbers are by its known name. Raises UsageError."""
-    names = [Path(word).name for word in words]
+    names = [Path(str(word)).name for word in words]
     if not words:
         raise UsageError("--depths names no file")
     if twice := next((name for name in names if names.count(name) > 1), None):

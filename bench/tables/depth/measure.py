@@ -54,7 +54,7 @@ def all_points(camera: Camera, distances: tuple[float | None, ...], count: int, 
 
 
 @dataclass(frozen=True)
-class Case:
+class DepthCase:
     """What a few rows are measured of: one for each distance, None for the whole range.
 
     Attributes:
@@ -110,7 +110,7 @@ def _in_blocks(function: Callable[..., Sequence[Any]], *arrays: np.ndarray) -> l
     return [np.concatenate([np.asarray(part) for part in parts])[:count] for parts in zip(*made, strict=True)]
 
 
-def _rebuilt_by_jax(case: Case, signed: np.ndarray, on: Points) -> tuple[Rebuilt, dict[str, str]]:
+def _rebuilt_by_jax(case: DepthCase, signed: np.ndarray, on: Points) -> tuple[Rebuilt, dict[str, str]]:
     codec, seen = case.codec, case.camera.seen(case.codec.encoding.projection)
     noise = [laid_out(codec.dither.added, on.width, len(signed))[:, 0]] if codec.is_dithered else []
 
@@ -124,7 +124,7 @@ def _rebuilt_by_jax(case: Case, signed: np.ndarray, on: Points) -> tuple[Rebuilt
     return Rebuilt(*_in_blocks(rebuilt, signed, *on.places.T, *noise)), how
 
 
-def _rebuilt_by_glsl(case: Case, signed: np.ndarray, on: Points) -> tuple[Rebuilt, dict[str, str]]:
+def _rebuilt_by_glsl(case: DepthCase, signed: np.ndarray, on: Points) -> tuple[Rebuilt, dict[str, str]]:
     gl, count = device(), len(signed)
     height = -(-count // on.width)
     pixels = np.ones((height * on.width, 3), np.float32)
@@ -136,7 +136,7 @@ def _rebuilt_by_glsl(case: Case, signed: np.ndarray, on: Points) -> tuple[Rebuil
     return flat, how
 
 
-BACKENDS: Mapping[str, Callable[[Case, np.ndarray, Points], tuple[Rebuilt, dict[str, str]]]] = MappingProxyType(
+BACKENDS: Mapping[str, Callable[[DepthCase, np.ndarray, Points], tuple[Rebuilt, dict[str, str]]]] = MappingProxyType(
     {"jax": _rebuilt_by_jax, "glsl": _rebuilt_by_glsl}
 )
 
@@ -178,7 +178,7 @@ def _limits(codec: DepthCodec, camera: Camera, on: Points) -> tuple[np.ndarray, 
     return rays * half_steps, rays * bounds
 
 
-def through(case: Case, on: Points) -> Measured:
+def through(case: DepthCase, on: Points) -> Measured:
     """Points through a case's codec. Every other normal faces away, where the encoding keeps that.
 
     Raises:
@@ -195,7 +195,7 @@ def through(case: Case, on: Points) -> Measured:
     return Measured(errors, half_steps, bounds, relative, lost, rebuilt.positions, how)
 
 
-def measure(case: Case) -> list[Row]:
+def measure(case: DepthCase) -> list[Row]:
     """A case's rows; those that the device cannot give have its reason in `skipped` and no figures."""
     camera, codec = case.camera, case.codec
     shared = TABLE.empty() | {
@@ -239,7 +239,7 @@ def _frame_columns(frame: DepthImage, camera: Camera) -> Row:
     }
 
 
-def _figures(case: Case, found: Measured, part: slice) -> Row:
+def _figures(case: DepthCase, found: Measured, part: slice) -> Row:
     return {
         "relative_mean": float(found.relative[part].mean()),
         "relative_max": float(found.relative[part].max()),

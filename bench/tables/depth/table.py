@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from ...ground.options.option import Backends, Images, Names, Option, Plot, RoundingsAndDithered, Seed
-from ...shaders.languages.source_options import SourceOptions
+from ...ground.options.option import NAMED, Backends, Images, Option, Plot, RoundingsAndDithered, Seed
+from ...ground.options.source_options import SourceOptions
+from ...ground.options.words import Names
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
@@ -17,20 +18,22 @@ KEY, HOW = Role.KEY, Role.HOW
 class DepthOptions(SourceOptions):
     """What `depth` measures. Names and numbers are comma-separated; None stands for what is usual."""
 
-    depth: Annotated[str, Option("--depth", f"Depth codes or files of yours, {Names}.", files=True)] = "all"
-    storage: Annotated[str | None, Option("--storage", f"Depth storages, {Names}. Default: each code's usual.")] = None
-    rounding: RoundingsAndDithered = "nearest"
+    depth: Annotated[Names, Option("--depth", f"Depth codes or files of yours, {NAMED}.", files=True)] = ("all",)
+    storage: Annotated[Names | None, Option("--storage", f"Depth storages, {NAMED}. Default: each code's usual.")] = (
+        None
+    )
+    rounding: RoundingsAndDithered = ("nearest",)
     rebuild: Annotated[
-        str | None,
+        Names | None,
         Option(
             "--rebuild",
             "inverse_projection, projection_terms, eye_ray; comma-separated, or all. Default: each code's usual.",
         ),
     ] = None
-    near: Annotated[str, Option("--near", "Near planes, comma-separated.")] = "0.1,1"
-    far: Annotated[str, Option("--far", "Far planes, comma-separated.")] = "1000"
+    near: Annotated[Names, Option("--near", "Near planes, comma-separated.")] = ("0.1", "1")
+    far: Annotated[Names, Option("--far", "Far planes, comma-separated.")] = ("1000",)
     distance: Annotated[
-        str | None, Option("--distance", "Distances, comma-separated. Default: every power of ten.")
+        Names | None, Option("--distance", "Distances, comma-separated. Default: every power of ten.")
     ] = None
     fov: Annotated[
         float | None,
@@ -41,7 +44,7 @@ class DepthOptions(SourceOptions):
         ),
     ] = None
     depths: Annotated[
-        str | None,
+        Names | None,
         Option("--depths", "Images of depths to measure, in place of made ones: EXR, TIFF, PNG, NPY.", files=True),
     ] = None
     channel: Annotated[
@@ -59,7 +62,7 @@ class DepthOptions(SourceOptions):
     depth_unit: Annotated[
         float, Option("--depth-unit", "Depth images: what 1 is in the unit of --near; 0.001 for millimetres.")
     ] = 1.0
-    backend: Backends = "jax,glsl"
+    backend: Backends = ("jax", "glsl")
     count: Annotated[int, Option("--count", "Points at each distance.")] = 2**14
     seed: Seed = 0
 

@@ -6,17 +6,15 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
-from itertools import product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ....encodings.catalogue import DEPTH_ENCODINGS, LIGHT_BUFFERS
+from ....encodings.catalogue import LIGHT_BUFFERS
 from ....encodings.codecs.depth_codec import REBUILDS, DepthCodec
-from ....encodings.codecs.kind import DEPTH
+from ....encodings.kinds import DEPTH
 from ....encodings.shared.position import Camera
-from ....encodings.storages.depth_storage import DEPTH_STORAGES, DepthStorage, depth_storage_of
 from ....encodings.storages.storage import ROUNDINGS_AND_DITHERED
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device
@@ -28,15 +26,15 @@ from ....gbuffer.scenes.setting import Setting
 from ....reports.charts import pictures
 from ....reports.charts.chart import Chart
 from ...ground.choose import choose
-from ...ground.machine.devices import require_device, require_jax
-from ...ground.options.backends import backends_named
+from ...ground.machine.devices import require_device
 from ...ground.options.counts import check_seed, checked_numbers, in_range
-from ...ground.options.storage_names import roundings_named, storages_said
 from ...ground.options.targets import what_is_left
+from ...ground.options.words import Names
 from ...ground.output.errors import UsageError
 from ...ground.output.writing import check_folder, whole_file
-from ...ground.spelling import OTHER_WORDS
-from ...subjects.codecs.kinds.named import own_codes_named
+from ...subjects.codecs.kinds.codecs import codecs_of_kind
+from ...subjects.names.backends import backends_here
+from ...subjects.names.storages import roundings_named
 from ..charts import but_without_twins, having
 from ..table import Measured, Row, Sheet, Step, Tick, Work, each
 from ..unmeasurable import UNMEASURABLE
@@ -56,7 +54,7 @@ SCENE, SIZE = SCENES["room"], (640, 480)
 USUAL_FOV = 60.0
 
 
-def cases(options: DepthOptions) -> list[measure.Case]:
+def cases(options: DepthOptions) -> list[measure.DepthCase]:
     """One case for each code, way to the position, near and far plane, and back end.
 
     Raises:
@@ -70,17 +68,14 @@ def cases(options: DepthOptions) -> list[measure.Case]:
     cameras = [Camera(near, far, fov, measure.ASPECT) for near, far in _ranges(options)]
     distances = {camera: _distances(options, camera) for camera in cameras}
     in_range("--count", options.count, 2, MAX_POINTS // max(map(len, distances.values())))
-    backends = backends_named(options.backend, measure.BACKENDS)
     chosen = codecs(options)
-    require_jax()
-    if backends == ["glsl"]:
-        require_device()
+    backends = backends_here(options.backend, measure.BACKENDS)
     made = [(camera, distances[camera], None) for camera in cameras]
     if frames := frames_named(options):
         check_and_say(frames, cameras)
         made = [(replace(camera, aspect=one.aspect), (None,), one) for one in frames for camera in cameras]
     return [
-        measure.Case(codec, way, backend, camera, at, options.count, options.seed, frame)
+        measure.DepthCase(codec, way, backend, camera, at, options.count, options.seed, frame)
         for camera, at, frame in made
         for codec, way in chosen
         for backend in backends
@@ -93,28 +88,17 @@ def codecs(options: DepthOptions) -> list[tuple[DepthCodec, str]]:
     complaints: list[str] = []
     roundings = roundings_named(options.rounding, ROUNDINGS_AND_DITHERED)
     asked = None if options.rebuild is None else choose("rebuild", options.rebuild, {name: name for name in REBUILDS})
-    for encoding in own_codes_named(DEPTH, options.depth, DEPTH_ENCODINGS, "depth"):
-        names = ",".join(encoding.storages) if options.storage is None else options.storage
-        for storage, rounding in product(_storages_named(names), roundings):
-            codec = DepthCodec(encoding, storage, rounding)
-            if codec.misfit:
-                complaints.append(f"{codec.name}: {codec.misfit}")
-                continue
-            known = measure.ways(codec)
-            chosen = measure.usual_ways(codec) if asked is None else [way for way in asked if way in known]
-            made += [(codec, way) for way in chosen]
-            if not chosen:
-                ways = ", ".join(asked or ())
-                complaints.append(f"{codec.name}: {ways}: only for codes stored in a depth buffer")
+    for codec in codecs_of_kind(DEPTH, options.depth, options.storage, roundings):
+        if codec.misfit:
+            complaints.append(f"{codec.name}: {codec.misfit}")
+            continue
+        known = measure.ways(codec)
+        chosen = measure.usual_ways(codec) if asked is None else [way for way in asked if way in known]
+        made += [(codec, way) for way in chosen]
+        if not chosen:
+            ways = ", ".join(asked or ())
+            complaints.append(f"{codec.name}: {ways}: only for codes stored in a depth buffer")
     return what_is_left(made, complaints)
-
-
-def _storages_named(names: str) -> list[DepthStorage]:
-    """Storages of depths by their names, or by their bits: unorm:20. Raises UsageError."""
-    said = storages_said(names, {*DEPTH_STORAGES, *OTHER_WORDS["depth storage"]})
-    made = {word: one and depth_storage_of(one) for word, one in said.items()}
-    known = {**DEPTH_STORAGES, **{word: one for word, one in made.items() if one}}
-    return list(dict.fromkeys(choose("depth storage", ",".join(said), known)))
 
 
 def _ranges(options: DepthOptions) -> list[tuple[float, float]]:
@@ -139,8 +123,8 @@ def _distances(options: DepthOptions, camera: Camera) -> tuple[float | None, ...
     return (*found, None)
 
 
-def _numbers(option: str, text: str) -> tuple[float, ...]:
-    return checked_numbers(option, text, float, NEAREST, FARTHEST)
+def _numbers(option: str, words: Names) -> tuple[float, ...]:
+    return checked_numbers(option, words, float, NEAREST, FARTHEST)
 
 
 def _steps(options: DepthOptions, outputs: DepthOutputs) -> list[Step]:
@@ -154,7 +138,7 @@ def _steps(options: DepthOptions, outputs: DepthOutputs) -> list[Step]:
     return [Step(_key(case), case, case.name) for case in made]
 
 
-def _key(case: measure.Case) -> Row:
+def _key(case: measure.DepthCase) -> Row:
     if frame := case.frame:
         key = {"codec": case.codec.name, "rebuilt": case.rebuilt, "backend": case.backend, "depths": frame.name}
         key |= {"depths_are": frame.code, "depth_unit": frame.unit, "channel": frame.channel, "fov": frame.fov}
@@ -232,13 +216,13 @@ def _said(value: object) -> object:
     return f"{value:g}" if isinstance(value, float) else value
 
 
-def _for_drawing(cases: Iterable[measure.Case]) -> list[measure.Case]:
+def _for_drawing(cases: Iterable[measure.DepthCase]) -> list[measure.DepthCase]:
     """One case for each code, camera and way to the position: by GLSL where that was asked for."""
     chosen = {(c.codec, c.camera, c.rebuilt, c.frame): c for c in sorted(cases, key=lambda c: c.backend, reverse=True)}
     return [case for case in cases if case in chosen.values()]
 
 
-def _curve(case: measure.Case) -> list[Row]:
+def _curve(case: measure.DepthCase) -> list[Row]:
     """A case's rows at many distances, close to each other; by JAX where the device cannot."""
     distances = np.geomspace(case.camera.near, case.camera.far, CURVE).tolist()
     fine = replace(case, distances=tuple(distances), count=CURVE_COUNT)
@@ -289,7 +273,7 @@ def _seen(device: Device) -> Surface:
         return Surface(SCENE.name, -made.gbuffer()[0][..., 2], scene.view.fov)
 
 
-def _pictured(folder: Path, cases: Iterable[measure.Case]) -> Surface | None:
+def _pictured(folder: Path, cases: Iterable[measure.DepthCase]) -> Surface | None:
     """What the pictures show: the scene, or None where each case has a frame of its own. Raises as `_scene`."""
     if not any(case.frame for case in cases):
         return _scene(folder, cases)
@@ -297,7 +281,7 @@ def _pictured(folder: Path, cases: Iterable[measure.Case]) -> Surface | None:
     return None
 
 
-def _seen_by(case: measure.Case, scene: Surface | None) -> Surface:
+def _seen_by(case: measure.DepthCase, scene: Surface | None) -> Surface:
     """What the pictures of a case show."""
     if case.frame:
         return Surface(case.frame.name, case.frame.surface(case.camera), case.camera.fov)
@@ -305,7 +289,7 @@ def _seen_by(case: measure.Case, scene: Surface | None) -> Surface:
     return scene
 
 
-def _scene(folder: Path, cases: Iterable[measure.Case]) -> Surface:
+def _scene(folder: Path, cases: Iterable[measure.DepthCase]) -> Surface:
     """What the pictures show, rendered in 32-bit floats.
 
     Raises:
@@ -326,7 +310,7 @@ def _scene(folder: Path, cases: Iterable[measure.Case]) -> Surface:
 
 
 def _write_pictures(
-    cases: Iterable[measure.Case], pictured: Surface | None, folder: Path, tick: Callable[[str], None]
+    cases: Iterable[measure.DepthCase], pictured: Surface | None, folder: Path, tick: Callable[[str], None]
 ) -> None:
     """Write two pictures of each case."""
     for case in cases:
@@ -343,7 +327,7 @@ def _write_pictures(
         tick(case.name)
 
 
-def _through(case: measure.Case, points: measure.Points) -> measure.Measured:
+def _through(case: measure.DepthCase, points: measure.Points) -> measure.Measured:
     try:
         return measure.through(case, points)
     except UNMEASURABLE:

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ...ground.choose import file_names, names_a_folder
+from ...ground.choose import names_a_folder
+from ...ground.options.words import Names
 from ...ground.output.errors import UsageError, tell
 from ..table import Row, Step
 from .device_file import CodecRow, DeviceFile, Read, file_of_rows, read_device_file
@@ -46,14 +47,14 @@ def called(device: Any, browser: Any) -> str:
     return f"{device}, {browser}"
 
 
-def files_named(words: str) -> list[Path]:
-    """The files that comma-separated words name; a folder stands for its *.json.
+def files_named(words: Names) -> list[Path]:
+    """Return the files that words name; a folder stands for its *.json.
 
     Raises:
         UsageError: none is named, a folder has none, or there are too many.
     """
     found: dict[Path, None] = {}
-    for word in filter(None, file_names(words)):
+    for word in map(str, words):
         found |= dict.fromkeys(_folder_files(Path(word)) if names_a_folder(word) else [Path(word)])
     if not found:
         raise UsageError(f"no device file named; --devices FILE,FILE names them, and {SAVED}")
@@ -115,7 +116,7 @@ def named(files: Sequence[DeviceFile]) -> list[Device]:
     return [Device(names[file.renderer], file) for file in files]
 
 
-def steps_of(words: str, is_of_facts: bool) -> list[Step]:
+def steps_of(words: Names, is_of_facts: bool) -> list[Step]:
     """A step for each device: its facts, or its codecs. Raises UsageError for a file that cannot be read or is not a
     device's."""
     found = devices(read_device_file(path) for path in files_named(words))

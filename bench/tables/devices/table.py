@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from ...ground.options.option import Option
+from ...ground.options.option import Option, Options
+from ...ground.options.words import Names
 from .. import shared_columns as shared
 from ..table import Column, Group, Role, Section, Table
 
@@ -15,13 +16,13 @@ CODEC, FACT = "codec", "fact"
 
 
 @dataclass(frozen=True, kw_only=True)
-class DevicesOptions:
+class DevicesOptions(Options):
     """Which device files are read, and what of them is shown."""
 
     devices: Annotated[
-        str,
+        Names,
         Option("--devices", "Device files, or folders of them, comma-separated.", files=True, in_run=True),
-    ] = ""
+    ] = ()
     facts: Annotated[
         bool, Option("--facts", "Show how each device rounds, filters, resolves and computes, in place of its codecs.")
     ] = False

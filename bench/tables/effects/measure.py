@@ -27,7 +27,7 @@ from .table import TABLE
 
 
 @dataclass(frozen=True)
-class Case:
+class EffectsCase:
     """One row to measure.
 
     Attributes:
@@ -51,7 +51,7 @@ class Case:
         return f"{self.effect.name} {self.maker.name} {self.plan.layout.name} {code}"
 
     @property
-    def reference(self) -> Case:
+    def reference(self) -> EffectsCase:
         """The same effect from a G-buffer in 32-bit floats."""
         return replace(self, plan=replace(self.plan, layout=LAYOUTS["fp32"]), depth=None)
 
@@ -74,7 +74,7 @@ class Drawn(Frame):
     hits: np.ndarray | None
 
 
-class EffectsBench(Bench[Case, Drawn]):
+class EffectsBench(Bench[EffectsCase, Drawn]):
     """Measures cases, each reference once.
 
     Args:
@@ -85,13 +85,13 @@ class EffectsBench(Bench[Case, Drawn]):
     def __init__(self, device: Device, repeats: int, rays: int, with_flip: bool):
         super().__init__(device, repeats, with_flip)
         self._rays = rays
-        self._methods: dict[Case, Row] = {}
+        self._methods: dict[EffectsCase, Row] = {}
 
-    def about(self, case: Case) -> Row:
+    def about(self, case: EffectsCase) -> Row:
         row = TABLE.empty(stage.name for stage in case.effect.passes()) | _case_columns(case)
         return row | {"device": self.device.renderer}
 
-    def frames(self, case: Case, repeats: int = 0) -> list[Drawn]:
+    def frames(self, case: EffectsCase, repeats: int = 0) -> list[Drawn]:
         effect, scene = case.effect.effect, self.scene(case.maker, case.setting)
         with rendering(self.device, case.pipeline, scene, case.plan) as made:
             made.draw()
@@ -101,11 +101,11 @@ class EffectsBench(Bench[Case, Drawn]):
             times = _effect_times(case, made, repeats) if repeats else {}
             return [Drawn(made.image(), own[..., :3], direction[..., :3], covered, hits, times=times)]
 
-    def display(self, case: Case, frames: list[Drawn]) -> Display:
+    def display(self, case: EffectsCase, frames: list[Drawn]) -> Display:
         (frame,) = frames
         return case.maker.display(frame.linear[frame.covered])
 
-    def figures(self, case: Case, frames: list[Drawn], exact: list[Drawn]) -> Row:
+    def figures(self, case: EffectsCase, frames: list[Drawn], exact: list[Drawn]) -> Row:
         (drawn,), (other,) = frames, exact
         if not np.any(other.covered):
             return {"skipped": f"{case.effect.effect.name} shows nothing in this picture"}
@@ -114,7 +114,7 @@ class EffectsBench(Bench[Case, Drawn]):
         row = _distance_columns(drawn, other) | {"psnr_db": image["psnr_db"]}
         return row | {"invalid": max(image["invalid"], int(lost))} | self._method(case.reference)
 
-    def _method(self, case: Case) -> Row:
+    def _method(self, case: EffectsCase) -> Row:
         """How far the effect from exact normals is from rays; nothing where there is no oracle or no ray caster."""
         if not self._rays or not isinstance(case.effect.effect, AmbientOcclusion):
             return {}
@@ -122,7 +122,7 @@ class EffectsBench(Bench[Case, Drawn]):
             self._methods[case] = self._method_columns(case)
         return self._methods[case]
 
-    def _method_columns(self, case: Case) -> Row:
+    def _method_columns(self, case: EffectsCase) -> Row:
         scene = self.scene(case.maker, case.setting)
         try:
             found = method_error(self.device, case.effect, scene, case.plan.size, rays=self._rays)
@@ -132,7 +132,7 @@ class EffectsBench(Bench[Case, Drawn]):
         return {"method_rms": found.rms, "method_mean": found.mean}
 
 
-def _effect_times(case: Case, made: Rendering, repeats: int) -> Row:
+def _effect_times(case: EffectsCase, made: Rendering, repeats: int) -> Row:
     """Time the effect's passes, and the frame."""
     columns = time_columns(*made.timings(repeats))
     names = [f"ms_{stage.name}" for stage in case.effect.passes()]
@@ -184,7 +184,7 @@ def _angles(drawn: Drawn, exact: Drawn) -> np.ndarray:
     return np.nan_to_num(angles_deg(other[there], one[there]), nan=180.0) if np.any(there) else np.zeros(1)
 
 
-def _case_columns(case: Case) -> Row:
+def _case_columns(case: EffectsCase) -> Row:
     layout, setting, size = case.plan.layout, case.setting, case.plan.size
     row: Row = {"effect": case.effect.name, "pipeline": case.pipeline.name, "scene": case.maker.name}
     row |= {"size": f"{size[0]}x{size[1]}", "lights": setting.lights, "objects": setting.objects, "seed": setting.seed}

@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 from typing import Annotated
 
 from ...ground.options.option import (
+    NAMED,
     Images,
     Layouts,
     Lights,
-    Names,
     Objects,
     Option,
     Pipelines,
@@ -18,14 +18,15 @@ from ...ground.options.option import (
     Seed,
     Size,
 )
-from ...shaders.languages.source_options import SourceOptions
+from ...ground.options.source_options import SourceOptions
+from ...ground.options.words import Names
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
 KEY, HOW, TIME = Role.KEY, Role.HOW, Role.TIME
 # What a run measures: the best of each kind, and the worst of those that ship.
 USUAL = ("octahedral", "spheremap", "xyz_largest", "xyz")
-DEPTHS = "linear/packed16,window/depth24,window/depth32f"
+DEPTHS = ("linear/packed16", "window/depth24", "window/depth32f")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,27 +34,29 @@ class EffectsOptions(SourceOptions):
     """What `effects` measures. Names are comma-separated."""
 
     effect: Annotated[
-        str,
+        Names,
         Option(
             "--effect",
             "Effects to measure, each alone, with settings: gtao:size=half; comma-separated, or all.",
             in_run=True,
         ),
-    ] = "all"
-    pipeline: Pipelines = "hybrid"
+    ] = ("all",)
+    pipeline: Pipelines = ("hybrid",)
     encoding: Annotated[
-        str | None,
+        Names | None,
         Option("--encoding", "Encodings or files, each in an exact layout; comma-separated, or all.", True, True),
     ] = None
-    storage: Annotated[str, Option("--storage", f"Storages of the codes, {Names}.", in_run=True)] = "rgba8"
-    rounding: RoundingsAndDithered = "nearest"
+    storage: Annotated[Names, Option("--storage", f"Storages of the codes, {NAMED}.", in_run=True)] = ("rgba8",)
+    rounding: RoundingsAndDithered = ("nearest",)
     depth: Annotated[
-        str | None,
-        Option("--depth", f"Depth codes as CODE/STORAGE, each in an exact layout, or none. Default: {DEPTHS}."),
+        Names | None,
+        Option(
+            "--depth", f"Depth codes as CODE/STORAGE, each in an exact layout, or none. Default: {','.join(DEPTHS)}."
+        ),
     ] = None
     layout: Layouts = None
     scene: Annotated[
-        str | None,
+        Names | None,
         Option("--scene", "Scenes, mesh or frame files. Default: what shows the effect.", files=True, in_run=True),
     ] = None
     size: Size = "320x240"

@@ -21,18 +21,19 @@ from ....gbuffer.scenes.catalogue import SceneMaker
 from ....gbuffer.scenes.setting import Setting
 from ...ground.choose import choose, choose_one
 from ...ground.options.counts import in_range
-from ...ground.options.effect_names import effects_named, lacking, pipeline_with
 from ...ground.options.targets import checked_setting, checked_target, what_is_left
+from ...ground.options.words import Names
 from ...ground.output.errors import UsageError
 from ...subjects.codecs.layout_names import layouts_named
 from ...subjects.codecs.names import codecs_named
+from ...subjects.names.effects import effects_named, lacking, pipeline_with
 from ...subjects.scenes.scene_names import scene_makers_named
 from ..plans import attempt, with_codecs
 from ..shots import by_shots, checked_device, shot_steps
 from ..table import Row, Sheet, Step, Work
 from . import pictures
 from .charts import charts
-from .measure import Case, EffectsBench, group_of, in_order
+from .measure import EffectsBench, EffectsCase, group_of, in_order
 from .table import DEPTHS, EffectsOptions, EffectsOutputs
 
 MAX_RAYS = 2**16
@@ -49,7 +50,7 @@ def contents(options: EffectsOptions) -> list[tuple[Layout, str | None]]:
     complaints: list[str] = []
     layouts = [(layout, None) for layout in layouts_named(options.layout)] if options.layout else []
     asked = (options.encoding, options.depth)
-    if asked[0] is None and (asked[1] or "").strip().lower() == NO_DEPTH and not options.layout:
+    if asked[0] is None and asked[1] == (NO_DEPTH,) and not options.layout:
         raise UsageError("--depth none leaves nothing to measure: name --encoding or --layout")
     if options.layout and asked == (None, None):
         return list(layouts)
@@ -59,17 +60,17 @@ def contents(options: EffectsOptions) -> list[tuple[Layout, str | None]]:
 
 def _with_normals(options: EffectsOptions, complaints: list[str]) -> list[tuple[Layout, str | None]]:
     codecs = codecs_named(
-        options.encoding or "octahedral", options.storage, options.rounding, known_roundings=ROUNDINGS_AND_DITHERED
+        options.encoding or ("octahedral",), options.storage, options.rounding, known_roundings=ROUNDINGS_AND_DITHERED
     )
     return [(layout, None) for layout in with_codecs([LAYOUTS["fp32"]], codecs, complaints)]
 
 
 def _with_depths(options: EffectsOptions, complaints: list[str]) -> list[tuple[Layout, str | None]]:
     names = DEPTHS if options.depth is None else options.depth
-    if names.strip().lower() == NO_DEPTH:
+    if names == (NO_DEPTH,):
         return []
     made: list[tuple[Layout, str | None]] = []
-    for codec in (_depth_codec(name.strip()) for name in names.split(",") if name.strip()):
+    for codec in (_depth_codec(str(name)) for name in names):
         attempt(lambda codec=codec: (LAYOUTS["fp32"].with_depth(codec), codec.name), made, complaints)
     return made
 
@@ -82,7 +83,7 @@ def _depth_codec(name: str) -> DepthCodec:
     return DepthCodec(encoding, DEPTH_STORAGES[choose_one("depth storage", storage, DEPTH_STORAGES)])
 
 
-def cases(options: EffectsOptions, device: Device) -> list[Case]:
+def cases(options: EffectsOptions, device: Device) -> list[EffectsCase]:
     """A case for each effect, pipeline, scene and content of the G-buffer; what cannot be is named.
 
     Raises:
@@ -93,7 +94,7 @@ def cases(options: EffectsOptions, device: Device) -> list[Case]:
     effects, pipelines = effects_named(options.effect), choose("pipeline", options.pipeline, PIPELINES)
     exact, inside = Plan(size, 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 1, True, 1.0), contents(options)
     complaints: list[str] = []
-    made: list[Case] = []
+    made: list[EffectsCase] = []
     complaints += [f"pipeline {p.name} {NO_GBUFFER}" for p in pipelines if not p.has_gbuffer]
     for effect in effects:
         makers = _suitable(effect, options.scene, setting, complaints)
@@ -102,17 +103,17 @@ def cases(options: EffectsOptions, device: Device) -> list[Case]:
                 one = replace(exact, light_targets=max(pipeline.light_targets, default=1))
                 plans = [(replace(one, layout=layout), depth) for layout, depth in inside]
                 sized = [(m, replace(p, size=m.within(p.size)), depth) for m in makers for p, depth in plans]
-                chosen = [Case(effect, with_effect, plan, m, setting, depth) for m, plan, depth in sized]
+                chosen = [EffectsCase(effect, with_effect, plan, m, setting, depth) for m, plan, depth in sized]
                 made += [case for case in chosen if _is_possible(device, case, makers[case.maker], complaints)]
     return what_is_left(made, complaints)
 
 
 def _suitable(
-    effect: ChosenEffect, names: str | None, setting: Setting, complaints: list[str]
+    effect: ChosenEffect, names: Names | None, setting: Setting, complaints: list[str]
 ) -> dict[SceneMaker, bool]:
     """The scenes asked for, or the effect's own, that have something for it; whether each is metal/rough."""
     made: dict[SceneMaker, bool] = {}
-    for maker in scene_makers_named(names or effect.effect.scene):
+    for maker in scene_makers_named(names or (effect.effect.scene,)):
         scene = maker.make(setting)
         if why := lacking([effect], maker.name, scene):
             complaints.append(why)
@@ -121,7 +122,7 @@ def _suitable(
     return made
 
 
-def _is_possible(device: Device, case: Case, is_metal_rough: bool, complaints: list[str]) -> bool:
+def _is_possible(device: Device, case: EffectsCase, is_metal_rough: bool, complaints: list[str]) -> bool:
     try:
         check(device, case.pipeline, case.plan, is_metal_rough)
     except LayoutError as error:
@@ -137,7 +138,7 @@ def _steps(options: EffectsOptions, outputs: EffectsOutputs) -> list[Step]:
     return shot_steps(bench, cases(options, device), outputs.images, lambda case: _key(case, options))
 
 
-def _key(case: Case, options: EffectsOptions) -> Row:
+def _key(case: EffectsCase, options: EffectsOptions) -> Row:
     key = {"effect": case.effect.name, "pipeline": case.pipeline.name, "scene": case.maker.name, "depth": case.depth}
     key |= {"layout": case.plan.layout.name, "codec": case.plan.layout.codec.name, "size": options.size}
     key |= {"lights": options.lights, "objects": options.objects, "seed": options.seed, "rays": options.rays}

@@ -12,7 +12,8 @@ from ...ground.options.option import (
     Plot,
     Seed,
 )
-from ...shaders.languages.source_options import SourceOptions
+from ...ground.options.source_options import SourceOptions
+from ...ground.options.words import Names
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
@@ -23,11 +24,11 @@ KEY, HOW = Role.KEY, Role.HOW
 class LightsOptions(SourceOptions):
     """What `lights` measures. Names and numbers are comma-separated."""
 
-    experiment: Annotated[str, Option("--experiment", "equal, random, banding, chromaticity; or all.")] = "all"
-    light_buffer: LightBuffers = "all"
-    sums: Annotated[str, Option("--sum", "equal: what the lights sum to; random: the least.")] = "1,4"
-    counts: Annotated[str, Option("--counts", "equal, random: numbers of lights.")] = "8,64,256"
-    peaks: Annotated[str, Option("--peak", "banding: the light at a lamp's centre.")] = "0.1,1,2,3"
+    experiment: Annotated[Names, Option("--experiment", "equal, random, banding, chromaticity; or all.")] = ("all",)
+    light_buffer: LightBuffers = ("all",)
+    sums: Annotated[Names, Option("--sum", "equal: what the lights sum to; random: the least.")] = ("1", "4")
+    counts: Annotated[Names, Option("--counts", "equal, random: numbers of lights.")] = ("8", "64", "256")
+    peaks: Annotated[Names, Option("--peak", "banding: the light at a lamp's centre.")] = ("0.1", "1", "2", "3")
     seed: Seed = 0
 
 

@@ -14,10 +14,10 @@ from ....reports.charts import pictures
 from ...ground.choose import choose
 from ...ground.machine.devices import found_device, require_jax
 from ...ground.options.counts import check_seed, checked_numbers
-from ...ground.options.light_names import MOST_LIGHT
 from ...ground.output.errors import UsageError
 from ...ground.output.writing import check_folder, whole_file
 from ...subjects.codecs.kinds.named import light_codecs_named
+from ...subjects.names.light_buffers import MOST_LIGHT
 from ..table import Row, Sheet, Step, Work, each
 from . import measure
 from .charts import charts

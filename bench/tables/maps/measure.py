@@ -39,7 +39,7 @@ MEGATEXEL = 2**20
 
 
 @dataclass(frozen=True)
-class Case:
+class MapCase:
     """One row to measure; `decoder` is a key of `table.DECODERS`."""
 
     encoding: Encoding
@@ -142,22 +142,22 @@ def decoded_normals(encoding: Encoding, numbers: np.ndarray, view: np.ndarray) -
     return _pixels(_decoder(encoding)(kind(*code), Vec3(*_vectors(view))), numbers.shape[:2])
 
 
-def _texels_by_model(case: Case, blocks: bytes, size: tuple[int, int]) -> np.ndarray:
+def _texels_by_model(case: MapCase, blocks: bytes, size: tuple[int, int]) -> np.ndarray:
     return case.block.by_specification(blocks, size)
 
 
-def _texels_by_device(case: Case, blocks: bytes, size: tuple[int, int]) -> np.ndarray:
+def _texels_by_device(case: MapCase, blocks: bytes, size: tuple[int, int]) -> np.ndarray:
     if not case.block.is_compressed:
         return case.block.by_specification(blocks, size)
     return device_texels(device(), blocks, size, case.block.internal_format)
 
 
-DECODERS: Mapping[str, Callable[[Case, bytes, tuple[int, int]], np.ndarray]] = MappingProxyType(
+DECODERS: Mapping[str, Callable[[MapCase, bytes, tuple[int, int]], np.ndarray]] = MappingProxyType(
     {"model": _texels_by_model, "device": _texels_by_device}
 )
 
 
-def through(case: Case, band: Band, clock: Clock) -> np.ndarray:
+def through(case: MapCase, band: Band, clock: Clock) -> np.ndarray:
     """A band encoded, compressed, decoded: its normals, float32 of shape `band.real` and 3. Adds to the clock."""
     given = code_texels(case.codec, band)
     height, width = given.shape[:2]
@@ -174,7 +174,7 @@ def through(case: Case, band: Band, clock: Clock) -> np.ndarray:
     return decoded_normals(case.encoding, numbers, band.view)[real]
 
 
-def measure(case: Case) -> list[Row]:
+def measure(case: MapCase) -> list[Row]:
     """One row; one that cannot be measured here has its reason in `skipped` and no figures."""
     row, clock, whole = _case_columns(case), Clock(), case.normal_set
 
@@ -192,7 +192,7 @@ def measure(case: Case) -> list[Row]:
         return [row | {"skipped": str(error)}]
 
 
-def _case_columns(case: Case) -> Row:
+def _case_columns(case: MapCase) -> Row:
     return TABLE.empty() | {
         "encoding": case.encoding.name,
         "block": case.block.name,
@@ -217,7 +217,7 @@ def _figures(s: Statistics, clock: Clock) -> Row:
     }
 
 
-def _decoder_columns(case: Case) -> Row:
+def _decoder_columns(case: MapCase) -> Row:
     by_device = case.decoder == "device" and case.block.is_compressed
     # What there is no decoder of here is decoded by the package that encodes it.
     by_package = case.block.encoder.release if case.block.decode is None else ""

@@ -9,19 +9,19 @@ import numpy as np
 
 from ....reports.charts import pictures
 from ...ground.output.writing import whole_file
-from .measure import UNMEASURABLE, Case, Clock, bands, through
+from .measure import UNMEASURABLE, Clock, MapCase, bands, through
 
 # Of the pictures of a codec those that a code in channels of its own does not need.
 KINDS = ("decoded", "error")
 
 
-def stem(case: Case) -> str:
+def stem(case: MapCase) -> str:
     """What the files of a case are called, without what they show."""
     parts = (case.normal_set.name, case.encoding.name, case.block.name, case.swizzle.name, case.decoder)
     return "-".join(parts).replace("/", "_in_")
 
 
-def write(cases: Iterable[Case], folder: Path) -> None:
+def write(cases: Iterable[MapCase], folder: Path) -> None:
     """The decoded normals and their error, times `pictures.GAIN`, of each case. Raises OSError."""
     for case in cases:
         try:
@@ -33,7 +33,7 @@ def write(cases: Iterable[Case], folder: Path) -> None:
                 pictures.write_png(partial, found[kind])
 
 
-def _case_pictures(case: Case) -> dict[str, np.ndarray]:
+def _case_pictures(case: MapCase) -> dict[str, np.ndarray]:
     parts = list(bands(case.normal_set))
     decoded = np.concatenate([through(case, band, Clock()) for band in parts])
     n = np.concatenate([band.n[: band.real[0], : band.real[1]] for band in parts])

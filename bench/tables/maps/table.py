@@ -8,7 +8,8 @@ from types import MappingProxyType
 from typing import Annotated
 
 from ...ground.options.option import Encodings, Images, Option, Plot, Reading
-from ...shaders.languages.source_options import SourceOptions
+from ...ground.options.source_options import SourceOptions
+from ...ground.options.words import Names
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
@@ -48,20 +49,22 @@ def _listed_text(known: Mapping[str, str]) -> str:
 class MapsOptions(Reading, SourceOptions):
     """What `maps` measures. Names are comma-separated."""
 
-    encoding: Encodings = "xy,hemi_octahedral,octahedral,xyz"
-    block: Annotated[str, Option("--block", f"{', '.join(BLOCKS)}; comma-separated, or all.")] = "all"
-    swizzle: Annotated[str, Option("--swizzle", f"{', '.join(SWIZZLES)}; those with room for the code are used.")] = (
-        "rg,rrrg,rgb"
+    encoding: Encodings = ("xy", "hemi_octahedral", "octahedral", "xyz")
+    block: Annotated[Names, Option("--block", f"{', '.join(BLOCKS)}; comma-separated, or all.")] = ("all",)
+    swizzle: Annotated[Names, Option("--swizzle", f"{', '.join(SWIZZLES)}; those with room for the code are used.")] = (
+        "rg",
+        "rrrg",
+        "rgb",
     )
     normals: Annotated[
-        str,
+        Names,
         Option(
             "--normals",
             "Image files of normals, or bumps (smooth), grain (noise), playground; comma-separated.",
             files=True,
         ),
-    ] = "bumps,grain"
-    decoder: Annotated[str, Option("--decoder", "model, device; comma-separated, or all.")] = "model"
+    ] = ("bumps", "grain")
+    decoder: Annotated[Names, Option("--decoder", "model, device; comma-separated, or all.")] = ("model",)
 
 
 @dataclass(frozen=True, kw_only=True)

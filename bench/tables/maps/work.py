@@ -10,7 +10,7 @@ from ...ground.choose import choose
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.counts import DEFAULT_COUNT
 from ...ground.options.targets import what_is_left
-from ...ground.options.words import Words, given_in
+from ...ground.options.words import Given, Names
 from ...ground.output.errors import MissingError, UsageError, leave_out
 from ...ground.output.writing import check_folder
 from ...measures.metrics import published
@@ -22,13 +22,13 @@ from ..table import Measured, Row, Sheet, Step, Work, each
 from . import measure, pictures
 from .charts import charts
 from .formats import FORMATS, SWIZZLES, BlockFormat, swizzles_of
-from .measure import Case
+from .measure import MapCase
 from .order import group_of, in_order
 from .sets import MAPS
 from .table import MapsOptions, MapsOutputs
 
 
-def cases(options: MapsOptions) -> list[Case]:
+def cases(options: MapsOptions) -> list[MapCase]:
     """One case for each row; what does not fit is named on standard error.
 
     Raises:
@@ -50,26 +50,22 @@ def cases(options: MapsOptions) -> list[Case]:
         for swizzle in _swizzles(encoding, block, asked, no_room)
     ]
     # Where all formats are asked for, those with room for a code are meant.
-    complaints += [] if fitting and _names_all(options.block) else no_room
+    complaints += [] if fitting and "all" in options.block else no_room
     sets = _images(options, any(encoding.domain == "view" for encoding in encodings))
     left = what_is_left(fitting, complaints)
-    return [Case(*one, normals, decoder) for normals in sets for one in left for decoder in decoders]
+    return [MapCase(*one, normals, decoder) for normals in sets for one in left for decoder in decoders]
 
 
-def _blocks(names: str) -> list[BlockFormat]:
+def _blocks(names: Names) -> list[BlockFormat]:
     """The formats asked for. Of "all" those are left out whose encoder is not installed."""
     chosen = choose("block format", names, FORMATS)
     missing = {block.name: why for block in chosen if (why := block.encoder.missing)}
     left = [block for block in chosen if block.name not in missing]
-    if missing and not (_names_all(names) and any(block.is_compressed for block in left)):
+    if missing and not ("all" in names and any(block.is_compressed for block in left)):
         raise MissingError("; ".join(f"{name}: {why}" for name, why in missing.items()))
     for name, why in missing.items():
         leave_out(f"{name}: {why}")
     return left
-
-
-def _names_all(names: str) -> bool:
-    return "all" in map(str.strip, names.split(","))
 
 
 def _is_possible(encoding: Encoding, complaints: list[str]) -> bool:
@@ -99,8 +95,9 @@ def _swizzles(encoding: Encoding, block: BlockFormat, asked: list[Any], complain
 
 def _images(options: MapsOptions, needs_rays: bool) -> list[NormalSet]:
     """The sets that are images. Raises UsageError where one is not."""
-    own = {word: MAPS[word]() for word in map(str.strip, options.normals.split(",")) if word in MAPS}
-    words = Words(options.normals.split(","), {**own, **given_in(options.normals)})
+    words = tuple(
+        Given(word, MAPS[word]()) if isinstance(word, str) and word in MAPS else word for word in options.normals
+    )
     found = normal_sets_named(words, DEFAULT_COUNT, 0, options.reading, needs_rays)
     others = [normals.name for normals in found if not normals.shape]
     if others:
@@ -116,7 +113,7 @@ def _steps(options: MapsOptions, outputs: MapsOutputs) -> list[Step]:
     return [Step(_key(case), case, case.name) for case in made]
 
 
-def _key(case: Case) -> Row:
+def _key(case: MapCase) -> Row:
     key: Row = {"encoding": case.encoding.name, "block": case.block.name, "swizzle": case.swizzle.name}
     return key | {"normals": case.normal_set.name, "decoder": case.decoder, "encoder": case.block.encoder.name}
 

@@ -10,7 +10,7 @@ from statistics import fmean
 from ....encodings.codecs.codec import Codec
 from ...shaders.code.twin import has_twin
 from ...subjects.normals.normal_sets import NORMAL_SETS, NormalSet
-from .measure import Case, measure
+from .measure import MixCase, measure
 from .model import BY_MODEL
 from .patches import Mixes, mixes_of, patches_of
 from .table import COUNT, OF_INTEGER, USES
@@ -79,7 +79,7 @@ def judgements(codec: Codec, uses: Sequence[str], normals: NormalSet, domain: st
 def _measured_rows(codec: Codec, uses: Sequence[str], normals: NormalSet, domain: str) -> list[Row]:
     operations = tuple(operation for use in uses for operation in USES[use])
     backend = "jax" if has_twin(codec.encoding) else "glsl"
-    cases = (Case(codec, mixes, backend, operations, POWER, domain) for mixes in _mixes_of_set(normals))
+    cases = (MixCase(codec, mixes, backend, operations, POWER, domain) for mixes in _mixes_of_set(normals))
     return [row for case in cases for row in measure(case)]
 
 

@@ -34,7 +34,7 @@ SAME = 2.0**-20
 
 
 @dataclass(frozen=True)
-class Case:
+class MixCase:
     """A codec on one set of patches by one back end; a row for each operation.
 
     Attributes:
@@ -119,7 +119,7 @@ class Modelled:
         return self.decoded(self._raw_and_stored(made)[1]) if operation in STORED_AGAIN else made
 
 
-def _result_by_jax(case: Case) -> Result:
+def _result_by_jax(case: MixCase) -> Result:
     made = Modelled(case.codec, case.mixes)
     codes = made.texels()
     texels, given = made.decoded(codes), made.given(codes)
@@ -131,7 +131,7 @@ def _result_by_jax(case: Case) -> Result:
     return Result(texels, mixed, how, {"device": jax.devices()[0].device_kind})
 
 
-def _result_by_glsl(case: Case) -> Result:
+def _result_by_glsl(case: MixCase) -> Result:
     gl: Device = device()
     with MixPasses(gl, case.codec, case.mixes.meetings(), case.mixes.samples) as passes:
         texels = passes.texels()
@@ -151,7 +151,7 @@ def _blocked_image(image: np.ndarray, height: int, width: int) -> np.ndarray:
     return split.transpose(1, 3, 0, 2, 4).reshape(TEXELS, height * width, -1)
 
 
-def _compared(case: Case, codes: np.ndarray, found: Mapping[str, Decoded]) -> dict[str, Row]:
+def _compared(case: MixCase, codes: np.ndarray, found: Mapping[str, Decoded]) -> dict[str, Row]:
     """By operation, the way to mix that explains the device's numbers best, and in how many results it agrees.
 
     The model mixes the codes that the device stored.
@@ -168,7 +168,7 @@ def _compared(case: Case, codes: np.ndarray, found: Mapping[str, Decoded]) -> di
     }
 
 
-def _agreed_percent(model: np.ndarray, normals: np.ndarray, case: Case) -> float:
+def _agreed_percent(model: np.ndarray, normals: np.ndarray, case: MixCase) -> float:
     count = case.mixes.patches.count
     return percent(angles_between(model[:count], normals[:count]) <= AGREE_DEG)
 
@@ -189,12 +189,12 @@ def _way_columns(made: Modelled, operation: str, given: Given, found: Decoded, c
 
 
 BY_THE_MODEL = "jax"
-BACKENDS: Mapping[str, Callable[[Case], Result]] = MappingProxyType(
+BACKENDS: Mapping[str, Callable[[MixCase], Result]] = MappingProxyType(
     {BY_THE_MODEL: _result_by_jax, "glsl": _result_by_glsl}
 )
 
 
-def measure(case: Case) -> list[Row]:
+def measure(case: MixCase) -> list[Row]:
     """A row for each operation; rows that cannot be measured have the reason in `skipped`."""
     described = _case_columns(case)
     domain = case.domain or case.codec.encoding.domain
@@ -208,7 +208,7 @@ def measure(case: Case) -> list[Row]:
     return sorted(rows, key=lambda row: case.operations.index(row["operation"]))
 
 
-def _measured(case: Case, domain: str) -> list[Row]:
+def _measured(case: MixCase, domain: str) -> list[Row]:
     """A row for each operation that a code allows."""
     described = _case_columns(case)
     try:
@@ -227,7 +227,7 @@ def _measured(case: Case, domain: str) -> list[Row]:
     ]
 
 
-def _worst_columns(case: Case, figures: Figures, operation: str) -> Row:
+def _worst_columns(case: MixCase, figures: Figures, operation: str) -> Row:
     """The worst mix of codes, searched for by the model, where that is asked for; its angle and its normals."""
     is_searched = case.worst_case and operation in BY_MODEL and case.backend == BY_THE_MODEL
     errors = figures.errors(operation) if is_searched else np.array([-1.0])
@@ -245,7 +245,7 @@ def _worst_columns(case: Case, figures: Figures, operation: str) -> Row:
     return {"angle_worst_deg": row["angle_max_deg"]} | named
 
 
-def _case_columns(case: Case) -> Row:
+def _case_columns(case: MixCase) -> Row:
     patches = case.mixes.patches
     return TABLE.empty() | {
         "encoding": case.codec.encoding.name,

@@ -9,7 +9,8 @@ from typing import Annotated
 
 from ....reports.sheets import View
 from ...ground.options.option import Backends, Encodings, Normals, Option, Plot, Reading, Seed, StorageNames
-from ...shaders.languages.source_options import SourceOptions
+from ...ground.options.source_options import SourceOptions
+from ...ground.options.words import Names
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
@@ -67,22 +68,22 @@ class MixOptions(Reading, SourceOptions):
     """What `mix` measures. Names and numbers are comma-separated."""
 
     encoding: Encodings = (
-        "xyz,xyz_renormalised,xy,xy_sign,spherical,latitude_longitude,spheremap,stereographic,octahedral,"
-        "hemi_octahedral,signed_octahedral,spherical_fibonacci"
+        *("xyz", "xyz_renormalised", "xy", "xy_sign", "spherical", "latitude_longitude", "spheremap", "stereographic"),
+        *("octahedral", "hemi_octahedral", "signed_octahedral", "spherical_fibonacci"),
     )
-    storage: StorageNames = "rgba8"
-    operation: Annotated[str, Option("--operation", f"{', '.join(OPERATIONS)}; comma-separated, or all.")] = "all"
-    normals: Normals = "sphere,axes"
+    storage: StorageNames = ("rgba8",)
+    operation: Annotated[Names, Option("--operation", f"{', '.join(OPERATIONS)}; comma-separated, or all.")] = ("all",)
+    normals: Normals = ("sphere", "axes")
     angle: Annotated[
-        str, Option("--angle", "Degrees between neighbours, comma-separated. Images have their own neighbours.")
-    ] = "1,5,20"
+        Names, Option("--angle", "Degrees between neighbours, comma-separated. Images have their own neighbours.")
+    ] = ("1", "5", "20")
     edge: Annotated[
-        str,
+        Names,
         Option(
             "--edge", "Degrees across an edge through a patch, comma-separated, or none. Images have their own edges."
         ),
-    ] = "60"
-    backend: Backends = "jax,glsl"
+    ] = ("60",)
+    backend: Backends = ("jax", "glsl")
     samples: Annotated[int, Option("--samples", "Samples per pixel that are resolved; the device may give more.")] = 4
     power: Annotated[float, Option("--power", "The specular power that Toksvig's formula starts from.")] = 64.0
     count: Annotated[int, Option("--count", "Mixes of each set and angle.")] = COUNT

@@ -8,16 +8,16 @@ from typing import Any
 from ....encodings.codecs.codec import Codec
 from ...ground.choose import choose
 from ...ground.machine.devices import found_device, require_device, require_jax
-from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_numbers, in_range
 from ...ground.output.errors import UsageError, leave_out
 from ...subjects.codecs.names import check_twin, codecs_named, fitting
+from ...subjects.names.backends import backends_named
 from ...subjects.normals.normal_names import check_rays, normal_sets_named
 from ..charts import one_backend
 from ..table import Measured, Row, Sheet, Step, Work, each
 from . import measure
 from .charts import charts
-from .measure import Case
+from .measure import MixCase
 from .patches import Patches, mixes_of, patches_of
 from .table import MOST_COUNT, MOST_JUDGED_DEG, OPERATIONS, TABLE, MixOptions, MixOutputs
 from .verdict import judged, lines, worst_of_each
@@ -30,7 +30,7 @@ NEAREST = "nearest"
 SUMMARY_DROPS = ("why", "storage", "alone_max_deg")
 
 
-def cases(options: MixOptions) -> list[Case]:
+def cases(options: MixOptions) -> list[MixCase]:
     """One case for each codec, set, angle and back end.
 
     Raises:
@@ -43,7 +43,7 @@ def cases(options: MixOptions) -> list[Case]:
     if not 1 <= options.power <= MOST_POWER:
         raise UsageError(f"--power {options.power:g}: from 1 to {MOST_POWER}")
     angles = checked_numbers("--angle", options.angle, float, 0.01, MOST_ANGLE)
-    edges = () if options.edge.strip() == "none" else checked_numbers("--edge", options.edge, float, 1, MOST_EDGE)
+    edges = () if options.edge == ("none",) else checked_numbers("--edge", options.edge, float, 1, MOST_EDGE)
     operations = tuple(choose("operation", options.operation, {name: name for name in OPERATIONS}))
     backends = backends_named(options.backend, measure.BACKENDS)
     codecs = _codecs(options)
@@ -51,7 +51,7 @@ def cases(options: MixOptions) -> list[Case]:
     samples = _samples(options.samples, backends)
     mixes = [{given: mixes_of(patches, given) for given in set(samples.values())} for patches in sets]
     return [
-        Case(codec, by_samples[samples[name]], name, operations, options.power, worst_case=options.worst_case)
+        MixCase(codec, by_samples[samples[name]], name, operations, options.power, worst_case=options.worst_case)
         for codec in codecs
         for by_samples in mixes
         for name in backends
@@ -59,9 +59,9 @@ def cases(options: MixOptions) -> list[Case]:
 
 
 def _codecs(options: MixOptions) -> list[Codec]:
-    codecs, left_out = fitting(codecs_named(options.encoding, options.storage, NEAREST))
+    codecs, left_out = fitting(codecs_named(options.encoding, options.storage, (NEAREST,)))
     require_jax()
-    if options.backend.strip() == "glsl":
+    if options.backend == ("glsl",):
         require_device()
     for encoding in dict.fromkeys(codec.encoding for codec in codecs):
         check_twin(encoding)
@@ -95,7 +95,7 @@ def _steps(options: MixOptions, _: MixOutputs) -> list[Step]:
     return [Step(_key(case), case, case.name) for case in cases(options)]
 
 
-def _key(case: Case) -> Row:
+def _key(case: MixCase) -> Row:
     patches = case.mixes.patches
     key: Row = {"codec": case.codec.name, "normals": patches.name, "angle": patches.angle_deg, "backend": case.backend}
     key |= {"edge": patches.edge_deg}

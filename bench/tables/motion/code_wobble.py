@@ -35,7 +35,7 @@ class Frame:
 
 
 @dataclass
-class Total:
+class WobbleTotal:
     """What pairs of frames add up to; angles are small, so that a difference of unit vectors is one, in radians."""
 
     points: int = 0
@@ -116,7 +116,7 @@ def code_wobble(trip: Trip, domain: str, motion: Motion, count: int, seed: int) 
         motion: what turns.
         count, seed: of turning.points.
     """
-    total, followed = Total(), motion.followed(count)
+    total, followed = WobbleTotal(), motion.followed(count)
     for points in turning.points(motion.space, followed, seed):
         before: Frame | None = None
         for of_normals, of_positions in motion.matrices():
@@ -130,7 +130,7 @@ def code_wobble(trip: Trip, domain: str, motion: Motion, count: int, seed: int) 
     return total.row() | {"count": followed}
 
 
-def _frame(trip: Trip, domain: str, n: np.ndarray, view: np.ndarray, matrix: np.ndarray, total: Total) -> Frame:
+def _frame(trip: Trip, domain: str, n: np.ndarray, view: np.ndarray, matrix: np.ndarray, total: WobbleTotal) -> Frame:
     codes, decoded = trip(n, view)
     n, decoded = _unit_rows(n.astype(np.float64)), decoded.astype(np.float64)
     length = _row_lengths(decoded)

@@ -60,7 +60,7 @@ class FrameSequence:
 
 
 @dataclass(frozen=True)
-class Case:
+class MotionCase:
     """One row to measure.
 
     Attributes:
@@ -121,7 +121,7 @@ class Bench:
         self._references: dict[FrameSequence, Filmed] = {}
         self._panels: dict[tuple[str, float, int], panel.Exact] = {}
 
-    def measure(self, case: Case) -> tuple[Row, Filmed | None]:
+    def measure(self, case: MotionCase) -> tuple[Row, Filmed | None]:
         """One row of the table, and the frames; a row that cannot be measured has its reason in `skipped`."""
         row = TABLE.empty([f"{power:g}" for power in POWERS]) | _case_columns(case)
         try:
@@ -136,7 +136,7 @@ class Bench:
             return row | {"skipped": str(error)}, None
         return row | found | {"device": self._device.renderer}, filmed
 
-    def reference(self, case: Case) -> Filmed:
+    def reference(self, case: MotionCase) -> Filmed:
         """The frames of exact normals. Raises ValueError for a case without frames."""
         if not case.pictures or not self._device:
             raise ValueError(f"{case.name} has no frames")
@@ -157,7 +157,7 @@ class Bench:
                 sums.add(difference, covered)
         return {"panel_psnr_db": sums.static_db, "crawl_psnr_db": sums.wobble_db}
 
-    def _film_and_columns(self, case: Case, pictures: FrameSequence, trip: Trip) -> tuple[Filmed, Row]:
+    def _film_and_columns(self, case: MotionCase, pictures: FrameSequence, trip: Trip) -> tuple[Filmed, Row]:
         assert self._device
         exact, found, sums, fixed = self.reference(case), Filmed(), Differences(), Differences()
         assert exact.spheres is not None and exact.still is not None
@@ -306,7 +306,7 @@ def _root_mean(squares: Sequence[float] | np.ndarray) -> float | None:
     return float(np.sqrt(np.mean(finite))) if len(finite) else None
 
 
-def _case_columns(case: Case) -> Row:
+def _case_columns(case: MotionCase) -> Row:
     codec, motion, pictures = case.codec, case.motion, case.pictures
     row: Row = {"encoding": codec.encoding.name, "storage": codec.storage.name, "rounding": codec.rounding}
     row |= {"space": motion.space, "moves": motion.moves, "axis": motion.axis, "turn_deg": motion.turn}

@@ -7,13 +7,14 @@ from typing import Annotated
 
 from ....reports.sheets import View
 from ...ground.options.option import Encodings, Images, Lights, Option, Plot, Roundings, Seed, Size, StorageNames
-from ...shaders.languages.source_options import SourceOptions
+from ...ground.options.source_options import SourceOptions
+from ...ground.options.words import Names
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
 KEY, HOW = Role.KEY, Role.HOW
 # The article's three ways: view space with either code, and world space.
-USUAL = "octahedral,spheremap,per_pixel_view"
+USUAL = ("octahedral", "spheremap", "per_pixel_view")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,23 +22,29 @@ class MotionOptions(SourceOptions):
     """What `motion` measures. Names and numbers are comma-separated."""
 
     encoding: Encodings = USUAL
-    storage: StorageNames = "rg8"
-    rounding: Roundings = "nearest"
+    storage: StorageNames = ("rg8",)
+    rounding: Roundings = ("nearest",)
     space: Annotated[
-        str,
+        Names,
         Option(
             "--space",
             "view, world: the space that normals are encoded in; comma-separated, or all. Of several spaces a code "
             "is measured in those that it is made for.",
         ),
-    ] = "view,world"
-    moves: Annotated[str, Option("--moves", "camera, object: what turns; comma-separated, or all.", in_run=True)] = (
-        "camera"
+    ] = ("view", "world")
+    moves: Annotated[Names, Option("--moves", "camera, object: what turns; comma-separated, or all.", in_run=True)] = (
+        "camera",
     )
-    axis: Annotated[str, Option("--axis", "yaw, pitch, roll; comma-separated, or all.", in_run=True)] = "yaw"
-    turn: Annotated[str, Option("--turn", "Degrees a frame, comma-separated.", in_run=True)] = "0.01,0.05,0.25,0.5,1"
+    axis: Annotated[Names, Option("--axis", "yaw, pitch, roll; comma-separated, or all.", in_run=True)] = ("yaw",)
+    turn: Annotated[Names, Option("--turn", "Degrees a frame, comma-separated.", in_run=True)] = (
+        "0.01",
+        "0.05",
+        "0.25",
+        "0.5",
+        "1",
+    )
     picture_turn: Annotated[
-        str | None,
+        Names | None,
         Option(
             "--picture-turn",
             "Those of --turn that frames are rendered of as well; none: no frames. Default: the one nearest to 0.25.",

@@ -13,6 +13,7 @@ from ...ground.choose import choose
 from ...ground.machine.devices import found_device, require_jax
 from ...ground.options.counts import check_seed, checked_numbers, in_range
 from ...ground.options.targets import checked_setting, checked_target, what_is_left
+from ...ground.options.words import text_of
 from ...ground.output.errors import UsageError, by_reason, tell
 from ...subjects.codecs.names import check_twin, codecs_named, fitting
 from ..charts import having
@@ -21,7 +22,7 @@ from ..table import Row, Sheet, Step, Work
 from . import pictures, turning
 from .charts import wobble_chart
 from .code_wobble import Motion
-from .measure import PICTURE_SWING_DEG, Bench, Case, FrameSequence
+from .measure import PICTURE_SWING_DEG, Bench, FrameSequence, MotionCase
 from .table import MotionOptions, MotionOutputs
 
 LEAST_TURN_DEG, MOST_TURN_DEG = 1e-4, 45.0
@@ -69,15 +70,17 @@ def picture_turns(options: MotionOptions) -> tuple[float, ...]:
     possible = tuple(turn for turn in turns if turn <= PICTURE_SWING_DEG)
     if options.picture_turn is None:
         return tuple(sorted(possible, key=lambda turn: abs(math.log(turn / USUAL_PICTURE_TURN_DEG)))[:1])
-    if options.picture_turn.strip().lower() == NO_PICTURES:
+    if options.picture_turn == (NO_PICTURES,):
         return ()
     asked = checked_numbers("--picture-turn", options.picture_turn, float, LEAST_TURN_DEG, PICTURE_SWING_DEG)
     if missing := [turn for turn in asked if turn not in turns]:
-        raise UsageError(f"--picture-turn {missing[0]:g}: not among --turn {options.turn}; name it there, or none")
+        raise UsageError(
+            f"--picture-turn {missing[0]:g}: not among --turn {text_of(options.turn)}; name it there, or none"
+        )
     return asked
 
 
-def cases(options: MotionOptions, device: Device | None) -> list[Case]:
+def cases(options: MotionOptions, device: Device | None) -> list[MotionCase]:
     """One case for each row; what cannot be is named on standard error.
 
     Raises:
@@ -88,7 +91,7 @@ def cases(options: MotionOptions, device: Device | None) -> list[Case]:
     setting = checked_setting(1, options.lights, options.seed)
     chosen, rendered = motions(options), picture_turns(options)
     size, _ = checked_target(options.size, 1, options.frames, device) if device else ((0, 0), 0)
-    made: list[Case] = []
+    made: list[MotionCase] = []
     outside: list[str] = []
     for codec in codecs(options):
         suited = [motion for motion in chosen if is_suited(codec, motion)]
@@ -97,7 +100,7 @@ def cases(options: MotionOptions, device: Device | None) -> list[Case]:
             # A smooth sphere that turns looks the same: images are of turning cameras.
             is_rendered = device and motion.moves == turning.MOVES[0] and motion.turn in rendered
             shots = FrameSequence(motion.axis, motion.turn, motion.frames, size, setting) if is_rendered else None
-            made.append(Case(codec, motion, options.count, options.seed, shots))
+            made.append(MotionCase(codec, motion, options.count, options.seed, shots))
     return what_is_left(made, by_reason((name, OTHER_DOMAIN) for name in outside))
 
 
@@ -120,7 +123,7 @@ def _check(outputs: MotionOutputs, made: Sequence[Step]) -> None:
         raise UsageError("--images needs rendered frames: a moving camera, a --picture-turn, and a GL device")
 
 
-def _key(case: Case) -> Row:
+def _key(case: MotionCase) -> Row:
     motion, shots = case.motion, case.pictures
     key: Row = {"codec": case.codec.name, "space": motion.space, "moves": motion.moves, "axis": motion.axis}
     key |= {"turn": motion.turn, "frames": motion.frames, "count": case.count, "seed": case.seed}

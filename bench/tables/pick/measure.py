@@ -54,7 +54,7 @@ QUALITY = ("angle_mean_deg", "angle_max_deg", "angle_counts", "worst_normal", "i
 
 
 @dataclass(frozen=True)
-class Case:
+class PickCase:
     """One code and what is asked of it.
 
     Attributes:
@@ -90,7 +90,9 @@ class Case:
         return (None,) if maker.is_metal_rough else self.powers
 
 
-def rows(asked: Sequence[Sequence[Case]], device: Device | None, tick: Callable[[str], None]) -> Iterator[list[Row]]:
+def rows(
+    asked: Sequence[Sequence[PickCase]], device: Device | None, tick: Callable[[str], None]
+) -> Iterator[list[Row]]:
     """The rows of each question: the codes of one storage on one set of normals and in its scenes, in their order.
 
     Images and suprema take seconds each. Images are of codes that have a place in the answer; of all that qualify
@@ -123,7 +125,7 @@ def rows(asked: Sequence[Sequence[Case]], device: Device | None, tick: Callable[
 class Question:
     """The codes of one storage, or of storages of as many bytes, on one set of normals and in its scenes."""
 
-    def __init__(self, chosen: Sequence[Case], pool: Executor, costs: Costs, others: Costs | None):
+    def __init__(self, chosen: Sequence[PickCase], pool: Executor, costs: Costs, others: Costs | None):
         self._pool, self._costs, self._others, self._aim = pool, costs, others, chosen[0].said["aim"]
         self._cases = {case.name: case for case in chosen}
         self._suprema: dict[str, Future[float | None]] = {}
@@ -136,7 +138,7 @@ class Question:
         self._by_gl = [case for case in chosen if not has_twin(case.codec.encoding)]
         self._angle_columns = pool.submit(_angle_columns, self._by_jax)
 
-    def _most_price(self, case: Case) -> float:
+    def _most_price(self, case: PickCase) -> float:
         """The price up to which a code is compared."""
         cheap = AFFORDABLE * floor(self._rows[case.name])
         return cheap if case.is_beside else 2 * cheap if case.said["packed"] else math.inf
@@ -193,7 +195,7 @@ class Question:
         self._find_suprema(placed)
         self._measure_axes([self._cases[_case_name(row)] for row in placed])
 
-    def _measure_axes(self, cases: Sequence[Case]) -> None:
+    def _measure_axes(self, cases: Sequence[PickCase]) -> None:
         """Errors of axis-aligned normals: of all, or of those with z >= 0 where the code need not hold others."""
         axes = {case.name: replace(case, normal_set=_axis_set(_is_half(case))) for case in cases}
         for name, row in zip(axes, _angle_columns(list(axes.values())), strict=True):
@@ -227,7 +229,7 @@ class Question:
         return list(self._rows.values())
 
 
-def _is_half(case: Case) -> bool:
+def _is_half(case: PickCase) -> bool:
     """Whether a code need not hold all directions, or does not."""
     return bool(case.said["needs"] not in (None, "", "sphere") or case.codec.encoding.domain != "sphere")
 
@@ -252,7 +254,7 @@ def _case_name(row: Row) -> str:
     return f"{row['encoding']}/{row['storage']}"
 
 
-def _by_use(case: Case) -> Row:
+def _by_use(case: PickCase) -> Row:
     """What each use does to a code: why it cannot be used so, and the sum, the number and the largest of its errors."""
     domain = _mixed_domain(case)
     key = _figures_key("each use", case.codec, domain, _normals_key(case))
@@ -272,7 +274,7 @@ def _by_use(case: Case) -> Row:
     return kept.kept(key, judged)
 
 
-def _mixing_columns(case: Case) -> Row:
+def _mixing_columns(case: PickCase) -> Row:
     """What the mixing that is asked for does to a code: why it does not survive, if it does not, and its errors."""
     uses, domain = case.said["mixing"], _mixed_domain(case)
     key = _figures_key("mixing", case.codec, uses, domain, _normals_key(case))
@@ -290,13 +292,13 @@ def _mixing_columns(case: Case) -> Row:
     return kept.kept(key, judged)
 
 
-def _mixed_domain(case: Case) -> str:
+def _mixed_domain(case: PickCase) -> str:
     """The normals that are mixed: those asked for, or those that the code holds and the set has."""
     domain = case.said["needs"] or case.codec.encoding.domain
     return "hemisphere" if domain == "sphere" and not _lost_percent(case.normal_set, "hemisphere") else domain
 
 
-def _case_columns(case: Case) -> Row:
+def _case_columns(case: PickCase) -> Row:
     codec, encoding = case.codec, case.codec.encoding
     images = (image_name(maker.name, power) for maker in case.makers for power in case.powers_of(maker))
     return (
@@ -313,7 +315,7 @@ def _case_columns(case: Case) -> Row:
     )
 
 
-def _angle_columns(chosen: Sequence[Case]) -> list[Row]:
+def _angle_columns(chosen: Sequence[PickCase]) -> list[Row]:
     """The columns of angles of each case, measured together where they are not kept."""
     keys = [_figures_key("angles", case.codec, _normals_key(case)) for case in chosen]
     rows = [kept.read(key) if key else None for key in keys]
@@ -340,7 +342,7 @@ def mean_angles(codecs: Sequence[Codec], normals: NormalSet) -> dict[str, float]
 
 
 def _angles_of(codecs: Sequence[Codec], normals: NormalSet) -> Iterator[tuple[str, Row]]:
-    cases = [Case(codec, normals, (), Setting(), (), {"beside": False, "packed": False}) for codec in codecs]
+    cases = [PickCase(codec, normals, (), Setting(), (), {"beside": False, "packed": False}) for codec in codecs]
     yield from zip((codec.name for codec in codecs), _angle_columns(cases), strict=True)
 
 
@@ -355,11 +357,11 @@ def _length_share(row: Row) -> float | None:
     return math.sqrt(max(0.0, 3 * row["mse"] - angle**2)) / angle
 
 
-def _quality_case(case: Case) -> quality.Case:
-    return quality.Case(case.codec, case.normal_set, "jax" if has_twin(case.codec.encoding) else "glsl")
+def _quality_case(case: PickCase) -> quality.QualityCase:
+    return quality.QualityCase(case.codec, case.normal_set, "jax" if has_twin(case.codec.encoding) else "glsl")
 
 
-def _supremum_deg(case: Case) -> float | None:
+def _supremum_deg(case: PickCase) -> float | None:
     """The largest angle in exact arithmetic; None of a code in GLSL alone and of a set without a domain."""
     one = _quality_case(case)
     if one.backend != "jax":
@@ -368,7 +370,7 @@ def _supremum_deg(case: Case) -> float | None:
     return kept.kept(key, lambda: {SUPREMUM: quality.measure(replace(one, worst_case=True))[SUPREMUM]})[SUPREMUM]
 
 
-def _normals_key(case: Case) -> list[Any] | None:
+def _normals_key(case: PickCase) -> list[Any] | None:
     """What is kept of a set of normals in a key; None of one that may be another next time."""
     chosen = case.normal_set
     return [chosen.name, chosen.count, chosen.seed] if chosen.name in NORMAL_SETS else None
@@ -388,7 +390,7 @@ class Pictures:
         self._device = device
         self._references: dict[tuple[SceneMaker, Setting, tuple[float, ...], Pipeline], Reference] = {}
 
-    def of(self, case: Case) -> Row:
+    def of(self, case: PickCase) -> Row:
         """The PSNR of the displayed images over covered pixels, at each power in each scene; none where the device or a
         layout has no room for the code."""
         found: Row = {}
@@ -406,13 +408,13 @@ class Pictures:
             found["image_lost_percent"] = max(lost.values(), default=0.0)
         return found
 
-    def lost_percent(self, case: Case, maker: SceneMaker) -> float:
+    def lost_percent(self, case: PickCase, maker: SceneMaker) -> float:
         """The share of covered pixels whose normals the encoding is not made for."""
         reference = self._reference(case, maker)
         covered, held = (np.count_nonzero(reference.held_by(one)) for one in ("sphere", case.codec.encoding.domain))
         return 100.0 * (1 - held / max(covered, 1))
 
-    def _image_columns(self, case: Case, maker: SceneMaker) -> Row:
+    def _image_columns(self, case: PickCase, maker: SceneMaker) -> Row:
         held = self._reference(case, maker).held_by(case.codec.encoding.domain)
         return {
             f"{IMAGE}{image_name(maker.name, power)}": psnr_db(squared_error(image[held], right[held])[0])
@@ -420,7 +422,7 @@ class Pictures:
             if held.any()
         }
 
-    def shown(self, case: Case, maker: SceneMaker) -> dict[float | None, tuple[np.ndarray, np.ndarray]]:
+    def shown(self, case: PickCase, maker: SceneMaker) -> dict[float | None, tuple[np.ndarray, np.ndarray]]:
         """At each power (None where there is none) the displayed image, and that of exact normals: (height, width, 3),
         0 to 1.
 
@@ -439,7 +441,7 @@ class Pictures:
             found[power] = display.image(image), display.image(right)
         return found
 
-    def _reference(self, case: Case, maker: SceneMaker) -> Reference:
+    def _reference(self, case: PickCase, maker: SceneMaker) -> Reference:
         """The exact images of a scene, rendered once for all codes."""
         question = (maker, case.setting, case.powers, case.pipeline)
         if question not in self._references:
@@ -449,7 +451,7 @@ class Pictures:
                 tell(line)
         return self._references[question]
 
-    def _relit(self, case: Case, maker: SceneMaker) -> list[np.ndarray]:
+    def _relit(self, case: PickCase, maker: SceneMaker) -> list[np.ndarray]:
         """Images lit by what JAX makes of the normals. No shader is compiled for the code, which takes a second."""
 
         def keeps(position: np.ndarray, n: np.ndarray) -> np.ndarray:
@@ -459,7 +461,7 @@ class Pictures:
         return self._drawn(case, maker, LAYOUTS["fp32"], keeps)[0]
 
     def _drawn(
-        self, case: Case, maker: SceneMaker, layout: Layout, keeps: Keeps | None = None
+        self, case: PickCase, maker: SceneMaker, layout: Layout, keeps: Keeps | None = None
     ) -> tuple[list[np.ndarray], np.ndarray, np.ndarray]:
         """The image at each power, and the positions and normals of its pixels."""
         scene, shown = maker.make(case.setting), []

@@ -18,14 +18,14 @@ from ...ground.output.writing import files_of, whole_file
 from .. import shots
 from ..table import Row
 from .answer import AGAINST, BEST, CHEAPER, FEWER_BITS, MORE_EXACT, MOST_EXACT, images, places_of
-from .measure import Case, Pictures
+from .measure import PickCase, Pictures
 
 # The answer and what stands next to it are what a reader sees first.
 FIRST = 2
 PLACES = (BEST, AGAINST, MORE_EXACT, MOST_EXACT, CHEAPER, FEWER_BITS)
 
 
-def write(folder: Path, chosen: Sequence[Case], rows: Sequence[Row], drawing: Pictures) -> None:
+def write(folder: Path, chosen: Sequence[PickCase], rows: Sequence[Row], drawing: Pictures) -> None:
     """The images of every code that has a place, and of the exact normals."""
     for case, maker in ((one, maker) for one in placed(chosen, rows) for maker in one.makers):
         # A code that the device has no room for has no image.
@@ -36,13 +36,13 @@ def write(folder: Path, chosen: Sequence[Case], rows: Sequence[Row], drawing: Pi
                 _write(folder / _file_name(scene, _key_of_case(case)), image)
 
 
-def placed(chosen: Sequence[Case], rows: Sequence[Row]) -> Iterator[Case]:
+def placed(chosen: Sequence[PickCase], rows: Sequence[Row]) -> Iterator[PickCase]:
     """The cases whose code the answer names."""
     named = {CodecKey.of(row) for row in rows if set(places_of(row)) & set(PLACES)}
     yield from (case for case in chosen if not case.is_beside and _key_of_case(case) in named)
 
 
-def _key_of_case(case: Case) -> CodecKey:
+def _key_of_case(case: PickCase) -> CodecKey:
     return CodecKey(case.codec.encoding.name, case.codec.storage.name, str(case.said["rounding"]))
 
 

@@ -7,13 +7,13 @@ from typing import Annotated
 
 from ....reports.sheets import View
 from ...ground.options.option import (
+    NAMED,
     Count,
     Effects,
     Encodings,
     Families,
     Images,
     Live,
-    Names,
     Option,
     Reading,
     Roundings,
@@ -21,7 +21,8 @@ from ...ground.options.option import (
     Seed,
     StorageNames,
 )
-from ...shaders.languages.source_options import SourceOptions
+from ...ground.options.source_options import SourceOptions
+from ...ground.options.words import Names
 from .. import shared_columns as shared
 from ..mix.table import USES
 from ..table import Column, Group, Role, Section, Table
@@ -43,29 +44,29 @@ TEXEL_DEG = 360 / 1024
 class PickOptions(Reading, SourceOptions):
     """What `pick` chooses from, and what it asks of the code. Names are comma-separated."""
 
-    storage: StorageNames = "rg8,rgb10a2"
+    storage: StorageNames = ("rg8", "rgb10a2")
     bytes: Annotated[
-        str | None,
+        Names | None,
         Option("--bytes", "Bytes of a texel, comma-separated: all storages of that size, not --storage."),
     ] = None
-    rounding: Roundings = "nearest"
-    encoding: Encodings = "all"
+    rounding: Roundings = ("nearest",)
+    encoding: Encodings = ("all",)
     against: Annotated[
-        str | None,
+        Names | None,
         Option(
-            "--against", f"Encodings or files of GLSL, HLSL or Slang to compare with the answer, {Names}.", files=True
+            "--against", f"Encodings or files of GLSL, HLSL or Slang to compare with the answer, {NAMED}.", files=True
         ),
     ] = None
     normals: Annotated[
-        str | None,
-        Option("--normals", f"Normal sets or files, {Names}. Default: those of --domain.", files=True, in_run=True),
+        Names | None,
+        Option("--normals", f"Normal sets or files, {NAMED}. Default: those of --domain.", files=True, in_run=True),
     ] = None
-    scene: Scenes = "studio,room"
+    scene: Scenes = ("studio", "room")
     power: Annotated[
-        str, Option("--power", "Specular powers that the scenes are rendered with, comma-separated.", in_run=True)
-    ] = "47,1024"
+        Names, Option("--power", "Specular powers that the scenes are rendered with, comma-separated.", in_run=True)
+    ] = ("47", "1024")
     effects: Effects = None
-    family: Families = "navi21"
+    family: Families = ("navi21",)
     aim: Annotated[
         str,
         Option(
@@ -101,7 +102,7 @@ class PickOptions(Reading, SourceOptions):
         ),
     ] = None
     needs: Annotated[
-        str | None,
+        Names | None,
         Option("--needs", f"What stored codes must survive: {', '.join(USES)}; comma-separated, or all."),
     ] = None
     survey: Annotated[

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
@@ -18,13 +18,12 @@ from ....gbuffer.scenes.catalogue import SceneMaker
 from ....gbuffer.scenes.setting import Setting
 from ...ground.choose import choose, choose_one
 from ...ground.machine.devices import found_device, require_jax
-from ...ground.options.counts import MOST_INSTRUCTIONS, check_seed, checked_count, in_range
-from ...ground.options.effect_names import effects_named, lacking, name_of, pipeline_with
-from ...ground.options.scene_names import powers_named
-from ...ground.options.storage_names import roundings_named, storages_named
+from ...ground.options.counts import MAX_POWER, MOST_INSTRUCTIONS, check_seed, checked_count, checked_numbers, in_range
 from ...ground.output.errors import UsageError, by_reason, leave_out, tell
 from ...ground.output.writing import check_folder
 from ...subjects.codecs.names import as_declared, check_twin, codecs_named
+from ...subjects.names.effects import effects_named, lacking, name_of, pipeline_with
+from ...subjects.names.storages import roundings_named, storages_named
 from ...subjects.normals.normal_names import lacking_rays, normal_sets_named
 from ...subjects.normals.normal_sets import NormalSet
 from ...subjects.scenes.scene_names import scene_makers_named
@@ -48,14 +47,14 @@ SHOWN = ("encoding", "storage", "place", "bits", "free_bits", "angle_mean_deg", 
 
 
 @dataclass(frozen=True)
-class Part:
+class PickStep:
     """The cases of a question, and the device that draws them."""
 
-    cases: Sequence[measure.Case]
+    cases: Sequence[measure.PickCase]
     device: Device | None
 
 
-def questions(options: PickOptions) -> list[list[measure.Case]]:
+def questions(options: PickOptions) -> list[list[measure.PickCase]]:
     """For each storage, or number of bytes, and set of normals a case for each code that fits.
 
     Raises:
@@ -65,7 +64,7 @@ def questions(options: PickOptions) -> list[list[measure.Case]]:
     check_seed(options.seed)
     said = _question(options)
     asked = _asked(options)
-    names = ",".join(_names(asked))
+    names = tuple(dict.fromkeys(storage.name for storages in asked.values() for storage in storages))
     against = as_declared(codecs_named(options.against, names, options.rounding)) if options.against else []
     named = {codec.encoding.name for codec in against}
     codecs = dict.fromkeys([*as_declared(codecs_named(options.encoding, names, options.rounding)), *against])
@@ -75,10 +74,13 @@ def questions(options: PickOptions) -> list[list[measure.Case]]:
     for encoding in dict.fromkeys(codec.encoding for codec in fit if not is_in_catalogue(codec.encoding)):
         check_twin(encoding)
     needs_rays = any(codec.encoding.domain == "view" for codec in fit)
-    chosen = options.normals or SETS[said["needs"]]
+    chosen = options.normals or (SETS[said["needs"]],)
     sets = normal_sets_named(chosen, count, options.seed, options.reading, needs_rays)
     _say_if_few(sets)
-    powers, makers = tuple(powers_named(options.power)), tuple(scene_makers_named(options.scene))
+    powers, makers = (
+        checked_numbers("--power", options.power, float, 1, MAX_POWER),
+        tuple(scene_makers_named(options.scene)),
+    )
     effects = effects_named(options.effects) if options.effects else []
     setting = Setting(seed=options.seed)
     pipeline = _pipeline(effects, makers, setting)
@@ -88,13 +90,13 @@ def questions(options: PickOptions) -> list[list[measure.Case]]:
             leave_out(
                 f"{codec.encoding.name} is an integer of {codec.storage.texel_bytes} bytes, not of those of {name}"
             )
-    for line in misfits if options.encoding.strip() != "all" else ():
+    for line in misfits if "all" not in options.encoding else ():
         leave_out(line)
 
-    def case(codec: Codec, normals: NormalSet, about: Row) -> measure.Case:
+    def case(codec: Codec, normals: NormalSet, about: Row) -> measure.PickCase:
         more: Row = {"normals": normals.name, "code_space": normals.code_space}
         more["against"] = codec.encoding.name in named and not about["beside"]
-        return measure.Case(codec, normals, makers, setting, powers, said | about | more, pipeline, options.survey)
+        return measure.PickCase(codec, normals, makers, setting, powers, said | about | more, pipeline, options.survey)
 
     made = [
         [
@@ -110,7 +112,7 @@ def questions(options: PickOptions) -> list[list[measure.Case]]:
     lacking = lacking_rays((codec.encoding, normals) for codec in fit for normals in sets)
     if lacking and not any(made):
         raise UsageError(lacking[0])
-    for line in dict.fromkeys(lacking) if options.encoding.strip() != "all" else ():
+    for line in dict.fromkeys(lacking) if "all" not in options.encoding else ():
         leave_out(line)
     return [cases for cases in made if cases]
 
@@ -136,10 +138,6 @@ def _asked(options: PickOptions) -> dict[str, list[Storage]]:
 def _packings(storage: Storage) -> list[Storage]:
     """The storages that lie packed in a texel of this one."""
     return [one for one in STORAGES.values() if one.is_packed and one.target == storage and one != storage]
-
-
-def _names(asked: Mapping[str, Sequence[Storage]]) -> list[str]:
-    return list(dict.fromkeys(storage.name for storages in asked.values() for storage in storages))
 
 
 def _compared(
@@ -220,16 +218,16 @@ def _steps(options: PickOptions, outputs: PickOutputs) -> list[Step]:
     for folder in filter(None, (outputs.images, outputs.live)):
         check_folder(folder)
     return [
-        Step(_key(chosen), Part(chosen, device), _name(chosen), sum(not case.is_beside for case in chosen))
+        Step(_key(chosen), PickStep(chosen, device), _name(chosen), sum(not case.is_beside for case in chosen))
         for chosen in asked
     ]
 
 
-def _name(chosen: Sequence[measure.Case]) -> str:
+def _name(chosen: Sequence[measure.PickCase]) -> str:
     return f"{asked_of(dict(chosen[0].said))} {chosen[0].normal_set.name}"
 
 
-def _key(chosen: Sequence[measure.Case]) -> Row:
+def _key(chosen: Sequence[measure.PickCase]) -> Row:
     one = chosen[0]
     key: Row = {"codecs": [case.codec.name for case in chosen], "powers": list(one.powers)}
     key |= {"count": one.normal_set.count, "seed": one.normal_set.seed}

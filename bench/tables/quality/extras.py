@@ -16,8 +16,7 @@ from .table import TABLE
 
 
 def extras(folder: Path, tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Mapping[str, Any]:  # noqa: ARG001
-    """`maps`: errors over the sphere, as `found.SphereMap`, of the folder of a run. `agreement`: how far the figures of
-    two back ends are apart, in a sentence; empty where no codec has both."""
+    """Find errors over the sphere, of the folder of a run, and how far the figures of two back ends are apart."""
     rows = tables.get(TABLE.name, ())
     return {"maps": list(_sphere_maps(folder / TABLE.files["maps"], rows)), "agreement": agreement(rows)}
 

@@ -29,7 +29,7 @@ from ...ground.native.library import LARGE, NoCompilerError
 from ...ground.output.errors import MissingError
 from ...measures.metrics.code_limits import AREAS, effective_bits
 from ...measures.metrics.meter import Decoded, Load, Measures, Meter, idle, measure_together
-from ...measures.metrics.totals import Statistics, Total, Worst, psnr_db, statistics, total_of
+from ...measures.metrics.totals import ErrorTotal, Statistics, Worst, psnr_db, statistics, total_of
 from ...measures.native.meter import NativeMeter
 from ...measures.worst_case import exact_figures
 from ...shaders.code import trip as wgsl_trip
@@ -61,7 +61,7 @@ def is_compiled(backend: str, count: int) -> bool:
 
 
 @dataclass(frozen=True)
-class Case:
+class QualityCase:
     """One row to measure; `worst_case` and `codes` ask for figures that take seconds each."""
 
     codec: Codec
@@ -74,7 +74,7 @@ class Case:
     def name(self) -> str:
         return f"{self.codec.name} {self.normal_set.name} {self.backend}"
 
-    def parts(self) -> list[Case]:
+    def parts(self) -> list[QualityCase]:
         """The same of each part of the set; none where it is measured at once."""
         return [replace(self, normal_set=part) for part in self.normal_set.parts]
 
@@ -181,13 +181,13 @@ class Decoding:
     how: Mapping[str, str]
     at_once: int = 1
 
-    def total(self, tick: Tick = idle) -> Total:
+    def total(self, tick: Tick = idle) -> ErrorTotal:
         """What its chunks add up to."""
         return measure_together([self.meter], self.loads, lambda _: tick(), self.at_once)[0]
 
 
 @contextmanager
-def _decodings_by_jax(case: Case) -> Iterator[Decoding]:
+def _decodings_by_jax(case: QualityCase) -> Iterator[Decoding]:
     meter = meter_of(case.codec, case.is_compiled)
     yield Decoding(meter, case.normal_set.loads(), _how_by_jax(meter), case.at_once)
 
@@ -197,7 +197,7 @@ def _how_by_jax(meter: Measures) -> dict[str, str]:
 
 
 @contextmanager
-def _decodings_by_glsl(case: Case) -> Iterator[Decoding]:
+def _decodings_by_glsl(case: QualityCase) -> Iterator[Decoding]:
     if case.codec.encoding.is_half:
         yield _by_half_device(case)
         return
@@ -213,7 +213,7 @@ def _decodings_by_glsl(case: Case) -> Iterator[Decoding]:
         yield Decoding(_decoded_meter(), loads, {"device": gl.renderer, "rounded_by": passes.rounded_by})
 
 
-def _by_half_device(case: Case) -> Decoding:
+def _by_half_device(case: QualityCase) -> Decoding:
     passes = HalfPasses(case.codec)
     how = {"device": half_compute.name(), "rounded_by": "emulation"}
 
@@ -227,7 +227,7 @@ def _by_half_device(case: Case) -> Decoding:
 
 
 @contextmanager
-def _decodings_by_wgsl(case: Case) -> Iterator[Decoding]:
+def _decodings_by_wgsl(case: QualityCase) -> Iterator[Decoding]:
     with wgsl_trip.by_wgsl(case.codec) as trip:
 
         def decoded(chunk: Chunk) -> Decoded:
@@ -244,20 +244,25 @@ def identity(value: Any) -> Any:
     return value
 
 
-BACKENDS: Mapping[str, Callable[[Case], AbstractContextManager[Decoding]]] = MappingProxyType(
+BACKENDS: Mapping[str, Callable[[QualityCase], AbstractContextManager[Decoding]]] = MappingProxyType(
     {"jax": _decodings_by_jax, "glsl": _decodings_by_glsl, "wgsl": _decodings_by_wgsl}
 )
 
 
 def cases(
     codecs: Iterable[Codec], normal_sets: Iterable[NormalSet], backends: Iterable[str], *exact: bool
-) -> list[Case]:
-    """Every codec on every set by every back end, the rows of one codec side by side; `exact` is Case's last fields."""
+) -> list[QualityCase]:
+    """Return every codec on every set by every back end, a codec's rows side by side; `exact`: a case's last fields."""
     normal_sets, backends = list(normal_sets), list(backends)
-    return [Case(codec, chosen, backend, *exact) for chosen in normal_sets for codec in codecs for backend in backends]
+    return [
+        QualityCase(codec, chosen, backend, *exact)
+        for chosen in normal_sets
+        for codec in codecs
+        for backend in backends
+    ]
 
 
-def measure(case: Case, tick: Tick = idle) -> Row:
+def measure(case: QualityCase, tick: Tick = idle) -> Row:
     """One row of the quality table; `tick` is called as each chunk of the set is done.
 
     A row that the device cannot give has its reason in `skipped` and no figures.
@@ -270,18 +275,18 @@ def measure(case: Case, tick: Tick = idle) -> Row:
     return _row(case, total, found.how)
 
 
-def _row(case: Case, total: Total, how: Mapping[str, str | None]) -> Row:
+def _row(case: QualityCase, total: ErrorTotal, how: Mapping[str, str | None]) -> Row:
     """A row of the table; of a part of a set what `merged` makes one of."""
     if case.normal_set.of:
         return {TOTAL: total.as_text(), **how}
     return _case_columns(case) | _measured_columns(case, statistics(case.normal_set.count, total)) | dict(how)
 
 
-def merged(case: Case, rows: Sequence[Row]) -> Row:
+def merged(case: QualityCase, rows: Sequence[Row]) -> Row:
     """The row of a set that was measured in parts, of their rows in order."""
     if reason := next((row["skipped"] for row in rows if row.get("skipped")), None):
         return _case_columns(case) | {"skipped": reason}
-    total = Total()
+    total = ErrorTotal()
     for row in rows:
         total.add_total(total_of(row[TOTAL]))
     how = {name: value for name, value in rows[0].items() if name != TOTAL}
@@ -290,7 +295,7 @@ def merged(case: Case, rows: Sequence[Row]) -> Row:
     return _row(case, total, how | {"compiled_by": "; ".join(compilers) or None})
 
 
-def _case_columns(case: Case) -> Row:
+def _case_columns(case: QualityCase) -> Row:
     return TABLE.empty() | {
         "encoding": case.codec.encoding.name,
         "storage": case.codec.storage.name,
@@ -309,7 +314,7 @@ def _case_columns(case: Case) -> Row:
     }
 
 
-def _measured_columns(case: Case, found: Statistics) -> Row:
+def _measured_columns(case: QualityCase, found: Statistics) -> Row:
     row = _figures(found, case.normal_set.area)
     if case.worst_case:
         row |= exact_figures.supremum(case.codec, case.domain, case.normal_set.area or 0.0, found)
@@ -318,7 +323,7 @@ def _measured_columns(case: Case, found: Statistics) -> Row:
     return row | exact_figures.held(case.codec, case.domain, found, row.get("angle_sup_deg"))
 
 
-def worst(case: Case) -> Worst | None:
+def worst(case: QualityCase) -> Worst | None:
     """The normal that a case turns the most, of those that it measures; None where the device cannot measure it."""
     try:
         with BACKENDS[case.backend](case) as found:
@@ -351,7 +356,7 @@ def _components_text(vector: np.ndarray) -> str:
     return f"({', '.join(map(str, vector))})"
 
 
-def rows(chosen: Iterable[Case], tick: Callable[[Case], None]) -> Iterator[Row]:
+def rows(chosen: Iterable[QualityCase], tick: Callable[[QualityCase], None]) -> Iterator[Row]:
     """The table, a row at a time, in the order of the cases."""
     # By JAX the codecs on one set are measured together, so that it is made once; a few dozens, for memory's sake.
     for _, cases_of_a_set in itertools.groupby(chosen, lambda case: id(case.normal_set)):
@@ -360,10 +365,10 @@ def rows(chosen: Iterable[Case], tick: Callable[[Case], None]) -> Iterator[Row]:
             yield from _rows_together(group[start : start + TOGETHER], tick)
 
 
-def _rows_together(group: list[Case], tick: Callable[[Case], None]) -> Iterator[Row]:
+def _rows_together(group: list[QualityCase], tick: Callable[[QualityCase], None]) -> Iterator[Row]:
     """A row for each case; cases that JAX can measure share the normals of their set."""
     shared = [case for case in group if case.backend == "jax" and has_twin(case.codec.encoding)]
-    measured: dict[int, tuple[Total, Measures]] = {}
+    measured: dict[int, tuple[ErrorTotal, Measures]] = {}
     if shared:
         meters = [*on_all_cores(lambda case: meter_of(case.codec, case.is_compiled), shared)]
         loads, at_once = shared[0].normal_set.loads(), shared[0].at_once
@@ -408,7 +413,7 @@ def image_of(normals: NormalSet) -> tuple[np.ndarray, np.ndarray]:
     return n, covered
 
 
-def image_round_trip(case: Case) -> RoundTrip:
+def image_round_trip(case: QualityCase) -> RoundTrip:
     """What a codec makes of a set that is an image. Raises one of UNMEASURABLE by the GLSL back end."""
     height, width = case.normal_set.shape or (0, 0)
     n, view, covered = planes_of(case.normal_set)

@@ -36,13 +36,13 @@ def stem(normals: str, key: CodecKey) -> str:
     return "-".join(parts).replace("/", "_in_")
 
 
-def write(chosen: Sequence[measure.Case], folder: Path) -> None:
+def write(chosen: Sequence[measure.QualityCase], folder: Path) -> None:
     """Write the pictures of each codec, and the set's own."""
     _write_codecs(chosen, folder)
     _write_originals(chosen, folder)
 
 
-def _write_codecs(chosen: Iterable[measure.Case], folder: Path) -> None:
+def _write_codecs(chosen: Iterable[measure.QualityCase], folder: Path) -> None:
     """Write four PNG files and one of arrays for each codec on each image set, by GLSL where that was asked for and can
     be had."""
     wanted = {(c.normal_set.name, c.codec): c for c in sorted(chosen, key=lambda c: c.backend, reverse=True)}
@@ -60,7 +60,7 @@ def _write_codecs(chosen: Iterable[measure.Case], folder: Path) -> None:
             _write_pixels(folder / f"{name}.npz", codec, trip)
 
 
-def _round_trip(case: measure.Case) -> measure.RoundTrip | None:
+def _round_trip(case: measure.QualityCase) -> measure.RoundTrip | None:
     """By the case's back end, or by JAX; None where neither can."""
     for backend in dict.fromkeys((case.backend, "jax")):
         with suppress(*measure.UNMEASURABLE):
@@ -92,14 +92,14 @@ def _codes_and_bits(codec: Codec, encoded: np.ndarray) -> tuple[np.ndarray, list
     return np.stack(planes, axis=-1), [*codec.storage.bits[:stored], *[1] * codec.encoding.sign_bits]
 
 
-def _write_originals(chosen: Sequence[measure.Case], folder: Path) -> None:
+def _write_originals(chosen: Sequence[measure.QualityCase], folder: Path) -> None:
     """The normals as they are, of each set that is an image."""
     for case in {case.normal_set.name: case for case in chosen if case.normal_set.shape}.values():
         n, covered = measure.image_of(case.normal_set)
         _write_png(folder / f"{case.normal_set.name}-normals.png", pictures.normals_picture(n, covered))
 
 
-def write_scenes(chosen: Sequence[measure.Case], folder: Path) -> None:
+def write_scenes(chosen: Sequence[measure.QualityCase], folder: Path) -> None:
     """The normals of each set that is an image, as a page's laboratory takes them."""
     for case in {case.normal_set.name: case for case in chosen if case.normal_set.shape}.values():
         write_scene(case.normal_set.name, *measure.seen(case.normal_set), folder)

@@ -9,20 +9,21 @@ from typing import Annotated
 from ....reports.sheets import View
 from ...ground.options.counts import DEFAULT_COUNT
 from ...ground.options.option import (
+    NAMED,
     Arithmetics,
     BackendsAndWgsl,
     Count,
     Encodings,
     Images,
     Live,
-    Names,
     Option,
     Reading,
     RoundingsAndDithered,
     Seed,
     StorageNames,
 )
-from ...shaders.languages.source_options import SourceOptions
+from ...ground.options.source_options import SourceOptions
+from ...ground.options.words import Names
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
@@ -33,20 +34,20 @@ KEY, HOW, RAW = Role.KEY, Role.HOW, Role.RAW
 class QualityOptions(Reading, SourceOptions):
     """What `quality` measures. Names are comma-separated."""
 
-    encoding: Encodings = "all"
-    storage: StorageNames = "rgba8"
-    rounding: RoundingsAndDithered = "nearest"
-    arithmetic: Arithmetics = "declared"
+    encoding: Encodings = ("all",)
+    storage: StorageNames = ("rgba8",)
+    rounding: RoundingsAndDithered = ("nearest",)
+    arithmetic: Arithmetics = ("declared",)
     normals: Annotated[
-        str,
+        Names,
         Option(
             "--normals",
-            f"Normal sets or files, {Names}. `domain` is all that a code is made for: sphere and axes, or hemisphere.",
+            f"Normal sets or files, {NAMED}. `domain` is all that a code is made for: sphere and axes, or hemisphere.",
             files=True,
             in_run=True,
         ),
-    ] = "playground"
-    backend: BackendsAndWgsl = "jax,glsl"
+    ] = ("playground",)
+    backend: BackendsAndWgsl = ("jax", "glsl")
     count: Count = DEFAULT_COUNT
     seed: Seed = 0
     worst_case: Annotated[

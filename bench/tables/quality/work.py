@@ -12,13 +12,13 @@ from ....reports.page.verdict import counted_set
 from ....reports.tables import text_of
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.machine.systems.people import LAST_OPENGL
-from ...ground.options.backends import backends_named
 from ...ground.options.counts import check_seed, checked_count
 from ...ground.options.targets import not_with_noise, what_is_left, without_noise
 from ...ground.output.errors import UsageError, lacks_twin, leave_out, names_by_reason, tell
 from ...ground.output.writing import check_folder, without
 from ...measures.metrics import published
 from ...subjects.codecs.names import check_twin, codecs_named, fitting
+from ...subjects.names.backends import backends_named
 from ...subjects.normals.normal_names import lacking_rays, normal_sets_named
 from ..charts import backends_of, one_backend
 from ..table import BACKENDS_NEED, C_COMPILER, PART, Measured, Row, Sheet, Step, Tick, Work
@@ -48,7 +48,7 @@ EXACT = ("--worst-case", "--codes")
 OF_SPHERE, OF_HALF = ("sphere", "axes"), ("hemisphere",)
 
 
-def cases(options: QualityOptions) -> list[measure.Case]:
+def cases(options: QualityOptions) -> list[measure.QualityCase]:
     """One case for each row. Codecs that do not fit are named on standard error.
 
     Raises:
@@ -74,10 +74,10 @@ def cases(options: QualityOptions) -> list[measure.Case]:
     for line in left_out:
         leave_out(line)
     needs_rays = any(codec.encoding.domain == "view" for codec in codecs)
-    said = [word.strip() for word in options.normals.split(",")]
+    said = [*map(str, options.normals)]
     names = options.normals
     if DOMAIN in said:
-        names = ",".join(dict.fromkeys(name for codec in codecs for name in _set_names(said, codec)))
+        names = tuple(dict.fromkeys(name for codec in codecs for name in _set_names(said, codec)))
     normal_sets = normal_sets_named(names, count, options.seed, options.reading, needs_rays)
     made = measure.cases(codecs, normal_sets, backends, options.worst_case, options.codes)
     asked = [case for case in made if _is_asked(case, said)]
@@ -106,7 +106,7 @@ def _set_names(said: Sequence[str], codec: Codec) -> Iterator[str]:
         yield from (OF_SPHERE if codec.encoding.domain == "sphere" else OF_HALF) if word == DOMAIN else (word,)
 
 
-def _is_asked(case: measure.Case, said: Sequence[str]) -> bool:
+def _is_asked(case: measure.QualityCase, said: Sequence[str]) -> bool:
     """Whether words name the set of a case, which `domain` does for codes of that domain alone."""
     name = case.normal_set.name
     return DOMAIN not in said or name not in OF_SPHERE + OF_HALF or name in _set_names(said, case.codec)
@@ -120,7 +120,7 @@ def steps(options: QualityOptions, outputs: QualityOutputs) -> list[Step]:
     return made
 
 
-def _step(case: measure.Case, key: Row) -> Step:
+def _step(case: measure.QualityCase, key: Row) -> Step:
     own = case.parts()
     parts = [_step(part, key | {PART: f"{at} of {len(own)}"}) for at, part in enumerate(own, 1)]
     return Step(key, case, case.name, len(case.normal_set.starts), parts)
@@ -131,7 +131,7 @@ def _check(outputs: QualityOutputs, made: Sequence[Step]) -> None:
         raise UsageError(f"--images needs a normal set that is an image: {published.NORMALS}, or a file of one")
 
 
-def _key(case: measure.Case, options: QualityOptions) -> Row:
+def _key(case: measure.QualityCase, options: QualityOptions) -> Row:
     codec, chosen = case.codec, case.normal_set
     key: Row = {"encoding": codec.encoding.name, "storage": codec.storage.name, "rounding": codec.rounding}
     key |= {"normals": chosen.name, "backend": case.backend, "count": chosen.count, "seed": chosen.seed}

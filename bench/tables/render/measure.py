@@ -35,7 +35,7 @@ SAME = (
 
 
 @dataclass(frozen=True)
-class Case:
+class RenderCase:
     """One row to measure.
 
     Attributes:
@@ -81,13 +81,13 @@ class Case:
             yield replace(self.setting, time=frame / self.frames)
 
     @property
-    def coverage(self) -> Case:
+    def coverage(self) -> RenderCase:
         """The same scene in a G-buffer in fp32 with one sample a pixel, which says what is covered."""
         plan = replace(self.reference.plan, samples=1, light_targets=2)
         return replace(self.reference, pipeline=PIPELINES["hybrid"], plan=plan, asked=1, effects=None)
 
     @property
-    def reference(self) -> Case:
+    def reference(self) -> RenderCase:
         """The same pipeline with everything in fp32, two light targets where it may have them, and full size."""
         targets = max(self.pipeline.light_targets, default=1)
         exact = replace(
@@ -113,19 +113,19 @@ class Drawn(Frame):
     kinds: np.ndarray | None
 
 
-class RenderBench(Bench[Case, Drawn]):
+class RenderBench(Bench[RenderCase, Drawn]):
     """Measures cases, each reference once."""
 
     def __init__(self, device: Device, repeats: int, with_flip: bool):
         super().__init__(device, repeats, with_flip)
-        self._masks: dict[Case, list[np.ndarray]] = {}
-        self._reference_columns: dict[Case, Row] = {}
+        self._masks: dict[RenderCase, list[np.ndarray]] = {}
+        self._reference_columns: dict[RenderCase, Row] = {}
 
-    def about(self, case: Case) -> Row:
+    def about(self, case: RenderCase) -> Row:
         stages = dict.fromkeys((*STAGES, *(stage.name for stage in case.pipeline.stages)))
         return TABLE.empty(stages) | _case_columns(case) | {"device": self.device.renderer}
 
-    def frames(self, case: Case, repeats: int = 0) -> list[Drawn]:
+    def frames(self, case: RenderCase, repeats: int = 0) -> list[Drawn]:
         frames: list[Drawn] = []
         for setting in case.moments():
             scene = self.scene(case.maker, setting)
@@ -135,7 +135,7 @@ class RenderBench(Bench[Case, Drawn]):
                 frames.append(_drawn_images(made, case.pipeline, repeats if is_last else 0))
         return frames
 
-    def display(self, case: Case, frames: list[Drawn]) -> Display:
+    def display(self, case: RenderCase, frames: list[Drawn]) -> Display:
         exposure = case.exposure
         if exposure is None:
             covered = self._covered_masks(case, frames)
@@ -143,7 +143,7 @@ class RenderBench(Bench[Case, Drawn]):
             exposure = measured_exposure(np.concatenate(pixels))
         return Display(exposure, case.tone_mapping)
 
-    def _covered_masks(self, case: Case, exact: list[Drawn]) -> list[np.ndarray]:
+    def _covered_masks(self, case: RenderCase, exact: list[Drawn]) -> list[np.ndarray]:
         """Where there is opaque surface in each frame of a reference, bool of shape (height, width).
 
         Raises:
@@ -156,7 +156,7 @@ class RenderBench(Bench[Case, Drawn]):
         require_surface(case.maker, any(where.any() for where in self._masks[coverage]))
         return self._masks[coverage]
 
-    def figures(self, case: Case, frames: list[Drawn], exact: list[Drawn]) -> Row:
+    def figures(self, case: RenderCase, frames: list[Drawn], exact: list[Drawn]) -> Row:
         covered = self._covered_masks(case, exact)
         if case.reference not in self._reference_columns:
             self._reference_columns[case.reference] = _reference_columns(exact, covered)
@@ -170,7 +170,7 @@ class RenderBench(Bench[Case, Drawn]):
             row["normal_psnr_db"] = psnr_db(float(np.mean(apart)))
         return row
 
-    def worst(self, case: Case) -> Worst | None:
+    def worst(self, case: RenderCase) -> Worst | None:
         """Return the normal of a case's first frame that its G-buffer gives back farthest off; None without one."""
         try:
             return _farthest(self.frames(case)[0], self.reference(case)[0])
@@ -228,7 +228,7 @@ def _normal_error(one: Drawn, other: Drawn, has_kind: bool) -> float:
     return float(np.mean((one.normals[compared].astype(np.float64) - other.normals[compared]) ** 2))
 
 
-def _case_columns(case: Case) -> Row:
+def _case_columns(case: RenderCase) -> Row:
     plan, pipeline = case.plan, case.pipeline
     row = described(pipeline, plan, case.setting, case.asked)
     row |= {
@@ -250,7 +250,7 @@ def _case_columns(case: Case) -> Row:
     return row
 
 
-def _unread(case: Case) -> list[str]:
+def _unread(case: RenderCase) -> list[str]:
     """What a layout keeps and no pass reads, by the names of its quantities."""
     if not case.pipeline.has_gbuffer:
         return []
@@ -262,7 +262,7 @@ def _unread(case: Case) -> list[str]:
     return list(dict.fromkeys(name for name in kept if name not in read))
 
 
-def _is_exact_but_for_normals(case: Case) -> bool:
+def _is_exact_but_for_normals(case: RenderCase) -> bool:
     """Whether a code lies in the exact layout, whose bytes nobody asked about."""
     layout, exact = case.plan.layout, LAYOUTS["fp32"]
     return case.pipeline.has_gbuffer and layout.name == exact.name and layout != exact

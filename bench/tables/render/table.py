@@ -25,7 +25,8 @@ from ...ground.options.option import (
     Shadow,
     Size,
 )
-from ...shaders.languages.source_options import SourceOptions
+from ...ground.options.source_options import SourceOptions
+from ...ground.options.words import Names
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
@@ -42,25 +43,25 @@ USUAL = (
 class RenderOptions(SourceOptions):
     """What `render` measures. Names are comma-separated."""
 
-    pipeline: Pipelines = "hybrid"
+    pipeline: Pipelines = ("hybrid",)
     layout: Layouts = None
     encoding: Annotated[
-        str | None,
+        Names | None,
         Option("--encoding", "Encodings or files to put into each layout, comma-separated, or all.", True, True),
     ] = None
     storage: Annotated[
-        str | None, Option("--storage", "Storages of the codes, or all. Default: rgba8.", in_run=True)
+        Names | None, Option("--storage", "Storages of the codes, or all. Default: rgba8.", in_run=True)
     ] = None
     rounding: Annotated[
-        str | None,
+        Names | None,
         Option("--rounding", "nearest, truncate, truncate_half, dithered; or all. Default: nearest.", in_run=True),
     ] = None
-    light_buffer: LightBuffers = "rgba32f"
-    light_targets: LightTargets = "2"
-    scene: Scenes = "studio"
+    light_buffer: LightBuffers = ("rgba32f",)
+    light_targets: LightTargets = ("2",)
+    scene: Scenes = ("studio",)
     power: Powers = None
     effects: Effects = None
-    shadow: Shadow = "on"
+    shadow: Shadow = ("on",)
     exposure: Annotated[
         str | None,
         Option(
@@ -80,12 +81,12 @@ class RenderOptions(SourceOptions):
         ),
     ] = None
     specular_antialiasing: Annotated[
-        str,
+        Names,
         Option(
             "--specular-antialiasing",
             "on, off: whether metal/rough surfaces become rougher where a pixel sees many normals.",
         ),
-    ] = "on"
+    ] = ("on",)
     least_roughness: Annotated[
         float, Option("--least-roughness", "The least roughness that lights see; what lies around is mirrored to 0.")
     ] = 0.045

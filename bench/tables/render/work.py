@@ -17,9 +17,7 @@ from ....gbuffer.pipelines import PIPELINES
 from ....gbuffer.scenes.catalogue import SceneMaker
 from ....gbuffer.scenes.scene import Scene
 from ...ground.choose import choose, choose_one
-from ...ground.options.counts import in_range
-from ...ground.options.effect_names import effects_named, lacking, name_of, pipeline_with
-from ...ground.options.scene_names import powers_named
+from ...ground.options.counts import MAX_POWER, checked_numbers, in_range
 from ...ground.options.targets import SHADOWS, TARGETS, check_scale, checked_setting, checked_target, what_is_left
 from ...ground.output.errors import UsageError, tell
 from ...ground.output.writing import without
@@ -27,13 +25,14 @@ from ...subjects.codecs.kinds.named import light_codecs_named
 from ...subjects.codecs.layout_names import layouts_named
 from ...subjects.codecs.names import codecs_named
 from ...subjects.environments.scenes_under import scenes_under
+from ...subjects.names.effects import effects_named, lacking, name_of, pipeline_with
 from ...subjects.scenes.scene_names import scene_makers_named
 from ..plans import suited, with_codecs
 from ..shots import by_shots, checked_device, described, says_little, shot_steps
 from ..table import Measured, Row, Sheet, Step, Work
 from . import pictures
 from .charts import charts
-from .measure import Case, RenderBench, in_order, ranked, shown_scene
+from .measure import RenderBench, RenderCase, in_order, ranked, shown_scene
 from .table import TABLE, RenderOptions, RenderOutputs
 
 MAX_FRAMES = 1000
@@ -48,21 +47,21 @@ def layouts(options: RenderOptions) -> list[Layout]:
     Raises:
         UsageError: an unknown name, a layout that cannot be, or nothing left.
     """
-    chosen = layouts_named("fp32" if options.layout is None else options.layout)
+    chosen = layouts_named(("fp32",) if options.layout is None else options.layout)
     if options.layout is not None and options.encoding is options.storage is options.rounding is None:
         return chosen
     # Half a codec is completed by what is usual.
     codecs = codecs_named(
-        "all" if options.encoding is None else options.encoding,
-        "rgba8" if options.storage is None else options.storage,
-        "nearest" if options.rounding is None else options.rounding,
+        ("all",) if options.encoding is None else options.encoding,
+        ("rgba8",) if options.storage is None else options.storage,
+        ("nearest",) if options.rounding is None else options.rounding,
         known_roundings=ROUNDINGS_AND_DITHERED,
     )
     complaints: list[str] = []
     return what_is_left(with_codecs(chosen, codecs, complaints), complaints)
 
 
-def cases(options: RenderOptions, device: Device) -> list[Case]:
+def cases(options: RenderOptions, device: Device) -> list[RenderCase]:
     """One case for each row; combinations that cannot be are named on standard error.
 
     Raises:
@@ -82,9 +81,9 @@ def cases(options: RenderOptions, device: Device) -> list[Case]:
         for antialiased in choose("specular antialiasing", options.specular_antialiasing, SHADOWS)
     ]
     tone_mapping = options.tone_mapping and choose_one("tone mapping", options.tone_mapping, TONE_MAPPINGS)
-    made: list[Case] = []
+    made: list[RenderCase] = []
     complaints: list[str] = []
-    powers = [None] if options.power is None else powers_named(options.power)
+    powers = [None] if options.power is None else checked_numbers("--power", options.power, float, 1, MAX_POWER)
     effects = effects_named(options.effects) if options.effects else []
     pipelines = [pipeline_with(one, effects, complaints) for one in choose("pipeline", options.pipeline, PIPELINES)]
     for maker in scenes_under(options.environment, scene_makers_named(options.scene)):
@@ -98,7 +97,9 @@ def cases(options: RenderOptions, device: Device) -> list[Case]:
         for pipeline in filter(None, pipelines):
             asked = [_as_engines_keep(plan) for plan in sized] if scene.is_metal_rough else sized
             for plan in suited(device, pipeline, asked, complaints, scene.is_metal_rough):
-                case = Case(pipeline, plan, maker, setting, options.frames or maker.frames, options.samples, **told)
+                case = RenderCase(
+                    pipeline, plan, maker, setting, options.frames or maker.frames, options.samples, **told
+                )
                 made += [replace(case, power=power) for power in ([None] if scene.is_metal_rough else powers)]
         if scene.is_metal_rough and options.power is not None:
             tell(f"{maker.name}: --power is not used: metal/rough materials have a roughness of their own")
@@ -149,7 +150,7 @@ def _steps(options: RenderOptions, outputs: RenderOutputs) -> list[Step]:
     return shot_steps(bench, cases(options, device), outputs.images, lambda case: _key(case, options))
 
 
-def _key(case: Case, options: RenderOptions) -> Row:
+def _key(case: RenderCase, options: RenderOptions) -> Row:
     key = described(case.pipeline, case.plan, case.setting, case.asked)
     key |= {"scene": case.maker.name, "power": case.power, "codec": case.plan.layout.codec.name, "frames": case.frames}
     key |= {"effects": case.effects, "exposure": case.exposure, "tone_mapping": case.tone_mapping}

@@ -78,7 +78,7 @@ class Work:
 
 
 @dataclass(frozen=True, eq=False)
-class Case:
+class RooflineCase:
     """Codes on one GPU, in several frames.
 
     Attributes:

@@ -9,6 +9,7 @@ from types import MappingProxyType
 
 from ...ground.choose import unknown_name
 from ...ground.options.gpu_families import FAMILIES
+from ...ground.options.words import Names
 from ...ground.output.errors import UsageError
 from ...ground.spelling import spelled
 
@@ -66,7 +67,7 @@ GPUS: Mapping[str, Rates] = MappingProxyType(
         "rtx5090": Rates("GeForce RTX 5090", "sm_120", 21760, 2.407, 1792),
     }
 )
-USUAL = "rx480,rx6800xt,steam_deck,iris_xe"
+USUAL = ("rx480", "rx6800xt", "steam_deck", "iris_xe")
 # Of a GPU that misses them in a message.
 SUCH = MappingProxyType({"lanes": 2304, "clock": 2.2, "memory": 448})
 # The least and the most that a setting may be.
@@ -75,17 +76,17 @@ RANGES = MappingProxyType(
 )
 
 
-def gpus_named(words: str) -> dict[str, Rates]:
-    """The GPUs of comma-separated names, or all. NAME:memory=400:clock=2 changes one's rates; a family's name with
+def gpus_named(words: Names) -> dict[str, Rates]:
+    """Return the GPUs of names, or all. NAME:memory=400:clock=2 changes one's rates; a family's name with
     lanes, clock and memory is a GPU of that family.
 
     Raises:
         UsageError: an unknown name or setting, or a rate that no GPU has.
     """
-    named = [word for word in map(str.strip, words.split(",")) if word]
-    if not named:
+    if not words:
         raise UsageError(f"no GPU named; known: all, {', '.join(GPUS)}")
-    return {word: rates for name in named for word, rates in (GPUS.items() if name == "all" else [_named_rates(name)])}
+    several = (GPUS.items() if name == "all" else [_named_rates(name)] for name in map(str, words))
+    return {word: rates for named in several for word, rates in named}
 
 
 def _named_rates(word: str) -> tuple[str, Rates]:

@@ -7,7 +7,8 @@ from typing import Annotated
 
 from ....reports.sheets import View
 from ...ground.options.option import Encodings, Option, Plot, StorageNames
-from ...shaders.languages.source_options import SourceOptions
+from ...ground.options.source_options import SourceOptions
+from ...ground.options.words import Names
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 from .rates import GPUS, USUAL
@@ -19,10 +20,10 @@ KEY, HOW = Role.KEY, Role.HOW
 class RooflineOptions(SourceOptions):
     """What `roofline` computes. Names are comma-separated."""
 
-    encoding: Encodings = "xyz,spheremap,octahedral,octahedral_precise"
-    storage: StorageNames = "rg8,rgb10a2,rgba16f"
+    encoding: Encodings = ("xyz", "spheremap", "octahedral", "octahedral_precise")
+    storage: StorageNames = ("rg8", "rgb10a2", "rgba16f")
     gpu: Annotated[
-        str,
+        Names,
         Option(
             "--gpu",
             f"GPUs, comma-separated, or all: {', '.join(f'{name} ({gpu.title})' for name, gpu in GPUS.items())}. "
@@ -31,9 +32,13 @@ class RooflineOptions(SourceOptions):
             in_run=True,
         ),
     ] = USUAL
-    size: Annotated[str, Option("--size", "WIDTHxHEIGHT of the G-buffer, comma-separated.")] = "1920x1080,3840x2160"
-    reads: Annotated[str, Option("--reads", "Passes that read and decode each pixel's normal, comma-separated.")] = (
-        "1,4"
+    size: Annotated[Names, Option("--size", "WIDTHxHEIGHT of the G-buffer, comma-separated.")] = (
+        "1920x1080",
+        "3840x2160",
+    )
+    reads: Annotated[Names, Option("--reads", "Passes that read and decode each pixel's normal, comma-separated.")] = (
+        "1",
+        "4",
     )
     overdraw: Annotated[float, Option("--overdraw", "How often each pixel's normal is encoded and written.")] = 1.0
     cache_share: Annotated[

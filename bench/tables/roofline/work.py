@@ -14,7 +14,7 @@ from ..table import COMPILERS, Measured, Row, Sheet, Step, Work, each
 from . import measure
 from .answers import answers
 from .charts import charts
-from .measure import Case, Frame
+from .measure import Frame, RooflineCase
 from .rates import RANGES, gpus_named
 from .table import TABLE, RooflineOptions, RooflineOutputs
 
@@ -23,25 +23,25 @@ MOST_SIDE, MOST_READS = 32768, 1024
 MOST_PAIRS = 6
 
 
-def cases(options: RooflineOptions) -> list[Case]:
+def cases(options: RooflineOptions) -> list[RooflineCase]:
     """One for each GPU. Raises UsageError for what is unknown or out of range."""
     if not 0.01 <= options.overdraw <= 1000:
         raise UsageError(f"--overdraw {options.overdraw}: from 0.01 to 1000")
     if not 0 <= options.cache_share <= 1:
         raise UsageError(f"--cache-share {options.cache_share}: a share is 0 to 1")
-    sizes = [checked_sides(word, MOST_SIDE, "here") for word in options.size.split(",")]
+    sizes = [checked_sides(word, MOST_SIDE, "here") for word in map(str, options.size)]
     reads = checked_numbers("--reads", options.reads, int, 1, MOST_READS)
     gpus = gpus_named(options.gpu)
-    codecs = that_fit(codecs_named(options.encoding, options.storage, "nearest"))
+    codecs = that_fit(codecs_named(options.encoding, options.storage, ("nearest",)))
     frames = [Frame(size, count, options.overdraw, options.cache_share) for size in sizes for count in reads]
-    return [Case(codecs, name, rates, frames, options.shared) for name, rates in gpus.items()]
+    return [RooflineCase(codecs, name, rates, frames, options.shared) for name, rates in gpus.items()]
 
 
 def _steps(options: RooflineOptions, _: RooflineOutputs) -> list[Step]:
     return [Step(_key(case), case, case.gpu) for case in cases(options)]
 
 
-def _key(case: Case) -> Row:
+def _key(case: RooflineCase) -> Row:
     about = {"gpu": case.gpu, "shared": case.is_shared}
     about |= {name: getattr(case.rates, name) for name in ("family", *RANGES)}
     frames = [[*frame.size, frame.reads, frame.overdraw, frame.cache_share] for frame in case.frames]
@@ -75,7 +75,7 @@ def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
         said = ()
 
 
-def _duels(case: Case) -> Iterator[str]:
+def _duels(case: RooflineCase) -> Iterator[str]:
     """Of each pair of codes of different size, from how many reads on the smaller is faster, at which sizes. Where
     there are many pairs, those alone in which it is not always so."""
     works = {f"{codec.encoding.name} {codec.storage.name}": case.work(codec) for codec in case.codecs}
@@ -92,7 +92,7 @@ def _duels(case: Case) -> Iterator[str]:
         yield f"{case.gpu}: {len(few) - MOST_PAIRS} more pairs; name fewer codes to see them"
 
 
-def _by_size(case: Case, one: measure.Work, other: measure.Work) -> dict[str, list[str]]:
+def _by_size(case: RooflineCase, one: measure.Work, other: measure.Work) -> dict[str, list[str]]:
     """The sizes by the answer that holds for them."""
     found: dict[str, list[str]] = {}
     for size, frame in {frame.size: frame for frame in case.frames}.items():

@@ -28,7 +28,7 @@ NONE, STILL, MOVING = DITHERS = ("none", "still", "moving")
 
 
 @dataclass(frozen=True)
-class Seen:
+class Accumulation:
     """How often an object is drawn for a picture, and what noise is added to the code of its normals.
 
     Attributes:
@@ -52,7 +52,13 @@ class Frames:
     """
 
     def __init__(
-        self, device: Device, stack: ExitStack, what: Shown, size: tuple[int, int], codec: Codec | None, seen: Seen
+        self,
+        device: Device,
+        stack: ExitStack,
+        what: Shown,
+        size: tuple[int, int],
+        codec: Codec | None,
+        seen: Accumulation,
     ):
         layout = layout_of(codec) if codec else LAYOUTS["fp32"]
         plan = Plan(size, 1, layout, LIGHT_BUFFERS["rgba32f"], 1, False, 1.0, antialiased=False)

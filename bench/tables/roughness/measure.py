@@ -19,7 +19,7 @@ from ....gbuffer.layouts.words import LayoutError
 from ...measures.metrics.images import flip
 from ...measures.metrics.totals import psnr_db
 from ..table import Row
-from .frames import DITHERS, NONE, Frames, Seen
+from .frames import DITHERS, NONE, Accumulation, Frames
 from .objects import shown
 from .table import TABLE
 
@@ -37,7 +37,7 @@ UNMEASURABLE = (ShaderError, FormatError, LayoutError)
 
 
 @dataclass(frozen=True)
-class Case:
+class RoughnessCase:
     """An object under an environment, the codes whose reflections are looked at, and how."""
 
     codecs: tuple[Codec, ...]
@@ -45,7 +45,7 @@ class Case:
     environment: Environment
     thresholds: tuple[float, ...]
     size: tuple[int, int]
-    seen: tuple[Seen, ...] = (Seen(),)
+    seen: tuple[Accumulation, ...] = (Accumulation(),)
 
     @property
     def name(self) -> str:
@@ -55,21 +55,21 @@ class Case:
 class Pictures:
     """What a case shows by exact normals and by those of codes, as displayed; each exact picture is drawn once."""
 
-    def __init__(self, device: Device, stack: ExitStack, case: Case):
+    def __init__(self, device: Device, stack: ExitStack, case: RoughnessCase):
         self._device, self._stack, self._case = device, stack, case
         self.what = shown(case.object, case.environment)
         self._exact, self._right = dict[int, Frames](), dict[tuple[int, float], np.ndarray]()
         exact = self.exact(1)
         self.display = Display(measured_exposure(exact.light(EXPOSED_AT)[exact.covered]), TONE_MAPPING)
 
-    def opened(self, stack: ExitStack, codec: Codec | None, seen: Seen) -> Frames:
+    def opened(self, stack: ExitStack, codec: Codec | None, seen: Accumulation) -> Frames:
         """The object by a code, or by exact normals, kept open with a stack. Raises what UNMEASURABLE lists."""
         return Frames(self._device, stack, self.what, self._case.size, codec, seen)
 
     def exact(self, frames: int) -> Frames:
         """The object by exact normals in so many frames, kept open."""
         if frames not in self._exact:
-            self._exact[frames] = self.opened(self._stack, None, Seen(frames=frames))
+            self._exact[frames] = self.opened(self._stack, None, Accumulation(frames=frames))
         return self._exact[frames]
 
     def image(self, made: Frames, roughness: float) -> np.ndarray:
@@ -95,7 +95,7 @@ class Pictures:
         return found
 
 
-def measure(device: Device, case: Case) -> list[Row]:
+def measure(device: Device, case: RoughnessCase) -> list[Row]:
     """Of each code a row for each threshold, then one for each roughness."""
     with ExitStack() as stack:
         pictures = Pictures(device, stack, case)
@@ -107,7 +107,7 @@ def measure(device: Device, case: Case) -> list[Row]:
         return [empty | row for codec, seen in looked for row in _rows_of(pictures, codec, seen, case.thresholds)]
 
 
-def _rows_of(pictures: Pictures, codec: Codec, seen: Seen, thresholds: Sequence[float]) -> list[Row]:
+def _rows_of(pictures: Pictures, codec: Codec, seen: Accumulation, thresholds: Sequence[float]) -> list[Row]:
     said: Row = {"encoding": codec.encoding.name, "storage": codec.storage.name, "rounding": codec.rounding}
     said |= {"dither": seen.dither, "frames": seen.frames, "bits": codec.bits}
     if seen.dither != NONE and codec.undithered:

@@ -13,7 +13,7 @@ from ....gbuffer.environment.environment import Environment, directions
 from ....gbuffer.scenes.built_in.studio import panel
 from ....gbuffer.scenes.mesh import Mesh, sphere
 from ....gbuffer.scenes.metal_rough import MetalRough
-from ....gbuffer.scenes.scene import Part, Scene, View
+from ....gbuffer.scenes.scene import Scene, ScenePart, View
 
 # From so far the rays of a picture are nearly parallel; all objects are two wide and two high.
 DISTANCE = 57.0
@@ -39,7 +39,7 @@ class Shown:
 
     name: str
     environment: Environment
-    part: Part
+    part: ScenePart
     view: View
 
     def scene(self, roughness: float) -> Scene:
@@ -59,7 +59,7 @@ def shown(name: str, environment: Environment) -> Shown:
     x, y, z = map(float, back * DISTANCE)
     fov = float(np.degrees(2 * np.arctan(1 / DISTANCE)))
     view = View((x, y, z), (0.0, 0.0, 0.0), fov, DISTANCE - 2, DISTANCE + 2)
-    return Shown(name, environment, Part(OBJECTS[name](), model[None], np.array([0]), casts=False), view)
+    return Shown(name, environment, ScenePart(OBJECTS[name](), model[None], np.array([0]), casts=False), view)
 
 
 def busiest(environment: Environment) -> np.ndarray:

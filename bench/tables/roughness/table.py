@@ -7,7 +7,8 @@ from typing import Annotated
 
 from ....reports.sheets import View
 from ...ground.options.option import Encodings, Option, Plot, Roundings, Size, StorageNames
-from ...shaders.languages.source_options import SourceOptions
+from ...ground.options.source_options import SourceOptions
+from ...ground.options.words import Names
 from .. import shared_columns as shared
 from ..table import Column, Group, Role, Section, Table
 
@@ -18,22 +19,23 @@ KEY, HOW = Role.KEY, Role.HOW
 class RoughnessOptions(SourceOptions):
     """What `roughness` measures. Names and numbers are comma-separated."""
 
-    encoding: Encodings = "octahedral"
-    storage: StorageNames = "rg8,rgb10a2,rgb8_12_12,rg16"
-    rounding: Roundings = "nearest"
-    object: Annotated[str, Option("--object", "sphere, panel20, panel4; comma-separated, or all.")] = "all"
+    encoding: Encodings = ("octahedral",)
+    storage: StorageNames = ("rg8", "rgb10a2", "rgb8_12_12", "rg16")
+    rounding: Roundings = ("nearest",)
+    object: Annotated[Names, Option("--object", "sphere, panel20, panel4; comma-separated, or all.")] = ("all",)
     environment: Annotated[
-        str, Option("--environment", "studio, strips, lamp, sky, or .hdr and .exr files; comma-separated.", files=True)
-    ] = "studio,strips,lamp"
+        Names,
+        Option("--environment", "studio, strips, lamp, sky, or .hdr and .exr files; comma-separated.", files=True),
+    ] = ("studio", "strips", "lamp")
     threshold: Annotated[
-        str, Option("--threshold", "FLIP's 99th percentile that a code may have, comma-separated.")
-    ] = "0.1,0.05"
+        Names, Option("--threshold", "FLIP's 99th percentile that a code may have, comma-separated.")
+    ] = ("0.1", "0.05")
     size: Size = "256x256"
     dither: Annotated[
-        str, Option("--dither", "Noise before rounding, besides none: still, moving; comma-separated, or all.")
-    ] = "none"
+        Names, Option("--dither", "Noise before rounding, besides none: still, moving; comma-separated, or all.")
+    ] = ("none",)
     frames: Annotated[
-        str | None,
+        Names | None,
         Option("--frames", "Frames whose mean a picture is, comma-separated. Default: 1; with --dither 1,8."),
     ] = None
 

@@ -10,14 +10,15 @@ from ...ground.choose import choose
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.options.counts import checked_numbers
 from ...ground.options.targets import checked_target
+from ...ground.options.words import Names
 from ...ground.output.errors import UsageError
 from ...measures.metrics.images import require_flip
 from ...subjects.codecs.names import codecs_named, fitting
 from ...subjects.environments.environment_names import environment_named
 from ..table import Measured, Row, Sheet, Step, Work, each
 from .charts import charts
-from .frames import DITHERS, NONE, Seen
-from .measure import Case, answers, in_order, measure
+from .frames import DITHERS, NONE, Accumulation
+from .measure import RoughnessCase, answers, in_order, measure
 from .objects import OBJECTS
 from .table import RoughnessOptions, RoughnessOutputs
 
@@ -38,21 +39,21 @@ def _steps(options: RoughnessOptions, _: RoughnessOutputs) -> list[Step]:
     objects = tuple(choose("object", options.object, {name: name for name in OBJECTS}))
     around = _environments(options.environment)
     codecs, _left_out = fitting(codecs_named(options.encoding, options.storage, options.rounding))
-    made = [Case(tuple(codecs), name, one, thresholds, size, seen) for one in around for name in objects]
+    made = [RoughnessCase(tuple(codecs), name, one, thresholds, size, seen) for one in around for name in objects]
     return [Step(_key(case), case, case.name) for case in made]
 
 
-def _seen(options: RoughnessOptions) -> tuple[Seen, ...]:
+def _seen(options: RoughnessOptions) -> tuple[Accumulation, ...]:
     """Without noise always; one frame, and what temporal antialiasing sees, unless others are asked for."""
     dithers = dict.fromkeys((NONE, *choose("dither", options.dither, {name: name for name in DITHERS})))
-    usual = "1" if tuple(dithers) == (NONE,) else f"1,{TEMPORAL}"
+    usual = ("1",) if tuple(dithers) == (NONE,) else ("1", str(TEMPORAL))
     frames = checked_numbers("--frames", options.frames or usual, int, 1, MOST_FRAMES)
-    return tuple(Seen(dither, count) for dither in dithers for count in frames)
+    return tuple(Accumulation(dither, count) for dither in dithers for count in frames)
 
 
-def _environments(words: str) -> tuple[Environment, ...]:
+def _environments(words: Names) -> tuple[Environment, ...]:
     """Raises UsageError for an unknown one, and for two of one name."""
-    found = tuple(environment_named(word) for word in filter(None, map(str.strip, words.split(","))))
+    found = tuple(environment_named(str(word)) for word in words)
     names = [one.name for one in found]
     if not found:
         raise UsageError("--environment: name at least one, such as studio")
@@ -61,7 +62,7 @@ def _environments(words: str) -> tuple[Environment, ...]:
     return found
 
 
-def _key(case: Case) -> Row:
+def _key(case: RoughnessCase) -> Row:
     key: Row = {"codecs": [codec.name for codec in case.codecs], "object": case.object, "size": list(case.size)}
     key |= {"seen": [[one.dither, one.frames] for one in case.seen]}
     return key | {"environment": key_of(case.environment.radiance), "thresholds": list(case.thresholds)}
@@ -93,7 +94,7 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
         yield Sheet("the least roughness from which on each code carries reflections", list(lines.values()))
 
 
-def _measured(case: Case) -> list[Row]:
+def _measured(case: RoughnessCase) -> list[Row]:
     return measure(require_device(), case)
 
 

@@ -44,7 +44,7 @@ def points(options: SweepOptions, device: Device) -> list[Point]:
             for pipeline in pipelines:
                 plans = [
                     Plan(size, samples, layout, light, targets, shadows, options.scale)
-                    for layout in asked or layouts_named(pipeline.usual_layout)
+                    for layout in asked or layouts_named((pipeline.usual_layout,))
                     for light in light_codecs_named(options.light_buffer)
                     for targets in choose("number of light targets", options.light_targets, TARGETS)
                 ]

@@ -19,7 +19,8 @@ from ...ground.options.option import (
     Seed,
     Shadow,
 )
-from ...shaders.languages.source_options import SourceOptions
+from ...ground.options.source_options import SourceOptions
+from ...ground.options.words import Names
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
@@ -30,12 +31,18 @@ KEY, HOW, TIME = Role.KEY, Role.HOW, Role.TIME
 class SweepOptions(SourceOptions):
     """What `sweep` sweeps over. Names and counts are comma-separated; no layout: each pipeline's published one."""
 
-    pipeline: Pipelines = "prepass,hybrid,deferred,inferred,forward"
-    objects: Annotated[str, Option("--objects", "Numbers of objects, comma-separated.")] = "100,200,500,1000,2000"
-    shadow: Shadow = "on,off"
+    pipeline: Pipelines = ("prepass", "hybrid", "deferred", "inferred", "forward")
+    objects: Annotated[Names, Option("--objects", "Numbers of objects, comma-separated.")] = (
+        "100",
+        "200",
+        "500",
+        "1000",
+        "2000",
+    )
+    shadow: Shadow = ("on", "off")
     layout: Layouts = None
-    light_buffer: LightBuffers = "rgba16f"
-    light_targets: LightTargets = "2"
+    light_buffer: LightBuffers = ("rgba16f",)
+    light_targets: LightTargets = ("2",)
     size: Annotated[
         str,
         Option("--size", "WIDTHxHEIGHT of the image; auto: 640x480, or 320x240 on a software rasteriser."),

@@ -36,7 +36,7 @@ Trip = Callable[[Frames], Frames]
 
 
 @dataclass(frozen=True)
-class Case:
+class FrameCase:
     """One row to measure."""
 
     codec: FrameCodec
@@ -89,7 +89,7 @@ BACKENDS: Mapping[str, Callable[[FrameCodec], AbstractContextManager[tuple[Trip,
 
 
 @dataclass
-class Total:
+class FrameTotal:
     """What chunks add up to: angles of normals, tangents and rotations in degrees, decodes that were no number, each of
     which counts as 180, and hands that came back as the other."""
 
@@ -133,7 +133,7 @@ def _unit_axes(frames: Frames) -> tuple[np.ndarray, np.ndarray]:
     return n, t / np.linalg.norm(t, axis=1, keepdims=True)
 
 
-def measure(case: Case) -> Row:
+def measure(case: FrameCase) -> Row:
     """One row; one that the device cannot give has its reason in `skipped` and no figures."""
     row = TABLE.empty() | {
         "encoding": case.codec.encoding.name,
@@ -145,7 +145,7 @@ def measure(case: Case) -> Row:
         "codes": case.codec.codes,
         "seed": case.frame_set.seed,
     }
-    total = Total()
+    total = FrameTotal()
     try:
         with BACKENDS[case.backend](case.codec) as (trip, how), np.errstate(invalid="ignore", divide="ignore"):
             for given in case.frame_set.chunks():
@@ -158,7 +158,7 @@ def measure(case: Case) -> Row:
     return row | found | _limit_columns(case, total, found) | how
 
 
-def _supremum_columns(case: Case) -> Row:
+def _supremum_columns(case: FrameCase) -> Row:
     """Of all tangent frames by search; of a mesh, whose frames are all measured, there is no other. None of a code that
     is written for shaders alone: the search is of exact arithmetic, which is JAX's."""
     if not case.frame_set.is_uniform:
@@ -176,7 +176,7 @@ def _whole_chunk(frames: Frames) -> Frames:
     return Frames(*(np.pad(a, ((0, missing), (0, 0)), mode="edge") for a in (frames.normals, frames.tangents)))
 
 
-def _figures(total: Total, codec: FrameCodec) -> Row:
+def _figures(total: FrameTotal, codec: FrameCodec) -> Row:
     row: Row = {"count": total.count, "invalid": total.invalid}
     row["hands_lost"] = None if codec.encoding.hand_in is None else total.hands_lost
     for i, what in enumerate(WHAT):
@@ -186,7 +186,7 @@ def _figures(total: Total, codec: FrameCodec) -> Row:
     return row
 
 
-def _limit_columns(case: Case, total: Total, figures: Row) -> Row:
+def _limit_columns(case: FrameCase, total: FrameTotal, figures: Row) -> Row:
     """The limit, and the row's share of it; nothing on sets that are not uniform, and no share of a limit that float32
     frames cannot tell from none."""
     if not case.frame_set.is_uniform:

@@ -15,7 +15,8 @@ from ....encodings.vec import Vec4
 from ....gbuffer.scenes.files.read import READERS
 from ....gbuffer.scenes.mesh import Mesh, tangents
 from ...ground.choose import choose_or_read
-from ...ground.options.scene_names import mesh_file, say_notes
+from ...ground.options.words import Names
+from ...subjects.scenes.mesh_files import mesh_file, say_notes
 
 CHUNK = 2**16
 
@@ -94,8 +95,8 @@ def frames_from(normals: np.ndarray, with_hands: np.ndarray) -> Frames:
 FRAME_SETS: Mapping[str, Callable[[int, int], FrameSet]] = MappingProxyType({"rotations": rotations})
 
 
-def frame_sets_named(names: str, count: int, seed: int) -> list[FrameSet]:
-    """The sets that comma-separated names stand for: those of the catalogue, or the vertices of mesh files.
+def frame_sets_named(names: Names, count: int, seed: int) -> list[FrameSet]:
+    """Return the sets that names stand for: those of the catalogue, or the vertices of mesh files.
 
     Raises:
         UsageError: an unknown name, or a file that cannot be read.

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from ...ground.options.option import Backends, Names, Option, RoundingsAndDithered, Seed
-from ...shaders.languages.source_options import SourceOptions
+from ...ground.options.option import NAMED, Backends, Option, RoundingsAndDithered, Seed
+from ...ground.options.source_options import SourceOptions
+from ...ground.options.words import Names
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
@@ -17,17 +18,17 @@ KEY, HOW = Role.KEY, Role.HOW
 class FramesOptions(SourceOptions):
     """What `frames` measures. Names are comma-separated; no storage: where each code usually lies."""
 
-    encoding: Annotated[str, Option("--encoding", f"Tangent frame codes or files of yours, {Names}.", files=True)] = (
-        "all"
+    encoding: Annotated[Names, Option("--encoding", f"Tangent frame codes or files of yours, {NAMED}.", files=True)] = (
+        "all",
     )
     storage: Annotated[
-        str | None, Option("--storage", f"Tangent frame storages, {Names}. Default: each code's usual.")
+        Names | None, Option("--storage", f"Tangent frame storages, {NAMED}. Default: each code's usual.")
     ] = None
-    rounding: RoundingsAndDithered = "nearest"
+    rounding: RoundingsAndDithered = ("nearest",)
     frames: Annotated[
-        str, Option("--frames", f"Tangent frame sets or mesh files, whose vertices are taken, {Names}.", files=True)
-    ] = "rotations"
-    backend: Backends = "jax,glsl"
+        Names, Option("--frames", f"Tangent frame sets or mesh files, whose vertices are taken, {NAMED}.", files=True)
+    ] = ("rotations",)
+    backend: Backends = ("jax", "glsl")
     count: Annotated[int, Option("--count", "Tangent frames in a uniform set.")] = 2**16
     seed: Seed = 0
     worst_case: Annotated[

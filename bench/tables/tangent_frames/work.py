@@ -5,23 +5,21 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from ....encodings.catalogue import FRAME_ENCODINGS
 from ....encodings.codecs.frame_codec import FrameCodec
-from ....encodings.codecs.kind import FRAME
-from ....encodings.storages.storage import FRAME_STORAGES, ROUNDINGS_AND_DITHERED
-from ...ground.machine.devices import require_device, require_jax
-from ...ground.options.backends import backends_named
+from ....encodings.kinds import FRAME
+from ....encodings.storages.storage import ROUNDINGS_AND_DITHERED
 from ...ground.options.counts import check_seed, checked_count
-from ...ground.options.storage_names import roundings_named, storages_named
 from ...ground.options.targets import not_with_noise, that_fit, without_noise
-from ...subjects.codecs.kinds.named import own_codes_named
+from ...subjects.codecs.kinds.codecs import codecs_of_kind
+from ...subjects.names.backends import backends_here
+from ...subjects.names.storages import roundings_named
 from ..table import NoOutputs, Row, Sheet, Step, Work, each
 from . import measure
 from .sets import frame_sets_named
 from .table import FramesOptions
 
 
-def cases(options: FramesOptions) -> list[measure.Case]:
+def cases(options: FramesOptions) -> list[measure.FrameCase]:
     """One case for each row.
 
     Raises:
@@ -31,13 +29,10 @@ def cases(options: FramesOptions) -> list[measure.Case]:
     check_seed(options.seed)
     count = checked_count(options.count)
     chosen = codecs(options)
-    backends = backends_named(options.backend, measure.BACKENDS)
-    require_jax()
-    if backends == ["glsl"]:
-        require_device()
+    backends = backends_here(options.backend, measure.BACKENDS)
     sets = frame_sets_named(options.frames, count, options.seed)
     return [
-        measure.Case(codec, frames, backend, options.worst_case)
+        measure.FrameCase(codec, frames, backend, options.worst_case)
         for frames in sets
         for codec in chosen
         for backend in backends
@@ -45,14 +40,9 @@ def cases(options: FramesOptions) -> list[measure.Case]:
 
 
 def codecs(options: FramesOptions) -> list[FrameCodec]:
-    """The codecs asked for; those that do not fit are named on standard error."""
+    """Return the codecs asked for; those that do not fit are named on standard error."""
     roundings = roundings_named(options.rounding, ROUNDINGS_AND_DITHERED)
-    made = (
-        FrameCodec(encoding, storage, rounding)
-        for encoding in own_codes_named(FRAME, options.encoding, FRAME_ENCODINGS, "frame encoding")
-        for storage in storages_named(options.storage or ",".join(encoding.storages), FRAME_STORAGES, "frame storage")
-        for rounding in roundings
-    )
+    made = codecs_of_kind(FRAME, options.encoding, options.storage, roundings)
     return that_fit(without_noise(made, not_with_noise("--worst-case")) if options.worst_case else made)
 
 
@@ -60,7 +50,7 @@ def _steps(options: FramesOptions, _: NoOutputs) -> list[Step]:
     return [Step(_key(case), case, case.name) for case in cases(options)]
 
 
-def _key(case: measure.Case) -> Row:
+def _key(case: measure.FrameCase) -> Row:
     key: Row = {"codec": case.codec.name, "frame_set": case.frame_set.name, "backend": case.backend}
     key |= {"count": case.frame_set.count, "seed": case.frame_set.seed}
     return key | ({"worst_case": True} if case.worst_case else {})

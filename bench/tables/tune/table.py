@@ -8,6 +8,7 @@ from typing import Annotated
 
 from ....reports.sheets import View
 from ...ground.options.option import Option, Reading, Seed
+from ...ground.options.words import Names
 from .. import shared_columns as shared
 from ..table import Column, Group, Role, Section, Table
 
@@ -19,11 +20,11 @@ class TuneOptions(Reading):
     """What `tune` fits, and to what."""
 
     encoding: Annotated[str, Option("ENCODING", "An encoding; `normalbench list encodings` shows them.")] = ""
-    normals: Annotated[str, Option("--normals", "A normal set or a file of one.", files=True)] = "playground"
-    storage: Annotated[str, Option("--storage", "A storage.")] = "rgba8"
+    normals: Annotated[Names, Option("--normals", "A normal set or a file of one.", files=True)] = ("playground",)
+    storage: Annotated[Names, Option("--storage", "A storage.")] = ("rgba8",)
     parameter: Annotated[
-        str, Option("--parameter", "An encoding's own; table; comma-separated. Default: all there are.")
-    ] = "all"
+        Names, Option("--parameter", "An encoding's own; table; comma-separated. Default: all there are.")
+    ] = ("all",)
     error: Annotated[str, Option("--error", "psnr, rms, mean or max, the largest angle.")] = "psnr"
     count: Annotated[int, Option("--count", "Normals in a uniform set.")] = 2**20
     seed: Seed = 0

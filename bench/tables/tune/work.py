@@ -16,7 +16,7 @@ from ...ground.choose import choose, choose_one
 from ...ground.machine.devices import require_jax
 from ...ground.machine.systems.people import command_line
 from ...ground.options.counts import check_seed, checked_count
-from ...ground.options.storage_names import storages_named
+from ...ground.options.words import Names, text_of
 from ...ground.output.errors import UsageError, tell
 from ...ground.output.replacing import ARRAY
 from ...ground.output.writing import check_writable, whole_file
@@ -24,6 +24,7 @@ from ...subjects.codecs.names import check_twin
 from ...subjects.codecs.tuned_names import MARK
 from ...subjects.codecs.tuned_names import TABLE as LOOK_UP
 from ...subjects.codecs.user_encodings import encodings_named
+from ...subjects.names.storages import storages_named
 from ...subjects.normals.normal_names import check_rays, normal_sets_named
 from ...subjects.normals.normal_sets import NormalSet
 from ..quality import measure as quality
@@ -112,7 +113,7 @@ def _write(done: Measured, _: Tick) -> None:
 
 def chosen_of(name: str, options: TuneOptions) -> Chosen:
     """What an encoding's name and `--parameter` ask for. Raises UsageError where there is nothing of it."""
-    encoding = _one("encoding", encodings_named, name)
+    encoding = _one("encoding", encodings_named, (name,))
     storage = _one("storage", storages_named, options.storage)
     codec = Codec(encoding, storage)
     if not codec.fits:
@@ -121,9 +122,9 @@ def chosen_of(name: str, options: TuneOptions) -> Chosen:
     known = {p: p for p in (*encoding.published, *([LOOK_UP] if _has_table(codec) else []))}
     if not known:
         raise UsageError(f"{codec.name}: nothing to tune: no parameter and no look-up")
-    names = choose("parameter", options.parameter, known)
-    numbers = [name for name in names if name in encoding.published]
-    return Chosen(codec, numbers, LOOK_UP in names)
+    chosen = choose("parameter", options.parameter, known)
+    numbers = [name for name in chosen if name in encoding.published]
+    return Chosen(codec, numbers, LOOK_UP in chosen)
 
 
 def _has_table(codec: Codec) -> bool:
@@ -133,10 +134,10 @@ def _has_table(codec: Codec) -> bool:
     return bool(look_up) and storage.kind != "float" and len(counts) == 1 and counts <= set(look_up.levels)
 
 
-def _one(what: str, named: Callable[[str], list[Any]], text: str) -> Any:
-    """The one that a text names. Raises UsageError; what it lists of the known ones is what can be tuned."""
+def _one(what: str, named: Callable[[Names], list[Any]], words: Names) -> Any:
+    """Return the one that words name. Raises UsageError; what it lists of the known ones is what can be tuned."""
     try:
-        found = named(text)
+        found = named(words)
     except UsageError as error:
         raise UsageError(str(error).replace("known: all, ", "known: ")) from None
     if len(found) != 1:
@@ -149,8 +150,8 @@ def _halves(chosen: Chosen, options: TuneOptions) -> Halves:
     needs_rays = chosen.codec.encoding.domain == "view"
     count = checked_count(options.count)
 
-    def named(text: str) -> list[NormalSet]:
-        found = normal_sets_named(text, count, options.seed, options.reading, needs_rays)
+    def named(words: Names) -> list[NormalSet]:
+        found = normal_sets_named(words, count, options.seed, options.reading, needs_rays)
         check_rays(found, needs_rays)
         return found
 
@@ -169,7 +170,7 @@ def tuned_codec(codec: Codec, found: Values, scales: np.ndarray | None, table: P
 
 
 def _measured(codec: Codec, halves: Halves) -> Row:
-    return quality.measure(quality.Case(codec, halves.held_out, "jax"))
+    return quality.measure(quality.QualityCase(codec, halves.held_out, "jax"))
 
 
 def _write_table(path: Path, scales: np.ndarray) -> None:
@@ -210,7 +211,7 @@ def _gain(figure: str, published: float, tuned: float) -> Row:
     return {"gain": 100 * (1 - tuned / published) if published else 0.0, "unit": "%"}
 
 
-def _say_use(before: Side, after: Side, figure: str, table: Path | None, normals: str) -> None:
+def _say_use(before: Side, after: Side, figure: str, table: Path | None, normals: Names) -> None:
     gain = _gain(figure, *(side.row[figure] for side in (before, after)))
     if gain["gain"] <= NOTHING_DB:
         said = (
@@ -219,8 +220,8 @@ def _say_use(before: Side, after: Side, figure: str, table: Path | None, normals
     elif after.codec.encoding.look_up and not table and after.codec.encoding.tables != before.codec.encoding.tables:
         said = "keep the look-up with --table FILE.npy to measure it elsewhere"
     else:
-        names = ["--encoding", after.codec.encoding.name, "--storage", after.codec.storage.name, "--normals", normals]
-        said = f"elsewhere: normalbench quality {command_line(names)}"
+        names = ["--encoding", after.codec.encoding.name, "--storage", after.codec.storage.name]
+        said = f"elsewhere: normalbench quality {command_line([*names, '--normals', text_of(normals)])}"
     tell(f"{said}")
 
 

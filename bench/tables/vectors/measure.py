@@ -39,7 +39,7 @@ Noise = np.ndarray | None
 
 
 @dataclass(frozen=True)
-class Case:
+class MotionVectorCase:
     """The rows of one code by one back end: one for each speed.
 
     Attributes:
@@ -98,7 +98,7 @@ Backend = Callable[[MotionCodec, float, Noise], AbstractContextManager[tuple[Tri
 BACKENDS: Mapping[str, Backend] = MappingProxyType({"jax": _trip_by_jax, "glsl": _trip_by_glsl})
 
 
-def measure(case: Case) -> list[Row]:
+def measure(case: MotionVectorCase) -> list[Row]:
     """A row for each speed; rows that the device cannot give have the reason in `skipped` and no figures."""
     rows = [_case_columns(case, speed) for speed in case.speeds]
     try:
@@ -115,13 +115,13 @@ def measure(case: Case) -> list[Row]:
     return [row | both | figures | how for row, figures in zip(rows, found, strict=True)]
 
 
-def _noisy_trip(stack: ExitStack, case: Case) -> Trip:
+def _noisy_trip(stack: ExitStack, case: MotionVectorCase) -> Trip:
     """The trip with noise of its own for each frame, whose points lie below those of the frame before."""
     noise = np.concatenate([case.codec.dither(frame).added[: POINTS // WIDTH] for frame in range(FRAMES)])
     return stack.enter_context(BACKENDS[case.backend](case.codec, case.largest, noise))[0]
 
 
-def _case_columns(case: Case, speed: float) -> Row:
+def _case_columns(case: MotionVectorCase, speed: float) -> Row:
     return TABLE.empty() | {
         "encoding": case.codec.encoding.name,
         "storage": case.codec.storage.name,
@@ -150,7 +150,7 @@ def _length_px(motion: np.ndarray, size: tuple[int, int]) -> float:
     return math.hypot(*(motion[0].astype(np.float64) * size))
 
 
-def _figures(case: Case, speed: float, trip: Trip, rest: np.ndarray) -> Row:
+def _figures(case: MotionVectorCase, speed: float, trip: Trip, rest: np.ndarray) -> Row:
     """What comes back of the motions of all points in all frames at a speed.
 
     The error of a motion v is |decode(v) - v| in pixels. A point that is moved by the stored vectors is off by the sum
@@ -183,7 +183,7 @@ def _through(trip: Trip, motions: np.ndarray) -> np.ndarray:
     return trip(whole.reshape(-1, NUMBERS)).reshape(whole.shape)[:, :count]
 
 
-def _least_speed_px(trip: Trip, rest: np.ndarray, case: Case) -> float:
+def _least_speed_px(trip: Trip, rest: np.ndarray, case: MotionVectorCase) -> float:
     """The speed in pixels from which on motions along an axis do not come back as rest does, in the worst of the four
     directions; 0 where every motion is told from it."""
     low, high = np.full(len(DIRECTIONS), LEAST), np.full(len(DIRECTIONS), max(case.largest, 1.0))

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from ...ground.options.option import Backends, Names, Option, RoundingsAndDithered, Seed
-from ...shaders.languages.source_options import SourceOptions
+from ...ground.options.option import NAMED, Backends, Option, RoundingsAndDithered, Seed
+from ...ground.options.source_options import SourceOptions
+from ...ground.options.words import Names
 from .. import shared_columns as shared
 from ..table import Column, Role, Section, Table
 
@@ -17,15 +18,24 @@ KEY, HOW = Role.KEY, Role.HOW
 class VectorsOptions(SourceOptions):
     """What `vectors` measures. Names and numbers are comma-separated; no storage: where each code usually lies."""
 
-    encoding: Annotated[str, Option("--encoding", f"Motion codes or files of yours, {Names}.", files=True)] = "all"
-    storage: Annotated[str | None, Option("--storage", f"Motion storages, {Names}. Default: each code's usual.")] = None
-    rounding: RoundingsAndDithered = "nearest"
-    backend: Backends = "jax,glsl"
-    speed: Annotated[str, Option("--speed", "Speeds in pixels a frame, comma-separated.")] = "0.05,0.25,1,4,16,64"
-    size: Annotated[str, Option("--size", "WIDTHxHEIGHT of the image.")] = "1920x1080"
-    range: Annotated[str, Option("--range", "Largest motions that are kept, in screens a frame, comma-separated.")] = (
-        "1"
+    encoding: Annotated[Names, Option("--encoding", f"Motion codes or files of yours, {NAMED}.", files=True)] = ("all",)
+    storage: Annotated[Names | None, Option("--storage", f"Motion storages, {NAMED}. Default: each code's usual.")] = (
+        None
     )
+    rounding: RoundingsAndDithered = ("nearest",)
+    backend: Backends = ("jax", "glsl")
+    speed: Annotated[Names, Option("--speed", "Speeds in pixels a frame, comma-separated.")] = (
+        "0.05",
+        "0.25",
+        "1",
+        "4",
+        "16",
+        "64",
+    )
+    size: Annotated[str, Option("--size", "WIDTHxHEIGHT of the image.")] = "1920x1080"
+    range: Annotated[
+        Names, Option("--range", "Largest motions that are kept, in screens a frame, comma-separated.")
+    ] = ("1",)
     count: Annotated[int, Option("--count", "Points that move, each for 16 frames.")] = 2**12
     seed: Seed = 0
 

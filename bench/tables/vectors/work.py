@@ -5,16 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from ....encodings.catalogue import MOTION_ENCODINGS
-from ....encodings.codecs.kind import MOTION
 from ....encodings.codecs.motion_codec import MotionCodec
-from ....encodings.storages.storage import MOTION_STORAGES, ROUNDINGS_AND_DITHERED
-from ...ground.machine.devices import require_device, require_jax
-from ...ground.options.backends import backends_named
+from ....encodings.kinds import MOTION
+from ....encodings.storages.storage import ROUNDINGS_AND_DITHERED
 from ...ground.options.counts import check_seed, checked_numbers, checked_sides, in_range
-from ...ground.options.storage_names import roundings_named, storages_named
 from ...ground.options.targets import that_fit
-from ...subjects.codecs.kinds.named import own_codes_named
+from ...subjects.codecs.kinds.codecs import codecs_of_kind
+from ...subjects.names.backends import backends_here
+from ...subjects.names.storages import roundings_named
 from ..charts import but_without_twins, one_backend
 from ..table import Measured, NoOutputs, Row, Sheet, Step, Work, each
 from . import measure
@@ -28,7 +26,7 @@ SPEEDS, RANGES = (1e-6, 1e5), (1e-3, 16.0)
 LINE = ("encoding", "storage", "rounding", "backend", "range", "size")
 
 
-def cases(options: VectorsOptions) -> list[measure.Case]:
+def cases(options: VectorsOptions) -> list[measure.MotionVectorCase]:
     """One case for each code, range and back end; a code that needs no range has one.
 
     Raises:
@@ -41,12 +39,9 @@ def cases(options: VectorsOptions) -> list[measure.Case]:
     speeds = checked_numbers("--speed", options.speed, float, *SPEEDS)
     ranges = checked_numbers("--range", options.range, float, *RANGES)
     chosen = codecs(options)
-    backends = backends_named(options.backend, measure.BACKENDS)
-    require_jax()
-    if backends == ["glsl"]:
-        require_device()
+    backends = backends_here(options.backend, measure.BACKENDS)
     return [
-        measure.Case(codec, backend, largest, speeds, paths)
+        measure.MotionVectorCase(codec, backend, largest, speeds, paths)
         for codec in chosen
         for largest in codec.ranges(ranges)
         for backend in backends
@@ -54,21 +49,16 @@ def cases(options: VectorsOptions) -> list[measure.Case]:
 
 
 def codecs(options: VectorsOptions) -> list[MotionCodec]:
-    """The codecs asked for; those that do not fit are named on standard error."""
+    """Return the codecs asked for; those that do not fit are named on standard error."""
     roundings = roundings_named(options.rounding, ROUNDINGS_AND_DITHERED)
-    return that_fit(
-        MotionCodec(encoding, storage, rounding)
-        for encoding in own_codes_named(MOTION, options.encoding, MOTION_ENCODINGS)
-        for storage in storages_named(options.storage or ",".join(encoding.storages), MOTION_STORAGES, "motion storage")
-        for rounding in roundings
-    )
+    return that_fit(codecs_of_kind(MOTION, options.encoding, options.storage, roundings))
 
 
 def _steps(options: VectorsOptions, _: NoOutputs) -> list[Step]:
     return [Step(_key(case), case, case.name) for case in cases(options)]
 
 
-def _key(case: measure.Case) -> Row:
+def _key(case: measure.MotionVectorCase) -> Row:
     key: Row = {"codec": case.codec.name, "backend": case.backend, "range": case.largest, "size": case.size}
     return key | {"speeds": list(case.speeds), "count": case.paths.count, "seed": case.paths.seed}
 

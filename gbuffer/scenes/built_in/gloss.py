@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..mesh import plane, sphere
-from ..scene import Light, Material, Part, Scene, View, placed
+from ..scene import Light, Material, Scene, ScenePart, View, placed
 from ..setting import Setting, coloured
 
 TITLE = "spheres of specular power 4 to 1024 under moving lights"
@@ -19,10 +19,10 @@ def gloss(setting: Setting) -> Scene:
     row, column = np.divmod(np.arange(len(POWERS)), 3)
     places = np.stack([2.3 * (column - 1), 2.3 * (1 - row), np.zeros(len(POWERS))], axis=1)
     wall = plane(40.0, 40.0).placed(np.array([(1.0, 0, 0), (0, 0, 1.0), (0, 1.0, 0)]), (0, 0, -1.5))
-    spheres = Part(sphere(1.0, 96, 48), placed(places), np.arange(len(POWERS)))
+    spheres = ScenePart(sphere(1.0, 96, 48), placed(places), np.arange(len(POWERS)))
     materials = [Material(albedo=(0.12, 0.12, 0.14), specular=(0.3, 0.3, 0.3), power=power) for power in POWERS]
     return Scene(
-        parts=(spheres, Part(wall, placed((0, 0, 0)), np.array([len(POWERS)]), casts=False)),
+        parts=(spheres, ScenePart(wall, placed((0, 0, 0)), np.array([len(POWERS)]), casts=False)),
         materials=(*materials, Material(albedo=(0.2, 0.2, 0.22), specular=(0.05, 0.05, 0.05), power=16.0)),
         lights=(
             Light("sun", (0.12, 0.12, 0.12), direction=(-0.48, -0.6, -0.64)),

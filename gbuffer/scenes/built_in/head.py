@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..mesh import Mesh, box, joined, plane, rotation, smooth_normals, sphere, wound
-from ..scene import Light, Material, Part, Scene, View, placed
+from ..scene import Light, Material, Scene, ScenePart, View, placed
 from ..setting import Setting, coloured
 
 TITLE = "a bust of skin and one of stone, life-size, the sun behind an ear; point lights"
@@ -56,10 +56,10 @@ def head(setting: Setting) -> Scene:
     wall = plane(3.0, 3.0).placed(UPRIGHT.T, (0.0, 0.0, -0.9))
     return Scene(
         parts=(
-            Part(bust(), placed(places, turns=(-0.1, -0.35)), np.array([SKIN, STONE])),
-            Part(box(0.17, 0.1, 0.17), plinths, np.full(2, STONE)),
-            Part(box(0.012, 0.012, 0.4), bars, np.full(3, STONE)),
-            Part(joined([ground, wall]), placed((0, 0, 0)), np.array([FLOOR]), casts=False),
+            ScenePart(bust(), placed(places, turns=(-0.1, -0.35)), np.array([SKIN, STONE])),
+            ScenePart(box(0.17, 0.1, 0.17), plinths, np.full(2, STONE)),
+            ScenePart(box(0.012, 0.012, 0.4), bars, np.full(3, STONE)),
+            ScenePart(joined([ground, wall]), placed((0, 0, 0)), np.array([FLOOR]), casts=False),
         ),
         materials=MATERIALS,
         lights=(_sun(), *_lamps(setting, rng)),

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..mesh import Mesh, box, grid_triangles, grid_uv, joined, smooth_normals, sphere
 from ..models.teapot import teapot
-from ..scene import Light, Material, Part, Scene, View, Water, placed
+from ..scene import Light, Material, Scene, ScenePart, View, Water, placed
 from ..setting import Setting, coloured
 
 TITLE = "a lake between hills under a clear sky: trees, a jetty, floats, stones, a teapot under water"
@@ -49,9 +49,9 @@ def lake(setting: Setting) -> Scene:
     water = Water(patch=16.0, time=setting.time * Water.period)
     view = View((1.5, 2.4, 15.5), (-1.0, 0.6, 0.0), 52.0, 0.3, 260.0)
     first = len(MATERIALS)
-    sky = [Part(_sky_band(i), none, np.array([first + i]), casts=False, two_sided=True) for i in range(BANDS)]
+    sky = [ScenePart(_sky_band(i), none, np.array([first + i]), casts=False, two_sided=True) for i in range(BANDS)]
     return Scene(
-        parts=(Part(_ground_mesh(), none, np.array([EARTH]), casts=False), *sky, *_thing_parts(rng)),
+        parts=(ScenePart(_ground_mesh(), none, np.array([EARTH]), casts=False), *sky, *_thing_parts(rng)),
         materials=(*MATERIALS, *(_sky_material(i) for i in range(BANDS))),
         lights=(Light("sun", (1.5, 1.38, 1.15), direction=tuple(SUN / np.linalg.norm(SUN))), *_lanterns(setting, rng)),
         ambient=(0.2, 0.24, 0.3),
@@ -90,7 +90,7 @@ def _sky_material(index: int) -> Material:
     return Material(albedo=black, specular=black, emissive=tuple(light.tolist()))
 
 
-def _thing_parts(rng: np.random.Generator) -> tuple[Part, ...]:
+def _thing_parts(rng: np.random.Generator) -> tuple[ScenePart, ...]:
     ball, post = sphere(1.0, 24, 16).placed(UP, (0, 0, 0)), box(0.22, 3.2, 0.22)
     x, z = np.meshgrid([-1.0, 1.0], [-1.4, -4.2, -7.0], indexing="ij")
     legs = np.stack([-6.2 + x.ravel(), np.full(6, -0.7), 6.0 + z.ravel()], axis=1)
@@ -98,13 +98,13 @@ def _thing_parts(rng: np.random.Generator) -> tuple[Part, ...]:
     trees, tall = _scattered(rng, TREES, 1.25, 2.3), rng.uniform(1.4, 2.6, TREES)
     floats = placed([(2.6, 0.12, 7.2), (-1.6, 0.1, 4.6), (4.6, 0.08, 2.4)], [0.42, 0.36, 0.34])
     return (
-        Part(box(2.4, 0.14, 7.6), placed((-6.2, 0.85, 1.8)), np.array([WOOD])),
-        Part(post, placed(legs), np.full(6, WOOD)),
-        Part(ball, floats, np.array([RED, WHITE, SKIN])),
-        Part(ball, placed(stones, sizes), np.full(STONES, STONE)),
-        Part(_tree(), placed(trees, tall, rng.uniform(0, 6, TREES)), np.full(TREES, LEAVES)),
-        Part(teapot(6).placed(0.3 * UP, (0, 0, 0)), placed(_ground_point(0.6, 7.0), 1.0, 0.7), np.array([POT])),
-        Part(box(1.1, 1.5, 0.06), placed((-3.6, 0.9, 9.0)), np.array([GLASS]), casts=False),
+        ScenePart(box(2.4, 0.14, 7.6), placed((-6.2, 0.85, 1.8)), np.array([WOOD])),
+        ScenePart(post, placed(legs), np.full(6, WOOD)),
+        ScenePart(ball, floats, np.array([RED, WHITE, SKIN])),
+        ScenePart(ball, placed(stones, sizes), np.full(STONES, STONE)),
+        ScenePart(_tree(), placed(trees, tall, rng.uniform(0, 6, TREES)), np.full(TREES, LEAVES)),
+        ScenePart(teapot(6).placed(0.3 * UP, (0, 0, 0)), placed(_ground_point(0.6, 7.0), 1.0, 0.7), np.array([POT])),
+        ScenePart(box(1.1, 1.5, 0.06), placed((-3.6, 0.9, 9.0)), np.array([GLASS]), casts=False),
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..mesh import plane, sphere
-from ..scene import Light, Material, Part, Scene, View, placed
+from ..scene import Light, Material, Scene, ScenePart, View, placed
 from ..setting import Setting, coloured
 
 TITLE = "objects of one general and one special part each (Jo Kyeong-jun), 64 point lights and a sun"
@@ -44,9 +44,11 @@ def objects(setting: Setting) -> Scene:
     up = np.stack([0 * sizes, sizes, 0 * sizes], axis=1)
     upright = sphere(1.0, 20, 12).placed(np.array([(1.0, 0, 0), (0, 0, -1.0), (0, 1.0, 0)]), (0, 0, 0))
     body = upright.placed(np.diag([0.7, 0.9, 0.7]), (0, 0, 0))
-    bodies = Part(body, placed(places + 0.85 * up, sizes, turns), rng.integers(0, 3, setting.objects))
-    special = Part(upright, placed(places + 2.2 * up, 0.65 * sizes, turns), 3 + rng.integers(0, 3, setting.objects))
-    ground = Part(plane(160.0, 160.0, 105.0), placed((0, 0, 0)), np.array([6]), casts=False)
+    bodies = ScenePart(body, placed(places + 0.85 * up, sizes, turns), rng.integers(0, 3, setting.objects))
+    special = ScenePart(
+        upright, placed(places + 2.2 * up, 0.65 * sizes, turns), 3 + rng.integers(0, 3, setting.objects)
+    )
+    ground = ScenePart(plane(160.0, 160.0, 105.0), placed((0, 0, 0)), np.array([6]), casts=False)
     return Scene(
         parts=(ground, bodies, special),
         materials=(*GENERAL, *SPECIAL, GROUND),

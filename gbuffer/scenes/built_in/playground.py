@@ -17,7 +17,7 @@ from ..mesh import Mesh, box, facing, joined, rotation, sphere
 from ..models.lamp_arm import lamp_arm
 from ..models.teapot import HEIGHT, teapot
 from ..rasterise import Camera, Rendered, rasterise
-from ..scene import Light, Material, Part, Scene, View, placed
+from ..scene import Light, Material, Scene, ScenePart, View, placed
 from ..setting import Setting, coloured
 
 TITLE = "the article's playground, with four lamp arms that are like the original's"
@@ -71,7 +71,7 @@ def lit_playground(setting: Setting) -> Scene:
     pot, ball, slab, arm = range(4)
     kinds = [pot] * len(TEAPOTS) + [ball] * len(SPHERES) + [slab] * len(BOXES) + [arm] * len(ARMS)
     here = placed((0, 0, 0))
-    parts = tuple(Part(mesh, here, np.array([kind])) for mesh, kind in zip(in_view_space(), kinds, strict=True))
+    parts = tuple(ScenePart(mesh, here, np.array([kind])) for mesh, kind in zip(in_view_space(), kinds, strict=True))
     materials = (
         Material(albedo=(0.5, 0.42, 0.3), specular=(0.3, 0.28, 0.25), power=96.0),
         Material(albedo=(0.3, 0.35, 0.45), specular=(0.2, 0.2, 0.2), power=32.0),

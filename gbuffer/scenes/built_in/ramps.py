@@ -9,7 +9,7 @@ import numpy as np
 from ...environment.catalogue import ENVIRONMENTS
 from ..mesh import sphere
 from ..metal_rough import Map, MetalRough
-from ..scene import Light, Part, Scene, View, placed
+from ..scene import Light, Scene, ScenePart, View, placed
 from ..setting import Setting
 from .studio import panel, tiles
 
@@ -31,14 +31,14 @@ def ramps(setting: Setting) -> Scene:  # noqa: ARG001 # nothing moves, and the l
     balls = [MetalRough(base=(0.05, 0.05, 0.05), roughness=0.25, reflectance=r) for r in REFLECTANCES]
     shape = panel(WIDTH, HEIGHT, *TURNS)
     parts = [
-        Part(shape, placed(_place(number)), np.array([number]), two_sided=True) for number in range(len(materials))
+        ScenePart(shape, placed(_place(number)), np.array([number]), two_sided=True) for number in range(len(materials))
     ]
     across = np.linspace(-3.2, 3.2, len(balls))
     rows = np.stack([across, np.full(len(balls), -2.55), np.full(len(balls), 0.3)], axis=1)
     numbers = np.arange(len(materials), len(materials) + len(balls))
     view = View((0.0, -0.36, 8.0), (0.0, -0.36, 0.0), 38.0, 1.0, 40.0)
     return Scene(
-        parts=(*parts, Part(sphere(1.0, 64, 48), placed(rows, 0.3), numbers)),
+        parts=(*parts, ScenePart(sphere(1.0, 64, 48), placed(rows, 0.3), numbers)),
         materials=(*materials, *balls),
         lights=(_sun(),),
         ambient=(0.0, 0.0, 0.0),

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..mesh import Mesh, box, plane, sphere
 from ..models.teapot import teapot
-from ..scene import Light, Material, Part, Scene, View, placed
+from ..scene import Light, Material, Scene, ScenePart, View, placed
 from ..setting import Setting, coloured
 
 TITLE = "axis-aligned walls, floor and boxes, a teapot, glass; spot lights, point lights and a sun"
@@ -55,13 +55,13 @@ def room(setting: Setting) -> Scene:
     return Scene(
         parts=(
             *(
-                Part(_wall(axis, side), placed((0, 0, 0)), np.array([material]), casts=False)
+                ScenePart(_wall(axis, side), placed((0, 0, 0)), np.array([material]), casts=False)
                 for axis, side, material in FACES
             ),
-            Part(box(1.0, 1.0, 1.0), crates, np.full(3, CRATE)),
-            Part(pot, placed((0.0, 0.0, -1.8), 1.3, 0.5), np.array([POT])),
-            Part(ball, balls, np.array([SKIN, HAIR, PAINT, LAMP])),
-            Part(box(1.3, 1.8, 0.06), panes, np.full(3, GLASS), casts=False),
+            ScenePart(box(1.0, 1.0, 1.0), crates, np.full(3, CRATE)),
+            ScenePart(pot, placed((0.0, 0.0, -1.8), 1.3, 0.5), np.array([POT])),
+            ScenePart(ball, balls, np.array([SKIN, HAIR, PAINT, LAMP])),
+            ScenePart(box(1.3, 1.8, 0.06), panes, np.full(3, GLASS), casts=False),
         ),
         materials=MATERIALS,
         lights=(*_fixed_lights(), *_point_lights(setting, rng)),

@@ -9,7 +9,7 @@ import numpy as np
 from ...environment.catalogue import ENVIRONMENTS
 from ..mesh import Mesh, grid_triangles, grid_uv, plane, sphere
 from ..metal_rough import Map, MetalRough
-from ..scene import Light, Part, Scene, View, placed
+from ..scene import Light, Scene, ScenePart, View, placed
 from ..setting import Setting, coloured
 
 TITLE = "metal and dielectric spheres of roughness 0 to 1, slow panels, a mirror, normal-mapped tiles, soft boxes"
@@ -36,7 +36,7 @@ def studio(setting: Setting) -> Scene:
     materials = _materials()
     across = np.linspace(-2.85, 2.85, len(ROUGHNESS))
     rows = [np.stack([across, 0 * across + y, 0 * across + z], axis=1) for y, z in ((0.33, 1.6), (1.2, 0.6))]
-    balls = Part(sphere(1.0, 96, 64), placed(np.concatenate(rows), 0.33), np.arange(2 * len(ROUGHNESS)))
+    balls = ScenePart(sphere(1.0, 96, 64), placed(np.concatenate(rows), 0.33), np.arange(2 * len(ROUGHNESS)))
     first = 2 * len(ROUGHNESS)
     view = View((0.0, 2.1, 8.6), (0.0, 1.45, 0.0), 38.0, 1.0, 40.0)
     return Scene(
@@ -57,16 +57,16 @@ def _materials() -> tuple[MetalRough, ...]:
     return (*spheres, GLOSSY_PAINT, BRUSHED, MIRROR, floor, WALL, LAMP)
 
 
-def _panels(first: int) -> tuple[Part, ...]:
+def _panels(first: int) -> tuple[ScenePart, ...]:
     """Two panels that face the camera, the one slowly bent and the other hardly."""
     places = ((-2.1, 2.75, -0.9), (0.6, 2.75, -0.9))
     return tuple(
-        Part(panel(2.4, 1.5, *turns), placed(place), np.array([first + number]), two_sided=True)
+        ScenePart(panel(2.4, 1.5, *turns), placed(place), np.array([first + number]), two_sided=True)
         for number, (turns, place) in enumerate(zip(PANELS, places, strict=True))
     )
 
 
-def _room(first: int) -> tuple[Part, ...]:
+def _room(first: int) -> tuple[ScenePart, ...]:
     mirror, floor, wall, lamp = range(first, first + 4)
     upright = np.array([(1.0, 0, 0), (0, 0, 1.0), (0, 1.0, 0)])
     # Turned by 25 degrees towards the spheres, and hardly bent: a flat one would have one code, and its luck decide.
@@ -75,11 +75,11 @@ def _room(first: int) -> tuple[Part, ...]:
     side = plane(9.0, 9.0, 3.0).placed(np.array([(0, 0, -1.0), (1.0, 0, 0), (0, 1.0, 0)]), (-5.0, 4.5, 2.0))
     here = placed((0.0, 0.0, 0.0))
     return (
-        Part(glass, placed((3.1, 2.75, -0.9), 1.0, -0.44), np.array([mirror]), two_sided=True),
-        Part(plane(14.0, 12.0, 6.0), here, np.array([floor]), casts=False),
-        Part(back, here, np.array([wall]), casts=False, two_sided=True),
-        Part(side, here, np.array([wall]), casts=False, two_sided=True),
-        Part(sphere(1.0, 24, 16), placed((4.0, 3.9, -1.2), 0.16), np.array([lamp]), casts=False),
+        ScenePart(glass, placed((3.1, 2.75, -0.9), 1.0, -0.44), np.array([mirror]), two_sided=True),
+        ScenePart(plane(14.0, 12.0, 6.0), here, np.array([floor]), casts=False),
+        ScenePart(back, here, np.array([wall]), casts=False, two_sided=True),
+        ScenePart(side, here, np.array([wall]), casts=False, two_sided=True),
+        ScenePart(sphere(1.0, 24, 16), placed((4.0, 3.9, -1.2), 0.16), np.array([lamp]), casts=False),
     )
 
 

@@ -13,7 +13,7 @@ from ...environment.catalogue import ENVIRONMENTS
 from ..mesh import facing, joined
 from ..rasterise import Camera, Rendered, rasterise
 from ..sampled import COARSENED, coarser, cut_out, mapped_normals
-from ..scene import Light, Part, Scene, View
+from ..scene import Light, Scene, ScenePart, View
 from ..setting import Setting, coloured
 from .gltf import gltf_meshes, read_gltf
 from .mesh_file import MeshFile, Piece, Stored
@@ -92,7 +92,7 @@ def file_scene(file: MeshFile, setting: Setting) -> Scene:
     )
 
 
-def _parts(file: MeshFile) -> tuple[Part, ...]:
+def _parts(file: MeshFile) -> tuple[ScenePart, ...]:
     """Meshes in several places by rotation and one scale stand there as instances, others are baked into place."""
     rigid: dict[tuple[int, bool], list[Piece]] = {}
     parts = []
@@ -101,10 +101,12 @@ def _parts(file: MeshFile) -> tuple[Part, ...]:
         if piece.is_rigid:
             rigid.setdefault((id(piece.mesh), two_sided), []).append(piece)
         else:
-            parts.append(Part(piece.baked(), np.eye(4)[None], _material_indices(file, [piece]), two_sided=two_sided))
+            parts.append(
+                ScenePart(piece.baked(), np.eye(4)[None], _material_indices(file, [piece]), two_sided=two_sided)
+            )
     for (_, two_sided), pieces in rigid.items():
         models = np.stack([piece.model for piece in pieces])
-        parts.append(Part(pieces[0].mesh, models, _material_indices(file, pieces), two_sided=two_sided))
+        parts.append(ScenePart(pieces[0].mesh, models, _material_indices(file, pieces), two_sided=two_sided))
     return tuple(parts)
 
 
@@ -130,7 +132,7 @@ def _made_up_lights(file: MeshFile, setting: Setting) -> tuple[Light, ...]:
 
 
 @dataclass(frozen=True)
-class Seen(Rendered):
+class SeenMesh(Rendered):
     """What a camera sees of a file.
 
     Attributes:
@@ -141,7 +143,7 @@ class Seen(Rendered):
     map_error_deg: float | None
 
 
-def seen(file: MeshFile, size: tuple[int, int]) -> Seen:
+def seen(file: MeshFile, size: tuple[int, int]) -> SeenMesh:
     """View-space normals, positions and coverage as the camera sees them, drawn without a GL driver.
 
     The normal of a pixel is that of its material's normal map, where it has one. What a material cuts out is a hole.
@@ -161,4 +163,4 @@ def seen(file: MeshFile, size: tuple[int, int]) -> Seen:
         other = mapped_normals(found, camera, rougher)[found.covered].astype(np.float64)
         apart = np.linalg.norm(mapped[found.covered] - other, axis=1)
         off = float(np.degrees(2 * np.arcsin(np.minimum(apart / 2, 1))).mean()) / COARSENED
-    return Seen(mapped, found.positions, found.covered, found.triangle, off)
+    return SeenMesh(mapped, found.positions, found.covered, found.triangle, off)

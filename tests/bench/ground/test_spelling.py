@@ -1,8 +1,8 @@
 """Names are understood as people type them, and what is nearly right is said."""
 
 import pytest
+from typed import choose
 
-from normalbench.bench.ground.choose import choose
 from normalbench.bench.ground.options.gpu_families import CHOICES
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.ground.spelling import spelled

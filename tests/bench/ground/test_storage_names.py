@@ -1,10 +1,10 @@
 """Storages by rule: the catalogue's where there is one, ranges, and what cannot be."""
 
 import pytest
+from typed import roundings_named, storages_named
 
 from normalbench.bench.door.python.codecs import codec_of
-from normalbench.bench.ground.options.option import WITH_NOISE, fields_of
-from normalbench.bench.ground.options.storage_names import roundings_named, storages_named
+from normalbench.bench.ground.options.option import fields_of
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.catalogue import (
@@ -117,12 +117,8 @@ def test_floats_are_as_many_as_a_code_of_any_kind_has_numbers():
 
 
 def test_who_is_refused_noise_is_told_which_tables_add_it():
-    """Those whose option names it; roughness has an option of its own for it."""
-    rounding = {name: fields_of(table.options).get("rounding") for name, table in TABLES.items()}
-    assert sorted(WITH_NOISE) == sorted(name for name, one in rounding.items() if one and DITHERED in one.option.help)
-    assert "dither" in fields_of(TABLES["roughness"].options)
+    for table in ("quality", "render"):
+        assert DITHERED in fields_of(TABLES[table].options)["rounding"].option.help
     assert roundings_named("nearest,dithered", ROUNDINGS_AND_DITHERED) == ["nearest", DITHERED]
-    with pytest.raises(
-        UsageError, match=f"^--rounding dithered is for {', '.join(WITH_NOISE)}; roughness has --dither$"
-    ):
+    with pytest.raises(UsageError, match=r"^--rounding dithered: .* quality and render add it$"):
         roundings_named("nearest, dithered")

@@ -12,6 +12,7 @@ from normalbench.bench.keep import compare_command
 from normalbench.bench.keep.change_lines import in_short, sentences, total, what_matters
 from normalbench.bench.keep.comparison import compared, mann_whitney, measured_otherwise
 from normalbench.bench.keep.runs import Done
+from normalbench.bench.keep.schema import SCHEMA
 
 MACHINE = {"machine": {"GL": "one"}}
 
@@ -305,7 +306,8 @@ def test_a_run_without_rows_is_not_compared(run, tmp_path, monkeypatch, facts, r
     monkeypatch.chdir(tmp_path)
     for name, text in (("empty", rows), ("whole", json.dumps(step_of_quality({"encoding": "xy"})) + "\n")):
         Path(name).mkdir()
-        Path(name, "run.json").write_text(json.dumps(facts if name == "empty" else {"finished": False}))
+        about = {"schema": SCHEMA} | (facts if name == "empty" else {"finished": False})
+        Path(name, "run.json").write_text(json.dumps(about))
         Path(name, "rows.jsonl").write_text(text)
     for words in (("whole", "empty"), ("empty", "whole")):
         status, out, err = run("compare", *words)

@@ -166,7 +166,7 @@ def test_a_row_is_gone_where_the_same_request_no_longer_gives_it(run, tmp_path):
     assert history_of(run, tmp_path / "stopped", both, other, finished=False) == []
     folder = tmp_path / "less"
     for at, steps in enumerate((both, other, both, other)):
-        histories.write_run(folder / str(at), at, steps, request={"tables": "all" if len(steps) > 1 else "quality"})
+        histories.write_run(folder / str(at), at, steps, request={"tables": ["all" if len(steps) > 1 else "quality"]})
     assert rows_of(run, folder) == []
 
 

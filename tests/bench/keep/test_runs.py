@@ -10,15 +10,16 @@ import pytest
 from normalbench.bench.door.cli import app as cli
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.ground.output.sources import sources
+from normalbench.bench.ground.user_files import with_files
 from normalbench.bench.keep import journal
 from normalbench.bench.keep.runs import ROWS, Run, opened, read_run, same_work, unfinished
+from normalbench.bench.keep.schema import SCHEMA
 from normalbench.bench.run.measuring import files_of
 from normalbench.bench.run.workers.orders import Packing
-from normalbench.bench.shaders.languages.words import with_files
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.table import Step
 
-FACTS = {"request": {"count": 1}, "sources": "abc", "machine": {"GL": "one"}, "finished": False}
+FACTS = {"schema": SCHEMA, "request": {"count": 1}, "sources": "abc", "machine": {"GL": "one"}, "finished": False}
 
 
 def kept(run: Run, count: int, measured: list[int]) -> list[list[dict]]:
@@ -68,6 +69,7 @@ def step(**row) -> str:
         ("run.json", "[]", "run.json: [] is not an object"),
         ("run.json", '{"command": "run"}', "run.json, command: 'run' is not a list"),
         ("run.json", '{"machine": {"GL": [1]}}', "run.json, machine, GL: [1] is neither text nor a number"),
+        ("run.json", "{}", "run.json: another version of normalbench measured this run; measure it again"),
         (ROWS, "not a step", "rows.jsonl, line 1 was damaged"),
         (ROWS, '{"table": "quality", "key": {}, "rows": 3}', "line 1: 3 is not a list"),
         (ROWS, '{"table": ["x"], "key": 3, "rows": []}', "line 1, table: ['x'] is not text"),

@@ -91,8 +91,8 @@ def test_a_full_disk_leaves_the_run_as_it_was(run, tmp_path, folder, monkeypatch
 def test_a_named_device_makes_its_table_part_of_all(run, tmp_path):
     from normalbench.bench.door.run import chosen_tables
 
-    assert "devices" in {table.name for table in chosen_tables("all", {"devices": "a.json"})}
-    assert "devices" not in {table.name for table in chosen_tables("all", {"count": 3})}
+    assert "devices" in {table.name for table in chosen_tables(("all",), {"devices": ("a.json",)})}
+    assert "devices" not in {table.name for table in chosen_tables(("all",), {"count": 3})}
     path, out = made.write(tmp_path / "a.json"), tmp_path / "out"
     assert run("run", "--tables", "devices", "--devices", str(path), "-o", str(out))[0] == 0
     assert Counter(row["row_of"] for row in read_run(out).tables["devices"]) == {"codec": 35, "fact": 4}

@@ -6,12 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from typed import attributes_held
 
 from normalbench.bench.door.run import chosen_tables, options_of
 from normalbench.bench.tables.budget import attributes as held
 from normalbench.bench.tables.budget import changes
 from normalbench.bench.tables.budget.bins import BINS, WEBGPU, WEBGPU_BYTES, webgpu_cost
-from normalbench.bench.tables.budget.contract import KNOWN, attributes_held
+from normalbench.bench.tables.budget.contract import KNOWN
 from normalbench.bench.tables.budget.own import own
 from normalbench.bench.tables.budget.solve import Placed, Problem, Rules, Solution, finalists, solved
 from normalbench.bench.tables.budget.table import TABLE, BudgetOptions
@@ -167,7 +168,7 @@ def test_every_code_of_motion_keeps_the_floor(code, codec):
     """Rest is exact, and up to its speed motion is off by less than 1/16 pixel of 1920 x 1080."""
     speed = held.UP_TO_PIXELS[code]
     assert codec.encoding.name in code.name and code in held.motion(speed, code is held.ROOT_MOTION).codes
-    case = vectors.Case(codec, "jax", 1.0, (0.05, 1.0, 16.0, speed), Paths(2**12, 0, (1920, 1080)))
+    case = vectors.MotionVectorCase(codec, "jax", 1.0, (0.05, 1.0, 16.0, speed), Paths(2**12, 0, (1920, 1080)))
     rows = vectors.measure(case)
     assert all(row["still_px"] == 0 for row in rows)
     worst = max(row["error_max_px"] for row in rows)
@@ -286,7 +287,7 @@ def test_the_usual_reflectance_lies_on_a_code():
         (["--bytes", "0"], "--bytes"),
         (["--hold", "normal"], "--hold: basecolor is missing"),
         (["--classes", "shiny"], "shiny"),
-        (["--hold", "normal,normal"], "--hold: normal is named twice"),
+        (["--hold", "id:4,id:8"], "--hold: id is named twice"),
         (["--hold", "colour"], f"--hold colour: unknown; known: {', '.join(KNOWN)}"),
         (["--hold", "id:65"], "--hold id:65: id takes 1 to 64 bits"),
         (["--blend", "tangent"], "--blend tangent: not held"),
@@ -309,9 +310,9 @@ def test_what_cannot_be_asked_is_one_line(run, asked, said):
 def test_a_run_measures_a_budget_unless_it_names_scenes():
     """In no more bytes than two limits take; a scene of any kind may be named then, as nothing judges layouts by it."""
     (usual,) = options_of(TABLE, {"count": 4096})
-    assert TABLE in chosen_tables("all", {"count": 4096}) and usual.bytes == "12,16"
-    assert TABLE not in chosen_tables("all", {"scene": "room"})
-    assert chosen_tables("budget", {"scene": "studio"}) == [TABLE]
+    assert TABLE in chosen_tables(("all",), {"count": 4096}) and usual.bytes == ("12", "16")
+    assert TABLE not in chosen_tables(("all",), {"scene": ("room",)})
+    assert chosen_tables(("budget",), {"scene": ("studio",)}) == [TABLE]
 
 
 def test_a_change_that_brings_nothing_is_not_named():

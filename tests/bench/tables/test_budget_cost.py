@@ -14,6 +14,7 @@ from normalbench.bench.tables.budget import cost
 from normalbench.bench.tables.budget.bins import BINS
 from normalbench.bench.tables.budget.readers import read_readers
 from normalbench.bench.tables.budget.solve import Placed, Problem, Rules, solved
+from normalbench.bench.tables.budget.table import BudgetOptions
 from normalbench.gbuffer.layouts.presets import LAYOUTS
 
 
@@ -36,7 +37,7 @@ from normalbench.gbuffer.layouts.presets import LAYOUTS
     ],
 )
 def test_a_reader_fetches_the_targets_that_hold_what_it_reads(readers, unreal, signed, said):
-    found = read_readers(readers)
+    found = read_readers(BudgetOptions(readers=readers).readers)
     assert found.bytes_of(LAYOUTS["unreal4"]) == unreal
     assert found.bytes_of(LAYOUTS["xy_depth_sign"]) == signed
     assert found.said == said
@@ -55,7 +56,7 @@ def test_a_reader_fetches_the_targets_that_hold_what_it_reads(readers, unreal, s
 )
 def test_readers_that_are_none_are_one_line(readers, said):
     with pytest.raises(UsageError) as caught:
-        read_readers(readers)
+        read_readers(BudgetOptions(readers=readers).readers)
     assert said in str(caught.value)
 
 

@@ -4,11 +4,11 @@ import json
 import re
 
 import pytest
+from typed import attributes_held
 
 from normalbench.bench.shaders.code.whole.kernel import pack_operation, unpack_operation
 from normalbench.bench.tables.budget import cost
 from normalbench.bench.tables.budget.bins import BINS
-from normalbench.bench.tables.budget.contract import attributes_held
 from normalbench.bench.tables.budget.sentences import told
 from normalbench.bench.tables.budget.table import BudgetOptions
 

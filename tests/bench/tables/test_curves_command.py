@@ -5,9 +5,9 @@ import json
 
 import numpy as np
 import pytest
+from typed import storages_named
 
 from normalbench.bench.ground.machine import devices
-from normalbench.bench.ground.options.storage_names import storages_named
 from normalbench.bench.tables.curves import measure as curves
 from normalbench.bench.tables.curves import work
 from normalbench.bench.tables.curves.table import CurvesOptions
@@ -22,7 +22,7 @@ QUICK = ["curves", "--backend", "jax", "--count", "4096", "--format", "json"]
 def row(encoding: str, storage: str, rounding: str = "nearest", backend: str = "jax") -> dict:
     (chosen,) = storages_named(storage)
     codec = CurveCodec(CURVE_ENCODINGS[encoding], chosen, 1.0, rounding)
-    found = curves.measure(curves.Case(codec, backend, 2**16, 0))
+    found = curves.measure(curves.CurveCase(codec, backend, 2**16, 0))
     assert found["skipped"] is None and tuple(found) == tuple(TABLES["curves"].empty()), found
     return found
 

@@ -64,7 +64,7 @@ BAD = {
     "far before near": (["--near", "5", "--far", "1"], ["--near 5 --far 1"]),
     "far at near": (["--near", "5", "--far", "5"], ["--near 5 --far 5"]),
     "no number": (["--near", "close"], ["--near close", "numbers from"]),
-    "nothing": (["--far", ","], ["--far ,", "numbers from"]),
+    "nothing": (["--far", ","], ["--far : numbers from"]),
     "not a number": (["--near", "nan"], ["--near nan"]),
     "infinite": (["--far", "inf"], ["--far inf"]),
     "too far": (["--far", "1e30"], ["--far 1e30", "1e+09"]),

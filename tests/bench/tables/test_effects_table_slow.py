@@ -7,12 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from PIL import Image
+from typed import codecs_named, effects_named
 
 from normalbench.bench.ground.angles import angles_deg
-from normalbench.bench.ground.options.effect_names import effects_named
 from normalbench.bench.measures.metrics.totals import psnr_db
 from normalbench.bench.run.measuring import Nothing, asked, measured
-from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.bench.tables.effects import work as effects_work
 from normalbench.bench.tables.effects.measure import EffectsBench
 from normalbench.bench.tables.registry import TABLES

@@ -7,9 +7,9 @@ from dataclasses import replace
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from typed import storages_named
 
 from normalbench.bench.ground.machine import devices
-from normalbench.bench.ground.options.storage_names import storages_named
 from normalbench.bench.measures.metrics.code_limits import SCATTER
 from normalbench.bench.tables.tangent_frames import measure as frames
 from normalbench.bench.tables.tangent_frames.limits import ball_moment, frame_effective_bits, frame_limit, frames_broken
@@ -44,7 +44,7 @@ def test_angles_are_those_of_a_known_turn(angle, axis):
 
 
 def test_a_hand_that_is_lost_and_a_decode_that_is_no_number_are_counted():
-    total = frames.Total()
+    total = frames.FrameTotal()
     given, found = turned(0, 0, 4), turned(1, 0, 4)
     found.normals[0, 3] = -1
     found.tangents[1, 0] = np.nan
@@ -101,7 +101,7 @@ ELSEWHERE = {
 def test_codes_of_rotations_lose_what_was_measured_elsewhere(name, storage):
     mean, largest = ELSEWHERE[name, storage]
     codec = FrameCodec(FRAME_ENCODINGS[name], storages_named(storage)[0])
-    row = frames.measure(frames.Case(codec, rotations(2**16, 3), "jax"))
+    row = frames.measure(frames.FrameCase(codec, rotations(2**16, 3), "jax"))
     assert row["rotation_mean_deg"] == pytest.approx(mean, rel=0.005), row
     assert row["rotation_max_deg"] == pytest.approx(largest, rel=0.05), row
 
@@ -133,7 +133,7 @@ def test_an_angle_about_the_true_normal_would_be_lost_at_the_seam():
     """What `settle` is for: without it rounding takes normals to the other side, and their tangents anywhere."""
     settled = FRAME_ENCODINGS["octahedral_angle"]
     found = [
-        frames.measure(frames.Case(FrameCodec(encoding, FRAME_STORAGES["rgb10a2"]), rotations(2**14, 0), "jax"))
+        frames.measure(frames.FrameCase(FrameCodec(encoding, FRAME_STORAGES["rgb10a2"]), rotations(2**14, 0), "jax"))
         for encoding in (settled, replace(settled, settle=None))
     ]
     assert found[0]["rotation_max_deg"] < 0.3 and found[1]["rotation_max_deg"] > 90
@@ -199,6 +199,6 @@ def test_a_lost_hand_counts_whichever_it_was():
     for lost in (given.normals[:, 3] > 0, given.normals[:, 3] < 0):
         normals = given.normals.copy()
         normals[lost, 3] *= -1
-        total = frames.Total()
+        total = frames.FrameTotal()
         total.add(given, Frames(normals, given.tangents))
         assert total.hands_lost == lost.sum() > 0

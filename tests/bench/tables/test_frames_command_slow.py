@@ -5,9 +5,9 @@ import json
 import numpy as np
 import pytest
 from test_frames_command import QUICK
+from typed import storages_named
 from written import as_document
 
-from normalbench.bench.ground.options.storage_names import storages_named
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.tangent_frames import measure as frames
 from normalbench.bench.tables.tangent_frames.sets import CHUNK, Frames, rotations
@@ -44,7 +44,7 @@ def test_noise_costs_a_bit_and_a_half_and_no_hand(name, storage):
 
     def row(rounding: str, backend: str) -> dict:
         codec = FrameCodec(FRAME_ENCODINGS[name], storages_named(storage)[0], rounding)
-        return frames.measure(frames.Case(codec, rotations(2**14, 3), backend))
+        return frames.measure(frames.FrameCase(codec, rotations(2**14, 3), backend))
 
     nearest, noisy, by_gl = row("nearest", "jax"), row("dithered", "jax"), row("dithered", "glsl")
     assert noisy["rotation_rms_deg"] / nearest["rotation_rms_deg"] == pytest.approx(2**0.5, rel=0.015)
@@ -62,7 +62,7 @@ def test_numbers_that_are_cut_off_are_so_in_both_languages(storage):
 
     def row(rounding: str, backend: str) -> dict:
         codec = FrameCodec(FRAME_ENCODINGS["octahedral_angle"], chosen, rounding)
-        return frames.measure(frames.Case(codec, rotations(2**14, 3), backend))
+        return frames.measure(frames.FrameCase(codec, rotations(2**14, 3), backend))
 
     nearest, cut, by_gl = row("nearest", "jax"), row("truncate", "jax"), row("truncate", "glsl")
     assert cut["rounding"] == "truncate" and not cut["hands_lost"]
@@ -78,7 +78,7 @@ def test_every_code_keeps_its_hand_and_its_limit(request, backend):
     for encoding in FRAME_ENCODINGS.values():
         for storage in encoding.storages:
             codec = FrameCodec(encoding, FRAME_STORAGES[storage])
-            row = frames.measure(frames.Case(codec, rotations(2**14, 3), backend))
+            row = frames.measure(frames.FrameCase(codec, rotations(2**14, 3), backend))
             assert tuple(row) == tuple(TABLES["frames"].empty())
             assert row["skipped"] is None and not row["hands_lost"] and row["invalid"] == 0, row
             assert (row["hands_lost"] is None) == row["encoding"].startswith("rotation_")

@@ -4,9 +4,9 @@ import json
 
 import numpy as np
 import pytest
+from typed import light_buffers_named
 
 from normalbench.bench.ground.machine import devices
-from normalbench.bench.ground.options.light_names import light_buffers_named
 from normalbench.bench.tables.lights import measure as lights
 from normalbench.bench.tables.lights.charts import charts
 from normalbench.bench.tables.lights.sums import (

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from drawing import FP32, scene_of
 from test_lights import by_model
+from typed import light_buffers_named
 
-from normalbench.bench.ground.options.light_names import light_buffers_named
 from normalbench.bench.tables.lights import measure as lights
 from normalbench.bench.tables.lights.sums import (
     ROUNDINGS,

@@ -8,14 +8,14 @@ import pytest
 
 from normalbench.bench.subjects.normals.normal_sets import NORMAL_SETS, from_arrays
 from normalbench.bench.tables.maps.formats import FORMATS, SWIZZLES, swizzles_of
-from normalbench.bench.tables.maps.measure import Case, Clock, bands, measure, through
+from normalbench.bench.tables.maps.measure import Clock, MapCase, bands, measure, through
 from normalbench.bench.tables.maps.sets import MAPS
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.encodings.catalogue import ENCODINGS
 
 
 def case(normals, block="bc5", swizzle="rg", encoding="xy", decoder="model"):
-    return Case(ENCODINGS[encoding], FORMATS[block], SWIZZLES[swizzle], normals, decoder)
+    return MapCase(ENCODINGS[encoding], FORMATS[block], SWIZZLES[swizzle], normals, decoder)
 
 
 def small(height, width, covered=None):

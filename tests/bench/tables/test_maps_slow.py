@@ -28,7 +28,7 @@ def test_what_is_not_compressed_is_a_row_of_quality(encoding, swizzle, storage):
     """But for the last place of float32."""
     normals = NORMAL_SETS["playground"](0, 0)
     (row,) = measure(case(normals, "none", swizzle, encoding))
-    same = quality.measure(quality.Case(Codec(ENCODINGS[encoding], STORAGES[storage]), normals, "jax"))
+    same = quality.measure(quality.QualityCase(Codec(ENCODINGS[encoding], STORAGES[storage]), normals, "jax"))
     for column in ("psnr_db", "angle_mean_deg", "angle_rms_deg", "angle_p99_deg", "angle_max_deg", "count"):
         assert row[column] == pytest.approx(same[column], rel=1e-4), column
     assert row["bits_per_texel"] == same["bits"] + (8 if encoding == "xyz" else 0)

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from typed import codecs_named
 
 from normalbench.bench.run.measuring import Nothing, asked, measured
-from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.bench.subjects.normals.normal_sets import NORMAL_SETS
 from normalbench.bench.tables.mix import reference, worst
-from normalbench.bench.tables.mix.measure import Case, Modelled, measure
+from normalbench.bench.tables.mix.measure import MixCase, Modelled, measure
 from normalbench.bench.tables.mix.model import MODEL, Texels, Way
 from normalbench.bench.tables.mix.patches import TEXELS, mixes_of, patches_of
 from normalbench.bench.tables.mix.table import MOST_ADDED, OPERATIONS
@@ -30,7 +30,7 @@ def mixes(normals: str = "axes", angle: float = 5.0, count: int = COUNT):
 
 
 def rows_of(name: str, backend: str = "jax", operations=tuple(OPERATIONS), **given):
-    return {row["operation"]: row for row in measure(Case(codec(name), mixes(**given), backend, operations, 64.0))}
+    return {row["operation"]: row for row in measure(MixCase(codec(name), mixes(**given), backend, operations, 64.0))}
 
 
 def angle_deg(a, b):

@@ -12,7 +12,7 @@ from test_mix import COUNT, SAMPLES, angle_deg, codec, rows_of
 from normalbench.bench.subjects.normals.normal_sets import NORMAL_SETS
 from normalbench.bench.tables.mix.figures import error_of_percent
 from normalbench.bench.tables.mix.judge import judgement
-from normalbench.bench.tables.mix.measure import Case, measure
+from normalbench.bench.tables.mix.measure import MixCase, measure
 from normalbench.bench.tables.mix.model import BY_MODEL
 from normalbench.bench.tables.mix.patches import SIDE, mixes_of, patches_of
 from normalbench.bench.tables.mix.table import AGREE_DEG, OPERATIONS
@@ -26,7 +26,7 @@ OWN = "its own arithmetic"
 def on_sphere(name: str, operations: tuple[str, ...], seed: int = 0, worst_case: bool = False):
     """Rows of a codec on the whole sphere, 5 degrees apart, by the model."""
     (patches,) = patches_of(NORMAL_SETS["sphere"](COUNT, seed), (5.0,), COUNT, seed)
-    return measure(Case(codec(name), mixes_of(patches, SAMPLES), "jax", operations, 64.0, worst_case=worst_case))
+    return measure(MixCase(codec(name), mixes_of(patches, SAMPLES), "jax", operations, 64.0, worst_case=worst_case))
 
 
 def test_the_fold_of_octahedral_and_the_wrap_of_spherical_are_named(rows):

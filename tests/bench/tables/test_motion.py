@@ -6,9 +6,9 @@ import math
 import numpy as np
 import pytest
 from PIL import Image
+from typed import codecs_named
 
 from normalbench.bench.measures.metrics.totals import psnr_db
-from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.bench.tables.motion import highlights, panel, turning
 from normalbench.bench.tables.motion.code_wobble import Motion, code_wobble
 from normalbench.bench.tables.motion.measure import Differences, in_space, on_surfaces

@@ -11,10 +11,10 @@ import pytest
 import test_motion
 from PIL import Image
 from test_motion import SEED, SMALL, wobble
+from typed import codecs_named
 
 from normalbench.bench.measures.metrics.totals import psnr_db
 from normalbench.bench.run.measuring import Nothing, asked, measured
-from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.bench.tables.motion import panel, turning
 from normalbench.bench.tables.motion.measure import Differences, FrameSequence, in_space
 from normalbench.bench.tables.motion.table import MotionOptions

@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from normalbench.bench.measures.metrics.totals import Total, Worst, total_of
+from normalbench.bench.measures.metrics.totals import ErrorTotal, Worst, total_of
 from normalbench.bench.run.measuring import Nothing, asked, measured
 from normalbench.bench.subjects.normals import normal_sets
 from normalbench.bench.subjects.normals.normal_sets import CHUNK, SHIFTS, STEPS, TURN, hemisphere, sphere
@@ -69,17 +69,19 @@ def test_a_command_with_a_file_goes_on_and_leaves_nothing_behind(run, tmp_path, 
 @pytest.mark.usefixtures("small_parts")
 def test_a_part_that_cannot_be_measured_leaves_the_step_without_figures():
     (step,) = ask(encoding="octahedral").steps
-    (row,) = TABLE.work.merge(step, [{"total": Total().as_text()}, {"skipped": "no device"}, {"skipped": "no worker"}])
+    (row,) = TABLE.work.merge(
+        step, [{"total": ErrorTotal().as_text()}, {"skipped": "no device"}, {"skipped": "no worker"}]
+    )
     assert row["skipped"] == "no device" and row["psnr_db"] is None and row["encoding"] == "octahedral"
 
 
 def test_sums_are_exact_and_so_is_their_text():
     """1 and 2^-80 a thousand times: one after the other, or in two parts that are sent as text."""
-    counts = np.zeros_like(Total().histogram)
+    counts = np.zeros_like(ErrorTotal().histogram)
     counts[[0, 7, -1]] = 1, 2**40, 3
     worst = Worst(np.float32([0.1, 0.2, 0.3]), np.float32([0.3, 0.2, 0.1]), 1 / 3)
     parts = [((1.0, 2.0**-80, 3.0, 4.0, 0.0, float(at)), counts, worst if at == 500 else None) for at in range(1000)]
-    whole, halves = Total(), (Total(), Total())
+    whole, halves = ErrorTotal(), (ErrorTotal(), ErrorTotal())
     for at, part in enumerate(parts):
         whole.add(part)
         halves[at > 300].add(part)

@@ -5,9 +5,9 @@ import re
 
 import pytest
 from manual import ROOT
+from typed import codecs_named
 
 from normalbench.bench.door.run import options_of
-from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.bench.tables.pick.answer import answered, groups
 from normalbench.bench.tables.pick.charts import charts
 from normalbench.bench.tables.pick.sentences import sentences
@@ -65,7 +65,7 @@ def test_where_nothing_qualifies_it_is_said_with_status_1(run):
         (("--aim", "beauty"), "unknown aim 'beauty'; known: angle, worst, image, cost"),
         (("--family", "navi99"), "unknown family 'navi99'; known: all, polaris10"),
         (("--domain", "cube"), "unknown domain 'cube'; known: sphere, hemisphere, view"),
-        (("--power", "47,none"), "--power none: a specular power is 1 to 2048"),
+        (("--power", "47,none"), "--power 47,none: numbers from 1 to 2048"),
         (("--most-instructions", "-1"), "--most-instructions -1: from 0 to 1000000"),
         (("--readers", "65"), "--readers 65: from 0 to 64"),
         (("--worth", "0"), "--worth 0: above 0 to 100 decibels"),
@@ -73,7 +73,7 @@ def test_where_nothing_qualifies_it_is_said_with_status_1(run):
         (("--bytes", "3"), "unknown number of bytes '3'; known: all, 2, 4, 8, 16"),
         (("--encoding", "xyz", "--storage", "rg8"), "xyz: 3 components, but RG8 has 2 channels"),
         (("--rounding", "up"), "unknown rounding 'up'; known: all, nearest, truncate, truncate_half"),
-        (("--rounding", "dithered"), "--rounding dithered is for quality, frames, vectors, curves, depth"),
+        (("--rounding", "dithered"), "--rounding dithered: no noise is added here"),
         (
             ("--encoding", "octahedral", "--storage", "rg16f", "--rounding", "truncate_half"),
             "octahedral: RG16F is of floats, and truncate_half is for fixed point",

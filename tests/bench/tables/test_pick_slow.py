@@ -8,12 +8,12 @@ from operator import le
 import pytest
 import test_pick
 from test_pick import CODES
+from typed import codecs_named
 
 from normalbench.bench.ground.output import cache
 from normalbench.bench.ground.output.errors import told
 from normalbench.bench.measures.metrics.images import squared_error
 from normalbench.bench.measures.metrics.totals import psnr_db
-from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.bench.subjects.normals.normal_sets import NORMAL_SETS
 from normalbench.bench.tables.pick import measure
 from normalbench.bench.tables.pick.answer import answered, groups
@@ -40,7 +40,7 @@ def test_images_lit_by_emulated_codes_are_those_of_the_g_buffer(gl, scene, name)
     (codec,) = codecs_named(*name.split("/"), "nearest")
     maker = SCENES[scene]
     question = (NORMAL_SETS["sphere"](64, 0), (maker,), Setting(lights=8), (1024.0,), {"beside": False})
-    case, drawing = measure.Case(codec, *question), measure.Pictures(gl)
+    case, drawing = measure.PickCase(codec, *question), measure.Pictures(gl)
     right, relit, drawn = (
         images[0]
         for images in (

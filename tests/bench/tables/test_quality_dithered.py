@@ -15,10 +15,12 @@ from normalbench.encodings.storages.storage import STORAGES
 COUNT = 2**16
 
 
-def case(encoding: str, storage: str, rounding: str, backend: str = "jax", normals: str = "sphere") -> quality.Case:
+def case(
+    encoding: str, storage: str, rounding: str, backend: str = "jax", normals: str = "sphere"
+) -> quality.QualityCase:
     codec = Codec(ENCODINGS[encoding], STORAGES[storage], rounding)
     assert codec.misfit is None
-    return quality.Case(codec, NORMAL_SETS[normals](COUNT, 0), backend)
+    return quality.QualityCase(codec, NORMAL_SETS[normals](COUNT, 0), backend)
 
 
 @pytest.mark.parametrize("encoding, storage", [("octahedral", "rg8"), ("cube", "rgba8"), ("octahedral", "rg16_snorm")])

@@ -1,44 +1,55 @@
-"""A table goes by its value alone: in a copy of the tree the folder and the name of one are others."""
+"""A table goes by its value alone: in a copy of the tree the folders and the names of those with extras are others."""
 
 import re
 
 import pytest
 from contributing import a_copy_of_the_rooms, normalbench_in
 
-FOLDER, NAME = "losses", "loss"
+# By the name and folder of a table that shows more than its rows: other ones.
+RENAMED = {"quality": ("losses", "loss"), "cost": ("prices", "price"), "pick": ("advice", "advise")}
+
+
+def _renamed_imports(path, tables) -> str:
+    """Return a module's text with the new folders where it imports from those of other tables."""
+    above = r"\." * len(path.relative_to(tables).parts) if tables in path.parents else r"\.+tables\."
+    imports = re.compile(rf"(from {above})({'|'.join(RENAMED)})\b")
+    return imports.sub(lambda match: match[1] + RENAMED[match[2]][0], path.read_text())
 
 
 @pytest.fixture(scope="module")
 def copy(tmp_path_factory):
-    """The tree with `quality` in another folder and under another name, which the other tables import it by."""
+    """The tree with three tables in other folders and under other names."""
     folder = tmp_path_factory.mktemp("copy")
-    tables = a_copy_of_the_rooms(folder) / "bench" / "tables"
-    (tables / "quality").rename(tables / FOLDER)
-    for path in tables.rglob("*.py"):
-        path.write_text(re.sub(r"(from \.+)quality\b", rf"\1{FOLDER}", path.read_text()))
-    for path, old, new in (
-        (tables / "registry.py", '"quality",', f'"{FOLDER}",'),
-        (tables / FOLDER / "table.py", 'name="quality"', f'name="{NAME}"'),
-    ):
-        text = path.read_text()
-        assert text.count(old) == 1
-        path.write_text(text.replace(old, new))
-    # The head of a code says what that table measures.
-    head = tables.parent / "door" / "code_figures.py"
-    head.write_text(head.read_text().replace("from ..tables.quality", f"from ..tables.{FOLDER}"))
+    bench = a_copy_of_the_rooms(folder) / "bench"
+    tables = bench / "tables"
+    for path in bench.rglob("*.py"):
+        path.write_text(_renamed_imports(path, tables))
+    for old, (new, name) in RENAMED.items():
+        (tables / old).rename(tables / new)
+        for path, before, after in (
+            (tables / "registry.py", f'"{old}",', f'"{new}",'),
+            (tables / new / "table.py", f'    name="{old}"', f'    name="{name}"'),
+        ):
+            text = path.read_text()
+            assert text.count(before) == 1, (path, before)
+            path.write_text(text.replace(before, after))
     return folder
 
 
 @pytest.mark.usefixtures("gl")
 def test_a_run_and_its_page_know_no_table_by_its_name(copy):
-    """The page has the sentence, the charts and the maps of the table; a gate that names no table means it."""
-    words = ("--encoding", "octahedral", "--storage", "rgba8", "--count", "2000")
-    done = normalbench_in(copy, "run", "--tables", NAME, *words, "-o", "run")
+    """The page has what these tables show beside their rows; a gate that names no table means the one of errors."""
+    loss, price, advise = (name for _, name in RENAMED.values())
+    words = ("--encoding", "octahedral,stereographic", "--storage", "rgba8", "--count", "2000")
+    done = normalbench_in(copy, "run", "--tables", f"{loss},{price},{advise}", *words, "-o", "run")
     assert done.returncode == 0, done.stderr
     assert normalbench_in(copy, "report", "run", "-o", "page.html").returncode == 0
     page = (copy / "page.html").read_text()
-    assert f'<section id="{NAME}"' in page and "JAX and GLSL agree within" in page and "octahedral" in page
+    assert all(f'<section id="{name}"' in page or f'id="{name}"' in page for name in (loss, price, advise))
+    assert "JAX and GLSL agree within" in page and "octahedral" in page
     assert "its rows keep no histograms" not in page and "it keeps no maps" not in page
+    # What pick adds: the questions that a reader may ask otherwise. What cost adds: disassemblies.
+    assert 'id="data-choices"' in page and "data-choose" in page and "data-listings=" in page
     (copy / "gates.toml").write_text('[[gate]]\nencoding = "octahedral"\npsnr_db = "at least 30"\n')
     done = normalbench_in(copy, "check", "gates.toml", "--run", "run", "--format", "json")
-    assert done.returncode == 0 and f'"table": "{NAME}"' in done.stdout, done.stderr
+    assert done.returncode == 0 and f'"table": "{loss}"' in done.stdout, done.stderr

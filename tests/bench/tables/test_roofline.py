@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
+from typed import gpus_named
 
 from normalbench.bench.ground.options.gpu_families import FAMILIES
 from normalbench.bench.ground.output.errors import UsageError
@@ -12,7 +13,7 @@ from normalbench.bench.tables.roofline import measure
 from normalbench.bench.tables.roofline.answers import answers
 from normalbench.bench.tables.roofline.charts import points, ridge_lines
 from normalbench.bench.tables.roofline.measure import Frame, Work, from_reads
-from normalbench.bench.tables.roofline.rates import GPUS, Rates, gpus_named
+from normalbench.bench.tables.roofline.rates import GPUS, Rates
 
 FULL_HD = (1920, 1080)
 

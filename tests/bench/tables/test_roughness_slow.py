@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from test_roughness import CODEC, half_lit
 
-from normalbench.bench.tables.roughness.frames import MOVING, NONE, STILL, Seen
-from normalbench.bench.tables.roughness.measure import Case, Pictures
+from normalbench.bench.tables.roughness.frames import MOVING, NONE, STILL, Accumulation
+from normalbench.bench.tables.roughness.measure import Pictures, RoughnessCase
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
@@ -28,13 +28,13 @@ SMALL = ("--size", "64x64", "--environment", "sky", "--storage", "rg8")
 def test_the_shaders_noise_is_that_of_the_emulation(gl, encoding, storage):
     """Exact normals, encoded, moved by the same noise and stored by JAX, are what the G-buffer gives back."""
     codec = Codec(ENCODINGS[encoding], STORAGES[storage])
-    case = Case((codec,), "panel20", half_lit(), (0.1,), (80, 80))
+    case = RoughnessCase((codec,), "panel20", half_lit(), (0.1,), (80, 80))
     with ExitStack() as stack:
         pictures = Pictures(gl, stack, case)
         axes = pictures.what.view.matrix()[:3, :3]
         exact = from_array(pictures.exact(1).made[0].gbuffer()[1][..., :3] @ axes)
         code = codec.encoding.encode(exact, exact)
-        for seen, frame in ((Seen(), None), (Seen(STILL), 0)):
+        for seen, frame in ((Accumulation(), None), (Accumulation(STILL), 0)):
             noise = np.zeros((80, 80, 4), np.float32)
             if frame is not None:
                 # GL's rows begin at the bottom; the tile repeats after 64 pixels.
@@ -49,10 +49,10 @@ def test_the_shaders_noise_is_that_of_the_emulation(gl, encoding, storage):
 
 def test_noise_lowers_what_is_seen_of_steps(gl):
     """On a panel, by FLIP: one frame, and more so the mean of eight. Without noise eight frames change little."""
-    case = Case((CODEC,), "panel4", half_lit(), (0.1,), (64, 64))
+    case = RoughnessCase((CODEC,), "panel4", half_lit(), (0.1,), (64, 64))
     with ExitStack() as stack:
         pictures = Pictures(gl, stack, case)
-        opened = {one: pictures.opened(stack, CODEC, Seen(*one)) for one in product((NONE, MOVING), (1, 8))}
+        opened = {one: pictures.opened(stack, CODEC, Accumulation(*one)) for one in product((NONE, MOVING), (1, 8))}
         worst = {one: pictures.figures(made, 0.3, True)["flip_p99"] for one, made in opened.items()}
     assert worst[MOVING, 8] < 0.6 * worst[MOVING, 1] and worst[MOVING, 1] < 0.6 * worst[NONE, 1], worst
     assert worst[NONE, 8] == pytest.approx(worst[NONE, 1], rel=0.1), worst

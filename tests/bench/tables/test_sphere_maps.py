@@ -68,7 +68,7 @@ def test_no_two_codecs_share_a_file():
 
 @pytest.mark.parametrize("backend", ["jax", "glsl"])
 def test_a_rows_histogram_holds_every_normal_between_its_angles(backend):
-    measured = quality.measure(quality.Case(codec("octahedral"), playground(), backend))
+    measured = quality.measure(quality.QualityCase(codec("octahedral"), playground(), backend))
     bins = [tuple(map(float, word.split(":"))) for word in measured["angle_counts"].split()]
     edges, counts = np.array(bins).T
     assert counts.sum() == measured["count"] and (counts > 0).all() and (np.diff(edges) > 0).all()

@@ -23,7 +23,7 @@ def test_a_codec_without_a_twin_in_jax_is_mapped_by_glsl(gl, monkeypatch):  # no
 
 
 def row(name: str, normals) -> dict:
-    return quality.measure(quality.Case(codec(name), normals, "jax"))
+    return quality.measure(quality.QualityCase(codec(name), normals, "jax"))
 
 
 @pytest.mark.parametrize("name", ["octahedral", "xy", "spheremap", "spherical"])

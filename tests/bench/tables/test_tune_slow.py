@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from test_tune import all_of
+from typed import codecs_named
 
-from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.bench.subjects.normals.normal_sets import playground, sphere
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.tune.halves import Normals, halves_of
@@ -93,7 +93,7 @@ def test_the_scale_of_2010_was_found_well():
     codec = codec_of("stereographic", "rg8")
     found = tuned(codec, chosen.fitting, "psnr")
     before, after = (
-        quality.measure(quality.Case(replace(codec, encoding=e), chosen.held_out, "jax"))["psnr_db"]
+        quality.measure(quality.QualityCase(replace(codec, encoding=e), chosen.held_out, "jax"))["psnr_db"]
         for e in (codec.encoding, codec.encoding.with_parameters(found))
     )
     assert before <= after < before + 1.0, found
@@ -113,7 +113,7 @@ def test_the_gain_is_of_the_held_out_half(run):
     assert held.count == rows["psnr_db"]["held_out"]
     for side, encoding in (("published", "encoding"), ("tuned", "tuned_encoding")):
         (codec,) = codecs_named(rows["psnr_db"][encoding], rows["psnr_db"]["storage"], "nearest")
-        row = quality.measure(quality.Case(codec, held, "jax"))
+        row = quality.measure(quality.QualityCase(codec, held, "jax"))
         for figure in ("psnr_db", "angle_mean_deg", "angle_max_deg"):
             assert rows[figure][side] == pytest.approx(row[figure], rel=1e-9), (figure, side)
     mean = rows["angle_mean_deg"]
@@ -165,7 +165,9 @@ def test_a_look_up_is_fitted_to_other_storages(run, tmp_path):
     assert rows["texels_changed"]["tuned"] > 10**5
     (codec,) = codecs_named(f"best_fit:table={path}", "rgba8_snorm", "nearest")
     held = halves_of(playground(), 0, by_tiles=True).held_out
-    assert quality.measure(quality.Case(codec, held, "jax"))["psnr_db"] == pytest.approx(rows["psnr_db"]["tuned"])
+    assert quality.measure(quality.QualityCase(codec, held, "jax"))["psnr_db"] == pytest.approx(
+        rows["psnr_db"]["tuned"]
+    )
     assert f"best_fit:table={path}" in err
 
 
@@ -175,10 +177,10 @@ def test_tuned_encodings_are_the_same_in_both_languages(tmp_path):
     names = f"spherical:bias=0.35:scale=0.7,stereographic:scale=1.31,best_fit:table={tmp_path}/scales.npy"
     for codec in codecs_named(names, "rgba8,rg8_7_9,rgb8_13_11_snorm", "nearest"):
         if codec.fits:
-            db = {b: quality.measure(quality.Case(codec, playground(), b))["psnr_db"] for b in ("jax", "glsl")}
+            db = {b: quality.measure(quality.QualityCase(codec, playground(), b))["psnr_db"] for b in ("jax", "glsl")}
             plain = replace(codec, encoding=ENCODINGS[codec.encoding.prefix])
             assert abs(db["jax"] - db["glsl"]) <= 0.02, (codec.name, db)
-            assert abs(db["jax"] - quality.measure(quality.Case(plain, playground(), "jax"))["psnr_db"]) > 0.1
+            assert abs(db["jax"] - quality.measure(quality.QualityCase(plain, playground(), "jax"))["psnr_db"]) > 0.1
 
 
 @pytest.mark.usefixtures("gl")

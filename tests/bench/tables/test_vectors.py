@@ -32,7 +32,7 @@ def row(codec: str, speed: float, largest: float = 1.0, backend: str = "jax", ro
     """The row of a code such as linear/rg16 at a speed."""
     encoding, storage = codec.split("/")
     made = MotionCodec(MOTION_ENCODINGS[encoding], MOTION_STORAGES[storage], rounding)
-    (found,) = vectors.measure(vectors.Case(made, backend, largest, (speed,), Paths(POINTS, 0, SIZE)))
+    (found,) = vectors.measure(vectors.MotionVectorCase(made, backend, largest, (speed,), Paths(POINTS, 0, SIZE)))
     assert found["skipped"] is None, found
     return found
 
@@ -87,7 +87,7 @@ def test_slow_dithered_motion_does_not_drift_to_one_side():
 def test_few_points_have_the_noise_of_their_frames():
     """Point by point as with more of them: the motions of a frame lie where that frame's noise does."""
     codec = MotionCodec(MOTION_ENCODINGS["linear"], MOTION_STORAGES["rg8"], "dithered")
-    case = vectors.Case(codec, "jax", 1.0, (1.0,), Paths(POINTS, 0, SIZE))
+    case = vectors.MotionVectorCase(codec, "jax", 1.0, (1.0,), Paths(POINTS, 0, SIZE))
     motions = next(case.paths.chunks(1.0))
     with ExitStack() as stack:
         trip = vectors._noisy_trip(stack, case)
@@ -195,7 +195,9 @@ def test_the_drift_of_an_exact_storage_is_0():
 
 def test_drift_is_the_distance_after_16_frames():
     """Vectors that are all half a pixel too long along x lead 8 pixels astray, whatever the path."""
-    case = vectors.Case(MotionCodec(MOTION_ENCODINGS["linear"], MOTION_STORAGES["rgba32f"]), "jax", 1.0, (4.0,), PATHS)
+    case = vectors.MotionVectorCase(
+        MotionCodec(MOTION_ENCODINGS["linear"], MOTION_STORAGES["rgba32f"]), "jax", 1.0, (4.0,), PATHS
+    )
     rest = np.zeros((1, 2), np.float32)
     found = vectors._figures(case, 4.0, lambda given: given + np.float32([0.5 / WIDTH, 0]), rest)
     assert found["drift_px"] == pytest.approx(8, rel=1e-4) and found["error_mean_px"] == pytest.approx(0.5, rel=1e-4)

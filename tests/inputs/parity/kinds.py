@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from normalbench.encodings.codecs.kind import CURVE, DEPTH, FRAME, LIGHT, MOTION, NORMAL, Kind
+from normalbench.encodings.kinds import CURVE, DEPTH, FRAME, LIGHT, MOTION, NORMAL, Kind
 
 from . import curves, depth, frames, light, motion, normals
 from .comparison import Parity

@@ -5,8 +5,8 @@ from functools import cache
 
 import jax
 import numpy as np
+from typed import light_buffers_named
 
-from normalbench.bench.ground.options.light_names import light_buffers_named
 from normalbench.bench.tables.lights.sums import steps_apart
 from normalbench.encodings.catalogue import LIGHT_BUFFERS
 from normalbench.encodings.codecs.light_buffer import Blending, accumulate

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from .....encodings.codecs.kind import Kind
+from .....encodings.kinds import Kind
 from .....encodings.storages.storage import STORAGES, Storage
 
 # How many values a code is tried with.

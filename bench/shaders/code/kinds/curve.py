@@ -6,7 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from .....encodings.codecs.curve_codec import CurveCodec
-from .....encodings.codecs.kind import CURVE
+from .....encodings.kinds import CURVE
 from .....encodings.storages.rounding import store_texel
 from .....encodings.storages.storage import rounds_to
 from .code_kind import COUNT, CodeKind, Numbers

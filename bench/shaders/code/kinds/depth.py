@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from .....encodings.codecs.depth_codec import DepthCodec
-from .....encodings.codecs.kind import DEPTH
+from .....encodings.kinds import DEPTH
 from .....encodings.storages.depth_storage import store_depth
 from .code_kind import COUNT, CodeKind, Numbers
 from .own import by_device, defines, is_in

@@ -10,7 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from .....encodings.codecs.frame_codec import FrameCodec
-from .....encodings.codecs.kind import FRAME
+from .....encodings.kinds import FRAME
 from .....encodings.rotation import Frame
 from .....encodings.vec import Vec3, Vec4
 from .....gbuffer.codecs.frames.frame_passes import exact_frames

@@ -9,8 +9,8 @@ import jax.numpy as jnp
 import numpy as np
 
 from .....encodings.catalogue import LIGHT_ENCODINGS
-from .....encodings.codecs.kind import LIGHT
 from .....encodings.codecs.light_codec import LightCodec
+from .....encodings.kinds import LIGHT
 from .....encodings.vec import Vec4
 from .code_kind import COUNT, CodeKind, Numbers
 from .own import by_device, defines

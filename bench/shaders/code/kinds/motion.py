@@ -9,8 +9,8 @@ from typing import Any
 import jax.numpy as jnp
 import numpy as np
 
-from .....encodings.codecs.kind import MOTION
 from .....encodings.codecs.motion_codec import NUMBERS, MotionCodec
+from .....encodings.kinds import MOTION
 from .....encodings.storages.rounding import store_number
 from .....encodings.vec import Vec2
 from .code_kind import COUNT, CodeKind, Numbers

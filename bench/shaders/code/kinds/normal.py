@@ -12,7 +12,7 @@ import numpy as np
 from .....encodings.catalogue import ENCODINGS
 from .....encodings.codecs.codec import Codec
 from .....encodings.codecs.encoding import AXES, Encoding
-from .....encodings.codecs.kind import NORMAL
+from .....encodings.kinds import NORMAL
 from .....encodings.vec import Vec3
 from .....gbuffer.codecs.codec_passes import CodecPasses, encoding_defines
 from .....gbuffer.gl.device import device

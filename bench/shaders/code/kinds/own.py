@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from .....encodings.catalogue import BY_KIND
-from .....encodings.codecs.kind import Kind
+from .....encodings.kinds import Kind
 from .....encodings.vec import CONSTANTS
 from .....gbuffer.codecs.harness import check_functions
 from .....gbuffer.codecs.own.own_passes import tried

@@ -1,15 +1,13 @@
-"""The kinds of codes that `code` writes, by the type of their encodings."""
+"""The kinds of codes that `code` writes: each a module of its word next to this one."""
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import Any
 
-from . import curve, depth, frame, light, motion, normal
 from .code_kind import CodeKind
-
-CODE_KINDS = tuple(one.KIND for one in (normal, motion, curve, light, depth, frame))
 
 
 def kind_of(codec: Any) -> CodeKind:
-    """What `code` knows of a codec's kind."""
-    return next(one for one in CODE_KINDS if isinstance(codec.encoding, one.kind.encoding))
+    """Return what `code` knows of a codec's kind."""
+    return import_module(f".{codec.encoding.kind.word}", __package__).KIND

@@ -10,7 +10,7 @@ from .....gbuffer.layouts.words import Word
 
 
 @dataclass(frozen=True)
-class Part:
+class WordPart:
     """The part of a word in a channel. `shift` is by how much the word's integer is shifted to the left there; less
     than 0 to the right. Bits above the channel are cut where `is_cut`, and `is_masked` where others lie above it."""
 
@@ -20,7 +20,7 @@ class Part:
     is_masked: bool
 
 
-def parts_of(words: Sequence[Word], channel: int, storage: Storage) -> Iterator[Part]:
+def parts_of(words: Sequence[Word], channel: int, storage: Storage) -> Iterator[WordPart]:
     """The parts of words in a channel; bits count from the first channel's highest, and none lie in a channel of
     another size than that."""
     size = storage.bits[0]
@@ -30,27 +30,27 @@ def parts_of(words: Sequence[Word], channel: int, storage: Storage) -> Iterator[
     for word in words:
         last = word.first + word.bits
         if word.bits and word.first < end and last > begin:
-            yield Part(word, end - last, word.first < begin and size < 32, word.first > begin)
+            yield WordPart(word, end - last, word.first < begin and size < 32, word.first > begin)
 
 
-def packed_texts(parts: Sequence[tuple[Part, str]], size: int) -> list[str]:
+def packed_texts(parts: Sequence[tuple[WordPart, str]], size: int) -> list[str]:
     """What a channel's integer is joined of, of the names of its words' integers."""
     return [_put_text(part, name, size, len(parts) > 1) for part, name in parts]
 
 
-def _put_text(part: Part, name: str, size: int, is_one_of_many: bool) -> str:
+def _put_text(part: WordPart, name: str, size: int, is_one_of_many: bool) -> str:
     text = _shifted(name, part.shift)
     if part.is_cut:
         text = f"({text}) & {2**size - 1}u" if part.shift else f"{text} & {2**size - 1}u"
     return f"({text})" if is_one_of_many and text != name else text
 
 
-def taken_text(parts: Sequence[tuple[Part, str]], bits: int) -> str:
+def taken_text(parts: Sequence[tuple[WordPart, str]], bits: int) -> str:
     """A word's integer, of the texts of the channels that its parts lie in."""
     return " | ".join(_take_text(part, name, bits, len(parts) > 1) for part, name in parts)
 
 
-def _take_text(part: Part, name: str, bits: int, is_one_of_many: bool) -> str:
+def _take_text(part: WordPart, name: str, bits: int, is_one_of_many: bool) -> str:
     text = _shifted(name, -part.shift)
     if part.is_masked:
         text = f"({text}) & {2**bits - 1}u" if part.shift else f"{text} & {2**bits - 1}u"

@@ -14,7 +14,7 @@ from ...translator.tree import (
     Function,
     Statement,
     Swizzle,
-    Table,
+    TexelTable,
 )
 from ...translator.writer import PRIMARY, Writer, words
 
@@ -37,7 +37,7 @@ class CudaWriter(Writer):
         "volatile wchar_t xor"
     )
 
-    def _table(self, table: Table) -> str:
+    def _table(self, table: TexelTable) -> str:
         return f"__constant__ sampler2D {table.name};"
 
     def _global_text(self, constant: Declare) -> str:

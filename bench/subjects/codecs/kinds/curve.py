@@ -6,7 +6,7 @@ import numpy as np
 
 from .....encodings.catalogue import CURVE_ENCODINGS
 from .....encodings.codecs.curve_codec import CurveEncoding
-from .....encodings.codecs.kind import CURVE
+from .....encodings.kinds import CURVE
 from .own import COUNT, Own, OwnKind, Values, number, of_range, one_number_errors, rows
 
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from .....encodings.codecs.depth_codec import DepthEncoding
-from .....encodings.codecs.kind import DEPTH
+from .....encodings.kinds import DEPTH
 from .....encodings.storages.depth_storage import DEPTH_STORAGES
 from .....gbuffer.codecs.own.own_passes import Tried
 from .....gbuffer.gl.device import Device
@@ -38,7 +38,7 @@ def _depth_facts(own: Own, gl: Device) -> dict[str, Any]:
         found = own.tried(gl, depths.given, depths.more)
         planes = longest(depths.given[:, 0], _depth_errors(depths, found) < DEPTH_NEARLY) or planes
     facts = {"planes": planes}
-    values = _depths(Own(own.path, own.made, facts))
+    values = _depths(Own(own.file, own.made, facts))
     codes = own.tried(gl, values.given, values.more).codes[:, 0]
     is_open = bool(np.nanmax(codes) > 1 + DEPTH_NEARLY)
     notes = [OPEN] if is_open else []

@@ -10,7 +10,7 @@ import numpy as np
 from .....encodings.catalogue import FRAME_ENCODINGS
 from .....encodings.codecs.frame_codec import FrameCodec
 from .....encodings.codecs.frame_encoding import FrameEncoding
-from .....encodings.codecs.kind import FRAME
+from .....encodings.kinds import FRAME
 from .....encodings.rotation import rotated_frame
 from .....encodings.storages.storage import FRAME_STORAGES
 from .....encodings.vec import Vec4

@@ -6,14 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from .....encodings.codecs.kind import LIGHT
 from .....encodings.codecs.light_encoding import LightEncoding
+from .....encodings.kinds import LIGHT
 from .....encodings.storages.storage import LIGHT_STORAGES
 from .....gbuffer.codecs.own.own_passes import Tried
 from .....gbuffer.gl.device import Device
 from ....ground.choose import choose
 from ....ground.output.errors import UsageError
-from ....shaders.languages.words import settings_of
 from .own import COUNT, SEED, Own, OwnKind, Values, longest, numbers, rows
 
 # Lights from 2^-10 to the largest half; how far one that is held comes back off.
@@ -57,7 +56,7 @@ def _light_facts(own: Own, gl: Device) -> dict[str, Any]:
     (_, limit), (_, open_limit) = (longest(white, some) or (0.0, 0.0) for some in (is_in, comes_back))
     is_open = limit < 0.5 < open_limit
     facts: dict[str, Any] = {"limit": float(f"{limit:.3g}"), "open_limit": open_limit, "is_open": is_open}
-    held = _lights(Own(own.path, own.made, {"limit": 0.25 * (open_limit if is_open else limit) or 1.0}))
+    held = _lights(Own(own.file, own.made, {"limit": 0.25 * (open_limit if is_open else limit) or 1.0}))
     return facts | _added(own, gl, held)
 
 
@@ -83,9 +82,9 @@ def _added(own: Own, gl: Device, held: Values) -> dict[str, Any]:
 def _light_encoding(own: Own) -> LightEncoding:
     """In the format that the file's name says, or that its codes are for. Raises UsageError for one that it is not."""
     is_open = own.found.get("is_open", False)
-    (kept,) = choose("format", settings_of(own.path).format or FORMATS[is_open], LIGHT_STORAGES)
+    (kept,) = choose("format", [own.file.settings.format or FORMATS[is_open]], LIGHT_STORAGES)
     if kept.channels < own.made.components:
-        raise UsageError(f"{own.path}: its code has {own.made.components} numbers, {kept.title} {kept.channels}")
+        raise UsageError(f"{own.file}: its code has {own.made.components} numbers, {kept.title} {kept.channels}")
     floats = kept.kind == "float"
     limit = own.found["open_limit" if floats else "limit"]
     if floats and limit >= BRIGHTEST:

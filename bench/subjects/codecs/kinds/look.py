@@ -15,19 +15,19 @@ import os
 import re
 import sys
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from .....encodings.kinds import BY_NAME
 from .....gbuffer.codecs.loops import loop_limit
 from .....gbuffer.codecs.own.own_passes import Tried
 from .....gbuffer.gl.device import Device, NoDeviceError, device
 from .....gbuffer.gl.shader import ShaderError
 from ....ground.machine import children
 from ....ground.output.errors import MissingError, UsageError
+from ....ground.user_files import UserFile
 from ....shaders.languages.translated import SeveralEncodersError, translated
-from ....shaders.languages.words import with_pair
 from .own import Own, OwnKind, Values
 from .table import OWN
 
@@ -40,33 +40,33 @@ REACH = "its numbers reach from {}"
 NOT_EXACT = "{} does not come back exactly, before any storage: {:.3g} {} off"
 
 
-def look(kind: OwnKind, path: Path) -> dict[str, Any]:
+def look(kind: OwnKind, file: UserFile) -> dict[str, Any]:
     """What there is to say of a file; see above."""
     try:
-        return _look_at_one(kind, path)
+        return _look_at_one(kind, file)
     except SeveralEncodersError as error:
-        kept = [pair for pair in error.pairs[:MOST_PAIRS] if _undoes_itself(kind, with_pair(path, pair))]
+        kept = [pair for pair in error.pairs[:MOST_PAIRS] if _undoes_itself(kind, file.with_pair(pair))]
         if len(kept) == 1:
-            return _look_at_one(kind, with_pair(path, kept[0])) | {"pair": kept[0]}
-        named = ", ".join(str(with_pair(path, pair)) for pair in kept or error.pairs)
+            return _look_at_one(kind, file.with_pair(kept[0])) | {"pair": kept[0]}
+        named = ", ".join(str(file.with_pair(pair)) for pair in kept or error.pairs)
         said = f"{len(kept)} of its pairs undo themselves; name one" if kept else "none of its pairs undoes itself"
-        return {"error": f"{path}: {said}: {named}", "pairs": kept}
+        return {"error": f"{file}: {said}: {named}", "pairs": kept}
 
 
-def _undoes_itself(kind: OwnKind, path: Path) -> bool:
-    found = _look_at_one(kind, path)
+def _undoes_itself(kind: OwnKind, file: UserFile) -> bool:
+    found = _look_at_one(kind, file)
     return found.get("error_max", np.inf) <= kind.nearly
 
 
-def _look_at_one(kind: OwnKind, path: Path) -> dict[str, Any]:
+def _look_at_one(kind: OwnKind, file: UserFile) -> dict[str, Any]:
     """The same of a file of which one pair is meant. Raises SeveralEncodersError."""
     try:
-        gl, made = device(), translated(path, kind=kind.kind.name)
-        own = Own(path, made, {})
+        gl, made = device(), translated(file, kind=kind.kind)
+        own = Own(file, made, {})
         if broken := _endless(kind, own, gl):
             return {"broken": broken}
         facts = kind.facts(own, gl)
-        return {"functions": made.named} | facts | _judged(kind, Own(path, made, facts), gl)
+        return {"functions": made.named} | facts | _judged(kind, Own(file, made, facts), gl)
     except (NoDeviceError, MissingError) as error:
         return {"missing": str(error)}
     except SeveralEncodersError:
@@ -75,7 +75,7 @@ def _look_at_one(kind: OwnKind, path: Path) -> dict[str, Any]:
         return {"error": str(error)}
     except ShaderError as error:
         said = re.sub(r"\S+\.glsl:(\d+)", r"line \1", " ".join(str(error).partition("=\n")[2].split()) or str(error))
-        return {"error": f"{path}: the GLSL that was made of it does not compile on this device: {said[:LONGEST]}"}
+        return {"error": f"{file}: the GLSL that was made of it does not compile on this device: {said[:LONGEST]}"}
 
 
 def _endless(kind: OwnKind, own: Own, gl: Device) -> str:
@@ -147,8 +147,8 @@ def main(words: Sequence[str]) -> None:
     # Whatever users' code prints goes to stderr.
     answer = os.dup(1)
     os.dup2(2, 1)
-    kind, path = words
-    os.write(answer, json.dumps(look(OWN[kind], Path(path))).encode() + b"\n")
+    name, word = words
+    os.write(answer, json.dumps(look(OWN[BY_NAME[name]], UserFile(word))).encode() + b"\n")
 
 
 if __name__ == "__main__":

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from .....encodings.catalogue import MOTION_ENCODINGS
-from .....encodings.codecs.kind import MOTION
 from .....encodings.codecs.motion_codec import MotionEncoding
+from .....encodings.kinds import MOTION
 from .....gbuffer.codecs.own.own_passes import Tried
 from .....gbuffer.gl.device import Device
 from .own import COUNT, ROUNDED, SEED, Own, OwnKind, Values, numbers, of_range, rows

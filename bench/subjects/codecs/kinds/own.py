@@ -8,18 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from .....encodings.codecs.files import called
-from .....encodings.codecs.kind import AnyEncoding, Kind
+from .....encodings.kinds import AnyEncoding, Kind
 from .....gbuffer.codecs.own.own_passes import RESULTS, Tried, tried
 from .....gbuffer.gl.device import Device
 from ....ground.output.errors import NO_TWIN
+from ....ground.user_files import UserFile
 from ....shaders.code.twin import lacking_twin
-from ....shaders.languages.shapes import SHAPES, WORDS, Shape, Words
+from ....shaders.languages.shapes import SHAPES, Shape
 from ....shaders.languages.translated import Translated
 
 # How many values of a kind are tried, and with which seed.
@@ -33,12 +33,12 @@ class Own:
     """A user's own code, read.
 
     Attributes:
-        path: of the file, with the names of its functions where they are needed.
+        file: with the names of its functions where they are needed.
         made: its translation.
         found: what the first look found of it: see `look.py`.
     """
 
-    path: Path
+    file: UserFile
     made: Translated
     found: Mapping[str, Any]
 
@@ -74,8 +74,8 @@ class Own:
         lacking = lacking_twin(f"{self.made.name} {NO_TWIN}")
         return {
             "name": self.made.name,
-            "title": called(str(self.path)),
-            "citation": called(str(self.path)),
+            "title": called(str(self.file)),
+            "citation": called(str(self.file)),
             "encode": lacking,
             "decode": lacking,
             "glsl": self.made.glsl(self.is_unit),
@@ -121,11 +121,6 @@ class OwnKind:
     facts: Callable[[Own, Device], dict[str, Any]]
     said: Callable[[np.ndarray, np.ndarray], str]
     rounded: float = ROUNDED
-
-    @property
-    def words(self) -> Words:
-        """How people speak of it."""
-        return WORDS[self.kind.name]
 
 
 def rows(*columns: np.ndarray | float) -> np.ndarray:

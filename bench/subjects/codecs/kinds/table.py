@@ -1,13 +1,14 @@
-"""The kinds that users' own codes may be of, by their names in the catalogue."""
+"""The kinds that users' own codes may be of, those with words that others' names have too at last."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
 
+from .....encodings.kinds import Kind
 from . import curve, depth, frame, light, motion
 from .own import OwnKind
 
-OWN: Mapping[str, OwnKind] = MappingProxyType(
-    {one.KIND.kind.name: one.KIND for one in (motion, depth, curve, light, frame)}
+OWN: Mapping[Kind, OwnKind] = MappingProxyType(
+    {own.KIND.kind: own.KIND for own in (frame, motion, depth, curve, light)}
 )

@@ -47,7 +47,7 @@ class Known:
     @property
     def family(self) -> str:
         """The GPU family that slots are counted for."""
-        return PickOptions().family
+        return str(PickOptions().family[0])
 
     def of(self, row: Row) -> Row:
         """What is known of a device's codec; nothing of one of the reader's own."""

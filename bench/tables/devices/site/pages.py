@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from .....reports.page.page import Table, table
+from .....reports.page.page import PageTable, table
 from .....reports.page.site import (
     Answer,
     DeviceSection,
@@ -94,17 +94,17 @@ def _device_section(entry: Entry) -> DeviceSection:
     return DeviceSection(device.called, entry.key, said, known, answered, tables)
 
 
-def _front_table(sheet: Sheet, device: str) -> Table:
+def _front_table(sheet: Sheet, device: str) -> PageTable:
     """The codes of an answer; none where no code qualifies."""
     title = f"{device}, {sheet.title}"
-    return table(title, sheet.rows, lambda _: "") if sheet.rows else Table(title, [], [], "")
+    return table(title, sheet.rows, lambda _: "") if sheet.rows else PageTable(title, [], [], "")
 
 
 def _row_without(row: Row, names: Sequence[str]) -> Row:
     return {name: value for name, value in row.items() if name not in names}
 
 
-def _shown_table(title: str, rows: Sequence[Row]) -> Table:
+def _shown_table(title: str, rows: Sequence[Row]) -> PageTable:
     """Rows as a page shows them, with the definitions of their columns."""
 
     def says(name: str) -> str:
@@ -130,7 +130,7 @@ def _index(entries: Sequence[Entry], site: Site) -> Index:
     )
 
 
-def _table(title: str, rows: Sequence[Row]) -> Table:
+def _table(title: str, rows: Sequence[Row]) -> PageTable:
     return table(title, rows, lambda name: INDEXED.get(name, ""))
 
 

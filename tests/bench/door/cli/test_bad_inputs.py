@@ -12,11 +12,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tiers import files_of
+from typed import checked_numbers, first_look
 
 from normalbench.bench.door.gates.limits import limit
-from normalbench.bench.ground.options.counts import checked_numbers
 from normalbench.bench.ground.output.errors import UsageError
-from normalbench.bench.subjects.codecs.first_look import first_look
 from normalbench.gbuffer.codecs.loops import loop_limit
 
 TESTS = Path(__file__).parents[3]
@@ -198,7 +197,7 @@ def test_identical_frames_are_too(run):
 def test_numbers_in_a_row_are_read_by_one_rule(run, command, text):
     status, out, err = run(*command, text)
     assert (status, out) == (2, "") and err.count("\n") == 1
-    shown = text if len(text) < 10 else f"{text[:6]}... ({len(text)} digits)"
+    shown = text.strip(",") if len(text) < 10 else f"{text[:6]}... ({len(text)} digits)"
     begin = f"normalbench: {command[1]} {shown}: "
     assert err.startswith(begin) and err.endswith(", comma-separated\n") and len(err) < 2000, err[-200:]
 

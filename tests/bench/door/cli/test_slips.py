@@ -126,7 +126,7 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
     "a scene that is not": (("render", "--scene", "glos"), "did you mean gloss?"),
     "a mesh of another kind": (("render", "--scene", "scene.fbx"), "or a file that ends in"),
     "a layout that is not": (("render", "--layout", "unity"), "unknown layout 'unity'"),
-    "a power of nothing": (("render", "--power", "0"), "--power 0: a specular power is 1 to 2048"),
+    "a power of nothing": (("render", "--power", "0"), "--power 0: numbers from 1 to 2048"),
     "an exposure in words": (("render", "--exposure", "bright"), "--exposure bright: a number of stops"),
     "a size in words": (("render", "--size", "hd"), "--size hd: WIDTHxHEIGHT, such as 640x480"),
     "an angle of view": (("quality", "--normals", "f.npy", "--fov", "500"), "an angle of view is 1 to 175 degrees"),

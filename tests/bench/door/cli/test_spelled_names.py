@@ -3,23 +3,26 @@
 import json
 
 import pytest
+from typed import (
+    as_known,
+    choose,
+    effects_named,
+    encodings_named,
+    families_named,
+    gpus_named,
+    layouts_named,
+    light_buffers_named,
+    listed,
+    normal_sets_named,
+    roundings_named,
+    scene_makers_named,
+    storages_named,
+)
 
 from normalbench.bench.door.gates.measured import table_named
-from normalbench.bench.ground.choose import choose
-from normalbench.bench.ground.options import listing
-from normalbench.bench.ground.options.effect_names import effects_named
-from normalbench.bench.ground.options.light_names import light_buffers_named
 from normalbench.bench.ground.options.option import Reading
-from normalbench.bench.ground.options.storage_names import roundings_named, storages_named
-from normalbench.bench.subjects.codecs.layout_names import layouts_named
-from normalbench.bench.subjects.codecs.user_encodings import encodings_named
 from normalbench.bench.subjects.environments.environment_names import environment_named
-from normalbench.bench.subjects.normals.normal_names import normal_sets_named
 from normalbench.bench.subjects.scenes.frame_file import read_frame_file
-from normalbench.bench.subjects.scenes.scene_names import scene_makers_named
-from normalbench.bench.tables.budget.contract import as_known
-from normalbench.bench.tables.families_named import families_named
-from normalbench.bench.tables.roofline.rates import gpus_named
 from normalbench.gbuffer.pipelines import PIPELINES
 
 
@@ -47,13 +50,17 @@ READ = {
     "family": (families_named, "NAVI_21", ["navi21"]),
     "GPU": (lambda word: [*gpus_named(word)], next(iter(gpus_named("all"))).upper(), [next(iter(gpus_named("all")))]),
     "table": (lambda word: table_named(word).name, "Quality", "quality"),
-    "list": (lambda word: listing.listing(word), "Light-s", listing.listing("lights")),
-    "attribute": (as_known, "base_color", "basecolor"),
-    "attribute with a hyphen": (as_known, "base-color", "basecolor"),
-    "attribute in British": (as_known, "Base_Colour", "basecolor"),
-    "attributes with bits": (as_known, "Normal, base_color,ID:4,MOTION:Packed", "normal,basecolor,id:4,motion:packed"),
-    "attributes read together": (as_known, "2,Base_Color+Roughness,All", "2,basecolor+roughness,all"),
-    "what is no attribute": (as_known, "normal,colour", "normal,colour"),
+    "list": (listed, "Light-s", listed("lights")),
+    "attribute": (as_known, "base_color", ("basecolor",)),
+    "attribute with a hyphen": (as_known, "base-color", ("basecolor",)),
+    "attribute in British": (as_known, "Base_Colour", ("basecolor",)),
+    "attributes with bits": (
+        as_known,
+        "Normal, base_color,ID:4,MOTION:Packed",
+        ("normal", "basecolor", "id:4", "motion:packed"),
+    ),
+    "attributes read together": (as_known, "2,Base_Color+Roughness,All", ("2", "basecolor+roughness", "all")),
+    "what is no attribute": (as_known, "normal,colour", ("normal", "colour")),
 }
 
 

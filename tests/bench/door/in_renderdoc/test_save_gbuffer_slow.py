@@ -14,8 +14,8 @@ import numpy as np
 import OpenImageIO as oiio  # noqa: N813 # as its own documentation has it
 import pytest
 from screens import screen
+from typed import scene_makers_named
 
-from normalbench.bench.subjects.scenes.scene_names import scene_makers_named
 from normalbench.bench.tables.budget.rates import Exact, Stage
 from normalbench.gbuffer.gl.device import device
 from normalbench.gbuffer.scenes.setting import Setting

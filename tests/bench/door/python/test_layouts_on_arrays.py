@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
+from typed import layouts_named
 
 import normalbench as nb
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.shaders.code.whole.surface import Contents
 from normalbench.bench.shaders.code.whole.surfaces import settings, surfaces
 from normalbench.bench.shaders.code.whole.verify import Expected
-from normalbench.bench.subjects.codecs.layout_names import layouts_named
 from normalbench.gbuffer.layouts.presets import LAYOUTS
 
 COUNT = 2**10

@@ -6,10 +6,10 @@ import pandas as pd
 import pytest
 from manual import ROOT
 from test_python import UNIT, directions
+from typed import codecs_named
 
 import normalbench as nb
 from normalbench.bench.ground.output.errors import UsageError
-from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.bench.tables.registry import TABLES
 from normalbench.gbuffer.codecs.codec_passes import CodecPasses
 

@@ -5,9 +5,9 @@ import json
 import numpy as np
 import pytest
 from directions import hard_directions
+from typed import codecs_named
 
 from normalbench.bench.measures.live import kept, programs, scenes
-from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.encodings.normals.octahedral import decode
 from normalbench.encodings.vec import Vec2
 

@@ -2,8 +2,9 @@
 
 import re
 
+from typed import codecs_named
+
 from normalbench.bench.measures.live import kept, programs
-from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES

@@ -20,7 +20,7 @@ COUNT = 2**18
 
 
 def row_of(codec: Codec, normals) -> dict:
-    return quality.measure(quality.Case(codec, normals, "jax"))
+    return quality.measure(quality.QualityCase(codec, normals, "jax"))
 
 
 @pytest.mark.parametrize(

@@ -7,13 +7,13 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from directions import random_directions
+from typed import codecs_named
 
 from normalbench.bench.ground.angles import angles_deg
 from normalbench.bench.ground.machine.cores import cores, on_all_cores
 from normalbench.bench.ground.options import counts
 from normalbench.bench.measures.metrics.meter import Meter, angle_between
 from normalbench.bench.measures.metrics.totals import psnr_db
-from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.bench.subjects.normals.normal_sets import CHUNK, STEPS, from_arrays, hemisphere, sphere
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.encodings import vec
@@ -95,7 +95,9 @@ def test_the_worst_normal_is_the_one_that_was_turned_most():
 def test_both_back_ends_name_the_worst_normal():
     """A row's own columns, GLSL's too: the angle between the two is the largest that was met."""
     for backend in ("jax", "glsl"):
-        row = quality.measure(quality.Case(Codec(ENCODINGS["spheremap"], STORAGES["rg8"]), sphere(5000), backend))
+        row = quality.measure(
+            quality.QualityCase(Codec(ENCODINGS["spheremap"], STORAGES["rg8"]), sphere(5000), backend)
+        )
         normal, decode = (
             np.array([float(c) for c in row[f"worst_{what}"][1:-1].split(",")]) for what in ("normal", "decode")
         )
@@ -113,7 +115,7 @@ def test_psnr_is_scikit_images():
 
 
 def test_identical_normals_have_infinite_psnr():
-    row = quality.measure(quality.Case(Codec(ENCODINGS["xyz"], STORAGES["rgba32f"]), sphere(1000), "jax"))
+    row = quality.measure(quality.QualityCase(Codec(ENCODINGS["xyz"], STORAGES["rgba32f"]), sphere(1000), "jax"))
     assert row["psnr_db"] == np.inf and row["exact"] and row["angle_max_deg"] == 0 and row["angle_p99_deg"] == 0
 
 
@@ -139,7 +141,7 @@ def test_a_uniform_sets_rounding_errors_are_independent():
     scatter, expected = (np.std(np.linalg.norm(v, axis=1) - 1) for v in (n, any_unit))
     assert scatter == pytest.approx(expected, rel=0.02)
     # On a lattice of z near -1, spheremap would look 14 dB better in 16 bits than it is.
-    row = quality.measure(quality.Case(Codec(ENCODINGS["spheremap"], STORAGES["rg16"]), sphere(), "jax"))
+    row = quality.measure(quality.QualityCase(Codec(ENCODINGS["spheremap"], STORAGES["rg16"]), sphere(), "jax"))
     assert row["psnr_db"] == pytest.approx(73.1, abs=1) and row["angle_max_deg"] > 10
 
 
@@ -148,12 +150,12 @@ def test_a_seed_moves_the_set_and_little_else():
     x = [np.asarray(s.chunk(0).n.x) for s in (a, b, again)]
     assert np.array_equal(x[0], x[2]) and not np.array_equal(x[0], x[1])
     codec = Codec(ENCODINGS["octahedral"], STORAGES["rgba8"])
-    psnr = [quality.measure(quality.Case(codec, s, "jax"))["psnr_db"] for s in (a, b)]
+    psnr = [quality.measure(quality.QualityCase(codec, s, "jax"))["psnr_db"] for s in (a, b)]
     assert psnr[0] == pytest.approx(psnr[1], abs=0.01)
 
 
 def test_counting_stops_where_it_is_told_to():
-    row = quality.measure(quality.Case(Codec(ENCODINGS["xy"], STORAGES["rgba8"]), sphere(CHUNK + 7), "jax"))
+    row = quality.measure(quality.QualityCase(Codec(ENCODINGS["xy"], STORAGES["rgba8"]), sphere(CHUNK + 7), "jax"))
     assert row["count"] == CHUNK + 7
 
 

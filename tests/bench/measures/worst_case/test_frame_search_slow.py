@@ -52,7 +52,7 @@ WAYS = [name for name in CODECS if name.startswith(("smallest_three/", "qtangent
 def test_no_sample_is_above_the_supremum(name):
     """2^18 rotations by Haar's measure come near, and only float32 can carry one beyond."""
     codec = codec_of(*name.split("/"))
-    met = measure.measure(measure.Case(codec, rotations(2**18, 5), "jax"))["rotation_max_deg"]
+    met = measure.measure(measure.FrameCase(codec, rotations(2**18, 5), "jax"))["rotation_max_deg"]
     assert 0.75 < met / worst_frame(codec).angle_deg < 1.001
 
 

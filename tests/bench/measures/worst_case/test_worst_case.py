@@ -125,11 +125,11 @@ def test_directions_to_look_at_are_spread_evenly_and_in_the_domain():
 
 
 def test_a_set_that_is_finite_has_its_maximum():
-    row = quality.measure(quality.Case(codec_of("octahedral", "rg8"), axes(), "jax", True))
+    row = quality.measure(quality.QualityCase(codec_of("octahedral", "rg8"), axes(), "jax", True))
     assert row["angle_sup_deg"] == row["angle_max_deg"] and row["sup_found_by"] == "every normal"
     assert row["sup_x"] is None and row["domain"] is None
 
 
 def test_ordinary_rows_do_not_search():
-    row = quality.measure(quality.Case(codec_of("octahedral", "rg8"), sphere(1000), "jax"))
+    row = quality.measure(quality.QualityCase(codec_of("octahedral", "rg8"), sphere(1000), "jax"))
     assert row["angle_sup_deg"] is None and row["codes_unused"] is None

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from languages import require_runner
+from typed import codecs_named
 
 import normalbench as nb
 from normalbench.bench.shaders.code.channels import Channels
@@ -18,7 +19,6 @@ from normalbench.bench.shaders.code.reference import reference
 from normalbench.bench.shaders.code.run.interface import Ran
 from normalbench.bench.shaders.code.tables import dds, header
 from normalbench.bench.shaders.code.verify import compared
-from normalbench.bench.subjects.codecs.names import codecs_named
 
 
 def codec_of(name):

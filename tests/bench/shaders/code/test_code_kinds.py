@@ -4,15 +4,16 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from typed import codecs_of_kind
 
 from normalbench.bench.shaders.code.files import code_of, stem_of
 from normalbench.bench.shaders.code.kinds.normal import is_catalogues
-from normalbench.bench.subjects.codecs.kinds.codecs import NAMED, codecs_of_kind
+from normalbench.bench.subjects.codecs.kinds.codecs import NAMED
 from normalbench.encodings.catalogue import ENCODINGS
 
 
 def codec_of(kind, names, storage):
-    (codec,) = codecs_of_kind(NAMED[kind], names, storage, ["nearest"])
+    (codec,) = codecs_of_kind(NAMED[kind], names, storage, ["nearest"], slice(1))
     assert not codec.misfit
     return codec
 

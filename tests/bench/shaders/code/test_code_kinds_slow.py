@@ -8,12 +8,13 @@ import pytest
 from languages import RUN, require_runner
 from slowly import a_tenth
 from test_code_kinds import codec_of
+from typed import codecs_of_kind, kinds_named
 
 from normalbench.bench.door import code_command
 from normalbench.bench.shaders.code.files import code_of, stem_of
 from normalbench.bench.shaders.code.reference import reference
 from normalbench.bench.shaders.code.verify import agreement
-from normalbench.bench.subjects.codecs.kinds.codecs import NAMED, codecs_of_kind, kinds_named
+from normalbench.bench.subjects.codecs.kinds.codecs import NAMED
 from normalbench.encodings.catalogue import BY_KIND
 
 

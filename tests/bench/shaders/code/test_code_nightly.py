@@ -7,10 +7,10 @@ import test_code_slow
 from languages import RUN, require_runner
 from test_code import written
 from test_code_slow import CODECS
+from typed import codecs_named
 
 from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.shaders.code.verify import agreement
-from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.storages.storage import STORAGES
 

@@ -8,12 +8,11 @@ import pytest
 from languages import RUN, require_runner
 from slowly import a_tenth
 from test_code import codec_of, written
+from typed import codecs_named, encodings_named
 
 from normalbench.bench.door import code_command
 from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.shaders.code.verify import agreement
-from normalbench.bench.subjects.codecs.names import codecs_named
-from normalbench.bench.subjects.codecs.user_encodings import encodings_named
 from normalbench.bench.tables.cost import measure as cost
 
 # What is changed in the text of octahedral/rgb10a2 in C, and what must notice.

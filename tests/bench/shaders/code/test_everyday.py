@@ -2,9 +2,9 @@
 
 import pytest
 from everyday import GLSL
+from typed import read_encoding
 
 from normalbench.bench.shaders.code.files import code_of
-from normalbench.bench.subjects.codecs.user_encodings import read_encoding
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
 

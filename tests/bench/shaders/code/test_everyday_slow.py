@@ -8,10 +8,10 @@ from everyday import GLSL, WGSL
 from languages import require_runner
 from slowly import a_tenth
 from test_everyday import LONGEST, NESTED, codec_of
+from typed import codecs_named
 
 from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.shaders.code.verify import agreement
-from normalbench.bench.subjects.codecs.names import codecs_named
 
 pytestmark = pytest.mark.usefixtures("gl")
 

@@ -4,13 +4,12 @@ import re
 
 import pytest
 from pasted import LONGEST, loops_without_unrolling, names_in
+from typed import codecs_named, codecs_of_kind
 
 from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.shaders.code.fold import WIDTH
-from normalbench.bench.subjects.codecs.kinds.codecs import codecs_of_kind
-from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.encodings.catalogue import BY_KIND
-from normalbench.encodings.codecs.kind import KINDS, NORMAL
+from normalbench.encodings.kinds import KINDS, NORMAL
 from normalbench.encodings.storages.storage import (
     STORAGES,
 )

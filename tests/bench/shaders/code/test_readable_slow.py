@@ -8,7 +8,7 @@ from normalbench.bench.door import code_command
 from normalbench.bench.shaders.code.emit import LANGUAGES
 from normalbench.bench.shaders.code.tables import dds, header, kept, texels_of
 from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.encodings.codecs.kind import NORMAL
+from normalbench.encodings.kinds import NORMAL
 from normalbench.encodings.storages.storage import (
     CURVE_STORAGES,
     FRAME_STORAGES,

@@ -3,8 +3,8 @@
 import pytest
 from languages import require_runner
 from test_sanitizers_slow import codec_of, ran
+from typed import codecs_named
 
-from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.storages.storage import STORAGES
 

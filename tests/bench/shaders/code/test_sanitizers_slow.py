@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 from everyday import GLSL
 from languages import require_runner
+from typed import codecs_named, read_encoding
 
 from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.shaders.code.run import c
-from normalbench.bench.subjects.codecs.names import codecs_named
-from normalbench.bench.subjects.codecs.user_encodings import read_encoding
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
 

@@ -2,16 +2,17 @@
 
 import numpy as np
 import pytest
+from typed import codecs_of_kind
 
 from normalbench.bench.shaders.code.kinds.table import kind_of
 from normalbench.bench.shaders.code.reference import reference
-from normalbench.bench.subjects.codecs.kinds.codecs import NAMED, codecs_of_kind
+from normalbench.bench.subjects.codecs.kinds.codecs import NAMED
 
 pytestmark = pytest.mark.usefixtures("gl")
 
 
 def frame_codec(name: str, storage: str, rounding: str = "nearest"):
-    (codec,) = codecs_of_kind(NAMED["frame"], name, storage, [rounding])
+    (codec,) = codecs_of_kind(NAMED["frame"], name, storage, [rounding], slice(1))
     assert not codec.misfit
     return codec
 

@@ -6,11 +6,10 @@ import pytest
 from languages import RUN, require_runner
 from slowly import a_tenth
 from test_structures import frame_codec
+from typed import codecs_named, kinds_named
 
 from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.shaders.code.verify import agreement
-from normalbench.bench.subjects.codecs.kinds.codecs import kinds_named
-from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.encodings.catalogue import FRAME_ENCODINGS
 
 pytestmark = pytest.mark.usefixtures("gl")

@@ -1,10 +1,10 @@
 """The quality table by WGSL on Vulkan."""
 
 import pytest
+from typed import codecs_named
 
 from normalbench.bench.ground.output.errors import MissingError
 from normalbench.bench.shaders.code.run import wgsl
-from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.bench.subjects.normals import normal_sets
 from normalbench.bench.tables.quality import measure
 from normalbench.encodings.catalogue import ENCODINGS
@@ -20,7 +20,7 @@ def vulkan():
 
 
 def row_of(codec, backend: str, normals=None) -> dict:
-    return measure.measure(measure.Case(codec, normals or normal_sets.axes(), backend))
+    return measure.measure(measure.QualityCase(codec, normals or normal_sets.axes(), backend))
 
 
 @pytest.mark.usefixtures("vulkan")

@@ -5,8 +5,8 @@ import itertools
 import pytest
 import test_wgsl_backend
 from test_wgsl_backend import row_of
+from typed import codecs_named
 
-from normalbench.bench.subjects.codecs.names import codecs_named
 from normalbench.bench.subjects.normals import normal_sets
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.storages.storage import STORAGES

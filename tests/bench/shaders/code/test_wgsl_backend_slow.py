@@ -3,8 +3,7 @@
 import pytest
 import test_wgsl_backend
 from test_wgsl_backend import row_of
-
-from normalbench.bench.subjects.codecs.names import codecs_named
+from typed import codecs_named
 
 vulkan = test_wgsl_backend.vulkan
 

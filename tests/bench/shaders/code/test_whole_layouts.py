@@ -4,6 +4,7 @@ import re
 
 import pytest
 from pasted import LONGEST, loops_without_unrolling, names_in
+from typed import layouts_named
 
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.shaders.code.emit import LANGUAGES
@@ -12,7 +13,6 @@ from normalbench.bench.shaders.code.whole.bits import packed_texts, parts_of, ta
 from normalbench.bench.shaders.code.whole.emit import gbuffer_code
 from normalbench.bench.shaders.code.whole.head import table
 from normalbench.bench.shaders.code.whole.surface import Contents
-from normalbench.bench.subjects.codecs.layout_names import layouts_named
 from normalbench.encodings.storages.storage import TARGET_FORMATS
 from normalbench.gbuffer.layouts.presets import LAYOUTS
 from normalbench.gbuffer.layouts.words import Word

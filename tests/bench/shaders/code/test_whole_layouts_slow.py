@@ -10,13 +10,13 @@ import test_whole_layouts
 from languages import require_runner
 from slowly import a_tenth
 from test_whole_layouts import WORDS
+from typed import layouts_named
 
 from normalbench.bench.door import gbuffer_command
 from normalbench.bench.shaders.code.whole.emit import gbuffer_code
 from normalbench.bench.shaders.code.whole.run import RUNS
 from normalbench.bench.shaders.code.whole.surface import Contents
 from normalbench.bench.shaders.code.whole.verify import agreement
-from normalbench.bench.subjects.codecs.layout_names import layouts_named
 from normalbench.gbuffer.layouts.presets import LAYOUTS
 
 pytestmark = pytest.mark.usefixtures("gl")

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from test_executed import normals
+from typed import encodings_named
 
-from normalbench.bench.subjects.codecs.names import encodings_named
 from normalbench.bench.tables.cost import measure
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.gbuffer.codecs.loops import turns_made

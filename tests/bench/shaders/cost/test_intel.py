@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from typed import chosen_families
 
 from normalbench.bench.ground.options import gpu_families as families
 from normalbench.bench.ground.options.gpu_families import FAMILIES
@@ -11,7 +12,6 @@ from normalbench.bench.shaders.isa import intel_disassembly, null_device
 from normalbench.bench.shaders.isa.isa import Compiled, Kernel
 from normalbench.bench.tables.cost import extras
 from normalbench.bench.tables.cost import measure as cost
-from normalbench.bench.tables.cost.work import chosen_families
 from normalbench.bench.tables.registry import TABLES
 
 LISTINGS = Path(__file__).with_name("listings")

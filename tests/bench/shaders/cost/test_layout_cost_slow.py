@@ -38,7 +38,7 @@ WORDS = Layout(
 def slots(layout: Layout, family: str) -> tuple[float, float]:
     """What packing and unpacking take on a family."""
     make = {"pack": pack_operation, "unpack": unpack_operation}
-    chosen = [cost.Case(None, layout.name, name, partial(one, layout)) for name, one in make.items()]
+    chosen = [cost.CostCase(None, layout.name, name, partial(one, layout)) for name, one in make.items()]
     found = cost.counted(chosen, family, "compute")
     return found[layout.name, "pack"]["executed_slots"], found[layout.name, "unpack"]["executed_slots"]
 

@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
+from typed import chosen_families
 
 from normalbench.bench.ground.options.gpu_families import CHOICES, FAMILIES
 from normalbench.bench.shaders.isa import isa
@@ -12,7 +13,6 @@ from normalbench.bench.shaders.isa.nvidia import cubin, listing, sass, source, t
 from normalbench.bench.shaders.isa.nvidia.child import statistics
 from normalbench.bench.shaders.isa.nvidia.cubin import Kernel
 from normalbench.bench.tables.cost import extras
-from normalbench.bench.tables.cost.work import chosen_families
 from normalbench.gbuffer.defines import kernels
 from normalbench.gbuffer.gl.shader import ShaderError
 

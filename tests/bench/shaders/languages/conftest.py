@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from normalbench.bench.ground.user_files import UserFile
 from normalbench.bench.shaders.languages import child, translated
 
 
@@ -17,7 +18,7 @@ def in_this_process(monkeypatch):
 
     def finished(command, _):
         folder, word, by, kind = command
-        return CompletedProcess(command, 0, json.dumps(child.answer(word, Path(folder), by, kind)), "")
+        return CompletedProcess(command, 0, json.dumps(child.answer(UserFile(word), Path(folder), by, kind)), "")
 
     children = SimpleNamespace(python=lambda _, *words: words, finished=finished)
     monkeypatch.setattr(translated, "children", children)

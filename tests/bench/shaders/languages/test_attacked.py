@@ -3,11 +3,12 @@
 import itertools
 
 import pytest
+from typed import translated
 
 from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.ground.user_files import UserFile
 from normalbench.bench.shaders.languages import child
 from normalbench.bench.shaders.languages.items import heads, items
-from normalbench.bench.shaders.languages.translated import translated
 
 pytestmark = pytest.mark.usefixtures("slang", "in_this_process")
 ENCODE = "float2 PackDir(float3 n) { return CODE; }\n"
@@ -84,7 +85,7 @@ def test_no_disguise_of_an_include_reads_a_file_elsewhere(tmp_path, ending, by, 
         attack = text.replace("NOTE", str(note)).replace("JOIN", join) + "\n"
         path.write_text({"file": attack, "include": f'#include "{part.name}"\n', "prelude": ""}[by] + code)
         part.write_text(attack)
-        answer = child.answer(word, folders[2])
+        answer = child.answer(UserFile(str(word)), folders[2])
         assert answer.get("error", "").startswith(str(folders[1])), (attack, answer)
 
 
@@ -126,7 +127,7 @@ def test_a_macro_of_a_command_line_is_judged_as_a_line_of_the_file(tmp_path, end
     path.write_text("A\n" + ENCODE.replace("CODE", "n.xy * two()") + DECODE)
     word = f"{path}:define=A={value.replace('NOTE', str(tmp_path / 'note.txt'))}"
     (tmp_path / "work").mkdir()
-    assert child.answer(word, tmp_path / "work").get("error", "")
+    assert child.answer(UserFile(str(word)), tmp_path / "work").get("error", "")
 
 
 @pytest.mark.parametrize(

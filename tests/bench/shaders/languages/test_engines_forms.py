@@ -3,11 +3,10 @@
 from pathlib import Path
 
 import pytest
+from typed import Source, translated
 
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.shaders.languages.items import functions_in, items, without
-from normalbench.bench.shaders.languages.source import Source
-from normalbench.bench.shaders.languages.translated import translated
 
 pytestmark = pytest.mark.usefixtures("in_this_process")
 

@@ -6,8 +6,7 @@ import shutil
 import pytest
 from manual import ROOT
 from mistakes import CUT_OFF
-
-from normalbench.bench.shaders.languages.translated import translated
+from typed import translated
 
 FORMS = ROOT / "tests" / "inputs" / "encoders"
 

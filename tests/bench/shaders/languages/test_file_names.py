@@ -5,8 +5,7 @@ import shutil
 
 from manual import ROOT
 
-from normalbench.bench.ground.choose import file_names
-from normalbench.bench.shaders.languages.words import files_in, split_names, with_files
+from normalbench.bench.ground.user_files import file_names, files_in, with_files
 
 
 def test_a_comma_in_a_files_name_is_a_part_of_it(tmp_path, monkeypatch):
@@ -14,9 +13,9 @@ def test_a_comma_in_a_files_name_is_a_part_of_it(tmp_path, monkeypatch):
     (tmp_path / "my,file.hlsl").touch()
     (tmp_path / "a,b").mkdir()
     (tmp_path / "a,b" / "c.npy").touch()
-    assert split_names("octahedral,my,file.hlsl:A:B, xyz") == ["octahedral", "my,file.hlsl:A:B", "xyz"]
-    assert split_names("my,file.hlsl:define=X,your,file.hlsl") == ["my,file.hlsl:define=X", "your", "file.hlsl"]
-    assert file_names("sphere,a,b/c.npy") == ["sphere", "a,b/c.npy"]
+    assert file_names("octahedral,my,file.hlsl:A:B, xyz") == ("octahedral", "my,file.hlsl:A:B", "xyz")
+    assert file_names("my,file.hlsl:define=X,your,file.hlsl") == ("my,file.hlsl:define=X", "your", "file.hlsl")
+    assert file_names("sphere,a,b/c.npy") == ("sphere", "a,b/c.npy")
     assert files_in("my,file.hlsl:A:B") == ["my,file.hlsl"]
     assert with_files("my,file.hlsl:A:B", {"my,file.hlsl": "x/my,file.hlsl"}) == "x/my,file.hlsl:A:B"
 

@@ -1,11 +1,10 @@
 """Files of materials: what is common to their programs, and each program by itself."""
 
 import pytest
+from typed import Source, translated
 
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.shaders.languages.blocks import programs_of
-from normalbench.bench.shaders.languages.source import Source
-from normalbench.bench.shaders.languages.translated import translated
 
 pytestmark = pytest.mark.usefixtures("in_this_process")
 

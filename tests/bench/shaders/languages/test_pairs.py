@@ -4,6 +4,7 @@ import tempfile
 from pathlib import Path
 
 import pytest
+from typed import Source
 
 from normalbench.bench.shaders.languages import slang
 from normalbench.bench.shaders.languages.pairs import (
@@ -16,7 +17,6 @@ from normalbench.bench.shaders.languages.pairs import (
     role,
     stem,
 )
-from normalbench.bench.shaders.languages.source import Source
 
 pytestmark = pytest.mark.usefixtures("slang")
 

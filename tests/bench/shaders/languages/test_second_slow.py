@@ -8,15 +8,14 @@ import pytest
 import test_second
 from everyday import WGSL
 from languages import require_runner
+from typed import first_look, read_encoding, translated
 
 from normalbench.bench.ground.directions import directions
 from normalbench.bench.ground.output import cache as kept
+from normalbench.bench.ground.user_files import UserFile
 from normalbench.bench.shaders.languages import second
-from normalbench.bench.shaders.languages.translated import translated
 from normalbench.bench.shaders.translator.wgsl_parser import WgslParser
 from normalbench.bench.subjects.codecs import second_look
-from normalbench.bench.subjects.codecs.first_look import first_look
-from normalbench.bench.subjects.codecs.user_encodings import read_encoding
 from normalbench.gbuffer.codecs.codec_passes import exact_values
 from normalbench.gbuffer.gl.device import device
 
@@ -165,7 +164,7 @@ def test_divisions_of_whole_numbers_are_noted(name, tmp_path):
     path = tmp_path / "mine.slang"
     body = f"{SUM} int k = int(n.x * 0.0); int m = k - 1; return n.xy + float({division}) * 1e-12;"
     path.write_text(f"float2 MineEncode(float3 n) {{ {body} }}\n{DECODE}\n")
-    way = second.second_way(path, translated(path), tmp_path)
+    way = second.second_way(UserFile(str(path)), translated(path), tmp_path)
     given = directions()
     with pytest.raises(second.UndefinedError) if is_undefined else nullcontext():
         made, _ = way(given, np.zeros_like(given), np.zeros(3, np.float32))

@@ -1,10 +1,10 @@
 """A file with what it includes: from its own folder, and each line with the place that it was written."""
 
 import pytest
+from typed import Source
 
 from normalbench.bench.ground.compilers.lines import bare, without_comments
 from normalbench.bench.ground.output.errors import UsageError
-from normalbench.bench.shaders.languages.source import Source
 
 
 def written(folder, text, name="mine.hlsl"):

@@ -3,12 +3,11 @@
 from pathlib import Path
 
 import pytest
+from typed import Source, translated, word_with
 
 from normalbench.bench.door.gates.measured import located
 from normalbench.bench.ground.output.errors import UsageError
-from normalbench.bench.shaders.languages.source import Source
-from normalbench.bench.shaders.languages.translated import translated
-from normalbench.bench.shaders.languages.words import file_of, files_in, functions_of, settings_of, with_settings
+from normalbench.bench.ground.user_files import UserFile, files_in
 from normalbench.bench.tables.quality.table import QualityOptions
 from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.codecs.variants import settings_in
@@ -34,19 +33,20 @@ def mine(tmp_path):
     "word", ["mine.hlsl", "mine.hlsl:A:B", "a+b/mine.hlsl.h:A::B:C", "my,file.hlsl", "mine.hlsl:Foo", "octahedral"]
 )
 def test_settings_stand_behind_a_files_name(word):
-    more = with_settings(word, define="A=1,B", prelude="pre.hlsl", include="x,Packages=../y", language="slang")
+    more = word_with(word, define="A=1,B", prelude="pre.hlsl", include="x,Packages=../y", language="slang")
     if "Foo" in word or word == "octahedral":
         assert more == word
         return
-    assert (file_of(more), functions_of(more)) == (file_of(word), functions_of(word))
-    settings = settings_of(more)
+    assert (UserFile(more).path, UserFile(more).functions) == (UserFile(word).path, UserFile(word).functions)
+    settings = UserFile(more).settings
     assert settings.defines == ("A=1", "B") and settings.preludes == ("pre.hlsl",)
     assert settings.roots == (("", "x"), ("Packages", "../y")) and settings.language == "Slang"
-    assert with_settings(more, define="B,A=1") == more
+    assert word_with(more, define="B,A=1") == more
 
 
 def test_names_of_the_catalogue_are_as_they_were():
-    assert QualityOptions(encoding="octahedral,mine.hlsl", define="A=1").encoding == "octahedral,mine.hlsl:define=A=1"
+    options = QualityOptions(encoding="octahedral,mine.hlsl", define="A=1")
+    assert options.encoding == ("octahedral", "mine.hlsl:define=A=1")
     with pytest.raises(UsageError, match="--define is of users' shader files, and none is named"):
         QualityOptions(define="A=1")
 
@@ -65,7 +65,7 @@ def test_names_of_the_catalogue_are_as_they_were():
 )
 def test_what_cannot_be_is_said(mine, settings, why):
     with pytest.raises(UsageError, match=why):
-        Source(with_settings(str(mine), **settings))
+        Source(word_with(str(mine), **settings))
 
 
 @pytest.mark.parametrize(
@@ -85,7 +85,7 @@ def test_includes_are_read_from_the_folders_that_are_given(tmp_path, mine, name,
         mine.write_text(f"#include {mark.format(name)}\n#include {mark.format(name.replace('part', 'link'))}\n" + PAIR)
         first = name.strip("/").split("/")[0]
         assert f"name its folder by --include {f'{first}=' * bool(root)}FOLDER" in Source(mine).lines[0].wrong
-        source = Source(with_settings(str(mine), include=f"{root}{library.parent}"))
+        source = Source(word_with(str(mine), include=f"{root}{library.parent}"))
         assert "next" in source.text and "secret" not in source.text
         assert {path.name for path in source.files.values()} == {"mine.hlsl", "part.hlsl", "next.hlsl"}
         assert len([line for line in source.lines if "lies outside the folder" in line.wrong]) == 3
@@ -95,7 +95,7 @@ def test_includes_are_read_from_the_folders_that_are_given(tmp_path, mine, name,
 def test_a_file_is_read_in_the_language_that_is_said(tmp_path):
     path = tmp_path / "mine.h"
     path.write_text("func PackDir(n : float3) -> float2 { return n.xy; }\n" + PAIR.split("\n")[1])
-    assert translated(with_settings(str(path), language="slang")).components == 2
+    assert translated(word_with(str(path), language="slang")).components == 2
 
 
 def test_files_that_are_named_are_found(tmp_path, mine):
@@ -106,24 +106,23 @@ def test_files_that_are_named_are_found(tmp_path, mine):
 
 def test_gates_name_files_and_folders_from_where_they_lie(tmp_path, mine):
     (mine.parent / "pre.hlsl").touch()
-    options = {"encoding": "mine.hlsl", "prelude": "pre.hlsl", "include": f"Packages=library,{tmp_path}"}
+    options = {"encoding": "mine.hlsl", "prelude": "pre.hlsl", "include": ("Packages=library", str(tmp_path))}
     found = located(TABLES["quality"], options, mine.parent)
     assert {
-        name: {Path(one).resolve() for one in value.removeprefix("Packages=").split(",")}
-        for name, value in found.items()
+        name: {Path(word.removeprefix("Packages=")).resolve() for word in words} for name, words in found.items()
     } == {
         "encoding": {mine},
         "prelude": {mine.parent / "pre.hlsl"},
         "include": {mine.parent / "library", tmp_path},
     }
-    assert found["include"].startswith("Packages=")
+    assert found["include"][0].startswith("Packages=")
 
 
 def test_a_path_of_windows_has_a_drive():
     """A colon in front of a slash ends no word."""
     word = r"C:\shaders\mine.hlsl:Pack:Unpack:include=C:\library:define=ROUND=1"
-    settings = settings_of(word)
-    assert (str(file_of(word)), functions_of(word)) == (r"C:\shaders\mine.hlsl", ("Pack", "Unpack"))
+    settings = UserFile(word).settings
+    assert (str(UserFile(word).path), UserFile(word).functions) == (r"C:\shaders\mine.hlsl", ("Pack", "Unpack"))
     assert [root for _, root in settings.roots] == [r"C:\library"] and settings.defines == ("ROUND=1",)
     assert settings_in(r"best_fit:table=C:\tables\scales.npy:axis=y") == (
         "best_fit",

@@ -5,11 +5,9 @@ import json
 import pytest
 import test_source_options
 from test_source_options import PAIR
+from typed import layouts_named, translated, word_with
 
 from normalbench.bench.ground.output.errors import UsageError
-from normalbench.bench.shaders.languages.translated import translated
-from normalbench.bench.shaders.languages.words import with_settings
-from normalbench.bench.subjects.codecs.layout_names import layouts_named
 
 pytestmark = pytest.mark.usefixtures("in_this_process")
 mine = test_source_options.mine
@@ -26,13 +24,13 @@ def test_macros_and_preludes_are_read_first(tmp_path, mine):
     with pytest.raises(UsageError, match=r"SCALE.*; a macro that is not there is given by -D or --prelude"):
         translated(mine)
     (tmp_path / "pre.hlsl").write_text("#define SCALE 1.0\n")
-    by_macro = translated(with_settings(str(mine), define="SCALE=1.0"))
-    by_prelude = translated(with_settings(str(mine), prelude=str(tmp_path / "pre.hlsl")))
+    by_macro = translated(word_with(str(mine), define="SCALE=1.0"))
+    by_prelude = translated(word_with(str(mine), prelude=str(tmp_path / "pre.hlsl")))
     assert [by_macro.name, by_prelude.name] == ["mine.hlsl:SCALE=1.0", "mine.hlsl"]
     assert "it is read with -D SCALE=1.0" in by_macro.notes
     assert f"it is read with {tmp_path / 'pre.hlsl'}" in by_prelude.notes
     with pytest.raises(UsageError, match=r"--define:1:.*oops.*-D or --prelude"):
-        translated(with_settings(str(mine), define="SCALE=oops"))
+        translated(word_with(str(mine), define="SCALE=oops"))
 
 
 @pytest.mark.usefixtures("gl", "slang")

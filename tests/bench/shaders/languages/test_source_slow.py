@@ -5,9 +5,9 @@ import time
 
 import pytest
 from test_source import written
+from typed import Source
 
 from normalbench.bench.ground.output.errors import UsageError
-from normalbench.bench.shaders.languages.source import Source
 
 
 @pytest.mark.parametrize("part", ["", "x\n", "\n" * 10**5, "y" * 10**6])

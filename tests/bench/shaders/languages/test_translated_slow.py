@@ -10,6 +10,7 @@ import test_translated
 from test_translated import MINE, QUICK, changed, written
 
 from normalbench.bench.ground.compilers import tools
+from normalbench.bench.ground.user_files import UserFile
 from normalbench.bench.shaders.languages import translated
 from normalbench.encodings import vec
 from normalbench.encodings.catalogue import ENCODINGS
@@ -36,10 +37,10 @@ def test_where_the_cache_cannot_be_written_a_folder_of_the_process_serves(run, t
 @pytest.mark.usefixtures("hlsl")
 def test_a_damaged_translation_is_made_again(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    made = translated.translated(written(tmp_path, MINE, "mine.hlsl")).glsl(False)
+    made = translated.translated(UserFile(str(written(tmp_path, MINE, "mine.hlsl")))).glsl(False)
     text = made.read_text()
     made.write_text("damaged")
-    assert translated.translated(tmp_path / "mine.hlsl").glsl(False).read_text() == text
+    assert translated.translated(UserFile(str(tmp_path / "mine.hlsl"))).glsl(False).read_text() == text
 
 
 def test_hints_to_compilers_keep_nothing_from_being_written(run, ending):

@@ -4,9 +4,7 @@ import json
 
 import pytest
 import test_two_files
-
-from normalbench.bench.shaders.languages.source import Source
-from normalbench.bench.shaders.languages.translated import translated
+from typed import Source, translated
 
 two = test_two_files.two
 

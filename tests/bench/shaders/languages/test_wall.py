@@ -6,6 +6,7 @@ import subprocess
 import pytest
 
 from normalbench.bench.ground.output.errors import UsageError
+from normalbench.bench.ground.user_files import UserFile
 from normalbench.bench.shaders.languages import translated
 
 pytestmark = pytest.mark.usefixtures("slang")
@@ -48,7 +49,7 @@ def test_what_a_misled_process_says_writes_nothing_elsewhere(tmp_path, monkeypat
     done = subprocess.CompletedProcess([], 0, SAID[name], "")
     monkeypatch.setattr(translated.children, "finished", lambda *_: done)
     with pytest.raises(UsageError) as refused:
-        translated.translated(path)
+        translated.translated(UserFile(str(path)))
     assert str(refused.value).isprintable()
     assert not (tmp_path / "out").exists()
 
@@ -59,4 +60,4 @@ def test_what_it_says_is_one_line(tmp_path, monkeypatch):
     said = json.dumps({"error": "a\x1b[31m\nnormalbench: all is well"})
     monkeypatch.setattr(translated.children, "finished", lambda *_: subprocess.CompletedProcess([], 0, said, ""))
     with pytest.raises(UsageError, match=r"^a \[31m normalbench: all is well$"):
-        translated.translated(path)
+        translated.translated(UserFile(str(path)))

@@ -6,10 +6,10 @@ import re
 import numpy as np
 import pytest
 from languages import require_runner
+from typed import codecs_named
 
 from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.shaders.code.verify import agreement
-from normalbench.bench.subjects.codecs.names import codecs_named
 
 pytestmark = pytest.mark.usefixtures("gl")
 

@@ -6,12 +6,11 @@ import re
 import pytest
 from languages import require_runner
 from test_wgsl import FIGURES, MINE, QUICK, written
+from typed import codecs_named, translated
 
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.shaders.code.files import code_of
 from normalbench.bench.shaders.code.verify import agreement
-from normalbench.bench.shaders.languages.translated import translated
-from normalbench.bench.subjects.codecs.names import codecs_named
 
 pytestmark = pytest.mark.usefixtures("gl")
 

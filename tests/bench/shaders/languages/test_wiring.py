@@ -2,10 +2,10 @@
 
 import pytest
 from manual import ROOT
+from typed import translated
 
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.shaders.languages.pairs import NoPairError
-from normalbench.bench.shaders.languages.translated import translated
 from normalbench.bench.shaders.languages.wiring import Wiring, wiring_of
 
 pytestmark = pytest.mark.usefixtures("in_this_process")

@@ -2,8 +2,8 @@
 
 import pytest
 from mistakes import PLAIN
+from typed import first_look
 
-from normalbench.bench.subjects.codecs.first_look import first_look
 from normalbench.encodings.catalogue import ENCODINGS
 
 pytestmark = pytest.mark.usefixtures("gl")

@@ -4,11 +4,11 @@ import json
 from pathlib import Path
 
 import pytest
+from typed import first_look
 
 from normalbench.bench.subjects.codecs.doctor.diagnoses import diagnosed
 from normalbench.bench.subjects.codecs.doctor.domains import Domain
 from normalbench.bench.subjects.codecs.doctor.probe import probe_of
-from normalbench.bench.subjects.codecs.first_look import first_look
 from normalbench.encodings.catalogue import ENCODINGS
 
 ENCODE = """vec2 mine_encode(vec3 n, vec3 view) {
@@ -351,7 +351,7 @@ def test_a_table_says_it_too(run, tmp_path):
         (("--plot", "a.png"), "name it"),
         (("--domain", "sphere"), "name it"),
         (("a.glsl", "--domain", "z"), "unknown domain 'z'"),
-        (("a.glsl", "--storage", "rg8,rg16"), "doctor measures in one storage"),
+        (("a.glsl", "--storage", "all"), "doctor measures in one storage"),
         ((".",), ".: it is a folder; name a file"),
         (("nothing.glsl",), "there is no such file"),
         (("a.glsl", "--plot", "a.txt"), "a.txt"),

@@ -18,7 +18,7 @@ def test_doctor_names_it_and_draws_the_sphere(run, tmp_path):
     assert (status, err) == (0, "") and "nothing is likely wrong" in out
     path.write_text(octahedral().replace("mine_", "spherical_"))
     status, out, err = run("doctor", str(path))
-    assert (status, err) == (0, "") and "there is an encoding named spherical already" in " ".join(out.split())
+    assert (status, err) == (0, "") and "there is a code named spherical already" in " ".join(out.split())
     path.write_text(FLAT)
     status, out, err = run("doctor", str(path))
     assert (status, err) == (0, "") and "taken to be made for normals with z >= 0" in " ".join(out.split())

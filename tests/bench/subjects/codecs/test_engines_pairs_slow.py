@@ -7,8 +7,7 @@ from itertools import product
 import pytest
 from manual import ROOT
 from mistakes import CUT_OFF
-
-from normalbench.bench.subjects.codecs.first_look import first_look
+from typed import first_look
 
 pytestmark = pytest.mark.usefixtures("gl", "slang")
 

@@ -5,9 +5,8 @@ import re
 from dataclasses import replace
 
 import pytest
+from typed import encodings_named, first_look
 
-from normalbench.bench.subjects.codecs.first_look import first_look
-from normalbench.bench.subjects.codecs.user_encodings import encodings_named
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
 from normalbench.gbuffer.layouts.presets import LAYOUTS

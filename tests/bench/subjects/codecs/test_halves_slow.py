@@ -5,8 +5,7 @@ import json
 import pytest
 import test_halves
 from test_halves import DESIGNS, HALVES, OPEN, design
-
-from normalbench.bench.subjects.codecs.first_look import first_look
+from typed import first_look
 
 pytestmark = pytest.mark.usefixtures("gl")
 _here = test_halves._here

@@ -1,9 +1,9 @@
 """Users' code that hangs, dies, grows or lies costs its own rows, and a line says why."""
 
 import pytest
+from typed import read_encoding
 
 from normalbench.bench.ground.output.errors import UsageError
-from normalbench.bench.subjects.codecs.user_encodings import read_encoding
 from normalbench.gbuffer.gl import shader
 
 pytestmark = pytest.mark.usefixtures("gl")
@@ -35,7 +35,7 @@ def test_a_path_does_not_end_the_line_that_includes_it(tmp_path, letter):
     path = tmp_path / f"a{letter}b" / "mine.glsl"
     path.parent.mkdir()
     path.write_text(GOOD.replace("NAME", "mine"))
-    with pytest.raises(UsageError, match="a path with quotes or control characters is not read; rename it"):
+    with pytest.raises(UsageError, match="a file with quotes or control characters is not read; rename it"):
         read_encoding(path, is_unit=True)
 
 

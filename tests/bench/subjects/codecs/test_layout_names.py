@@ -6,9 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from typed import layouts_named
 
 from normalbench.bench.run.measuring import companions, files_of
-from normalbench.bench.subjects.codecs.layout_names import files_of_layout, layouts_named
+from normalbench.bench.subjects.codecs.layout_names import files_of_layout
 from normalbench.bench.tables.render.table import RenderOptions
 from normalbench.encodings.catalogue import ENCODINGS
 
@@ -68,15 +69,14 @@ def test_rows_of_an_encoder_that_changed_are_not_used_again(tmp_path, name):
     before = files_of(options)
     with (tmp_path / "code" / name).open("a") as file:
         file.write("\n")
-    assert set(files_of(options)["files"]) == set(before["files"]) == {options.layout}
-    assert files_of(options) != before
+    assert len(before["files"]) == 1 and files_of(options) != before
 
 
 @pytest.mark.parametrize(
     "encoding, said",
     [
         ("cubemap", "own.toml: unknown encoding 'cubemap'; known: "),
-        ("octahedral,xyz", "own.toml: encoding 'octahedral,xyz': a layout has one encoding"),
+        ("octahedral,xyz", "own.toml: unknown encoding 'octahedral,xyz'"),
         ("all", "own.toml: encoding 'all': a layout has one encoding"),
         ("code/none.glsl", "none.glsl: there is no such file"),
         ("code/bad.glsl", "own.toml: {0}/code/bad.glsl: no function vec2"),

@@ -10,8 +10,7 @@ from pathlib import Path
 
 import pytest
 from mistakes import MISTAKES, OCTAHEDRAL, TEXTS, program, said
-
-from normalbench.bench.subjects.codecs.first_look import first_look
+from typed import first_look
 
 pytestmark = pytest.mark.usefixtures("gl")
 

@@ -7,9 +7,9 @@ that a mistake which changes no result, as `>` for `>=` in a fold, is none.
 from pathlib import Path
 
 import pytest
+from typed import first_look
 
 from normalbench.bench.shaders.code.files import code_of
-from normalbench.bench.subjects.codecs.first_look import first_look
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES

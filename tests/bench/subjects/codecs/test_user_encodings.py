@@ -5,13 +5,12 @@ import re
 from pathlib import Path
 
 import pytest
+from typed import examined, first_look, read_encoding
 
 from normalbench.bench.ground.directions import directions
 from normalbench.bench.ground.machine.systems import linux_forks
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.subjects.codecs import user_encodings
-from normalbench.bench.subjects.codecs.first_look import first_look
-from normalbench.bench.subjects.codecs.user_encodings import read_encoding
 
 pytestmark = pytest.mark.usefixtures("gl")
 
@@ -45,7 +44,7 @@ def test_hlsl_in_a_glsl_file_is_read_as_hlsl(run, tmp_path):
 def test_two_files_of_one_name_are_told_apart(run, tmp_path):
     one, other = written(tmp_path), written(tmp_path, name="other.glsl")
     status, out, err = run("quality", "--encoding", f"{one},{other}", "--backend", "glsl", *QUICK)
-    assert status == 0 and len(json.loads(out)) == 1 and "another file has an encoding named mine" in err
+    assert status == 0 and len(json.loads(out)) == 1 and "another file has a code named mine" in err
 
 
 @pytest.mark.parametrize(
@@ -68,7 +67,7 @@ def test_what_is_given_from_outside_and_not_read_makes_no_difference(tmp_path):
         + MINE
         + told,
     )
-    assert user_encodings.examined(Path(path)).notes[0] == "mine alone is measured; move other into a file of its own"
+    assert examined(path).notes[0] == "mine alone is measured; move other into a file of its own"
 
 
 @pytest.mark.parametrize(

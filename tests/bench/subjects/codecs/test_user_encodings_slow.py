@@ -5,8 +5,8 @@ import json
 import pytest
 from test_user_encodings import MINE, QUICK, written
 from twins import HALF_OCTAHEDRAL
+from typed import encodings_named
 
-from normalbench.bench.subjects.codecs import user_encodings
 from normalbench.encodings.catalogue import NAMES
 
 pytestmark = pytest.mark.usefixtures("gl")
@@ -59,7 +59,7 @@ def test_a_decoder_that_undoes_nothing_is_said_and_measured(run, tmp_path):
         (MINE.replace("p.x + p.y, p.x", "q.x + p.y, p.x"), "mine.glsl:4: error"),
         (MINE.partition("vec3 mine_decode")[0], "no function vec3 mine_decode(vec2 e, vec3 view)"),
         (MINE.replace("vec2(p.x + p.y, p", "vec2(sqrt(n.z - 2.0), p"), "encode of"),
-        (MINE.replace("mine_", "octahedral_"), "there is an encoding named octahedral already"),
+        (MINE.replace("mine_", "octahedral_"), "there is a code named octahedral already"),
         (MINE + "float2 half_of(float2 e) { return e * 0.5; }", "(float2 is HLSL: rename float2 to vec2"),
         ("", "no function vec2"),
     ],
@@ -76,9 +76,9 @@ def test_what_is_wrong_with_one_spares_the_others(run, tmp_path, text, said):
 def test_all_is_the_catalogue_whatever_files_there_were(tmp_path):
     """A session of tests, or a file of gates, measures the same in any order."""
     path = written(tmp_path)
-    assert [encoding.name for encoding in user_encodings.encodings_named(path)] == ["mine"]
-    assert [encoding.name for encoding in user_encodings.encodings_named("all")] == list(NAMES)
-    assert [encoding.name for encoding in user_encodings.encodings_named(f"{path},all")] == [*NAMES, "mine"]
+    assert [encoding.name for encoding in encodings_named(path)] == ["mine"]
+    assert [encoding.name for encoding in encodings_named("all")] == list(NAMES)
+    assert [encoding.name for encoding in encodings_named(f"{path},all")] == [*NAMES, "mine"]
 
 
 GOOD_ENCODE = "from normalbench.encodings.vec import Vec2\ndef encode(n, view):\n    return Vec2(n.x, n.y)\n"

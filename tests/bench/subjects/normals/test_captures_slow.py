@@ -25,7 +25,7 @@ from written import (
 from normalbench.bench.subjects.normals.captures import Reading, chosen_channels
 from normalbench.bench.subjects.normals.normal_sets import playground
 from normalbench.bench.subjects.normals.pixel_files import read_pixels
-from normalbench.bench.tables.quality.measure import Case, measure
+from normalbench.bench.tables.quality.measure import QualityCase, measure
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
@@ -36,7 +36,7 @@ RG8 = Codec(ENCODINGS["octahedral"], STORAGES["rg8"])
 
 
 def figures(made, codec: Codec = RG8) -> dict:
-    row = measure(Case(codec, made, "jax"))
+    row = measure(QualityCase(codec, made, "jax"))
     hidden = ("normals", "not_finite", "code_space")
     return {column: value for column, value in row.items() if column not in hidden}
 

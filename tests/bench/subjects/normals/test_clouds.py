@@ -5,10 +5,10 @@ import struct
 import numpy as np
 import pytest
 from manual import ROOT
+from typed import normal_sets_named
 
 from normalbench.bench.ground.options.option import Reading
 from normalbench.bench.ground.output.errors import UsageError
-from normalbench.bench.subjects.normals.normal_names import normal_sets_named
 
 CLOUD = ROOT / "tests" / "inputs" / "normals" / "points.ply"
 

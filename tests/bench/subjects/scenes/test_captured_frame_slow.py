@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from test_captured_frame import frame, pixels_of, read
+from typed import scene_makers_named
 from written import png_bytes
 
-from normalbench.bench.subjects.scenes.scene_names import scene_makers_named
 from normalbench.bench.tables.budget.attributes import SEEN
 from normalbench.bench.tables.budget.rates import Exact, Stage
 from normalbench.encodings.storages.rounding import from_srgb

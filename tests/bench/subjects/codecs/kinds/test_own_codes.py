@@ -6,14 +6,14 @@ import re
 import numpy as np
 import pytest
 from manual import ROOT
+from typed import light_codecs_named, own_code, own_codes_named
 
 from normalbench.bench.ground.output.errors import UsageError
-from normalbench.bench.shaders.languages.shapes import SHAPES, WORDS, kind_spoken_of
-from normalbench.bench.subjects.codecs.kinds.named import light_codecs_named, own_code, own_codes_named
+from normalbench.bench.shaders.languages.shapes import SHAPES
 from normalbench.bench.subjects.codecs.kinds.table import OWN
 from normalbench.encodings.catalogue import CURVE_ENCODINGS, FRAME_ENCODINGS, LIGHT_BUFFERS, MOTION_ENCODINGS
 from normalbench.encodings.codecs.curve_codec import CurveCodec
-from normalbench.encodings.codecs.kind import CURVE, FRAME, KINDS, LIGHT, MOTION, NORMAL
+from normalbench.encodings.kinds import BY_NAME, CURVE, FRAME, KINDS, LIGHT, MOTION, NORMAL, kind_spoken_of
 from normalbench.encodings.storages.depth_storage import DEPTH_STORAGES
 from normalbench.encodings.storages.storage import CURVE_STORAGES
 from normalbench.gbuffer.codecs.curve.curve_passes import CurvePasses
@@ -31,10 +31,8 @@ VECTORS = ("vectors", "--backend", "glsl", "--speed", "0.25,4", "--count", "512"
 KEYS = ("encoding", "device", "range")
 
 
-def test_every_kind_has_a_shape_and_words():
-    named = {kind.name for kind in KINDS if kind is not NORMAL}
-    assert set(SHAPES) == set(WORDS) == named
-    assert set(OWN) == named
+def test_every_kind_has_a_shape_and_is_tried():
+    assert set(SHAPES) == set(OWN) == set(KINDS) - {NORMAL}
 
 
 def figures(out: str, name: str) -> list[dict]:
@@ -337,7 +335,7 @@ def test_axes_that_come_back_swapped_are_told(tmp_path):
     ],
 )
 def test_what_a_function_is_of_is_in_its_name(name, kind):
-    assert kind_spoken_of(name) == kind
+    assert kind_spoken_of(name) is BY_NAME.get(kind)
 
 
 def test_two_curves_in_a_file_are_named(tmp_path):

@@ -4,8 +4,7 @@ import json
 
 import pytest
 from test_own_codes import INPUTS, LIGHTS, PAIR, VECTORS, figures, lit
-
-from normalbench.bench.shaders.languages.translated import translated
+from typed import translated
 
 pytestmark = pytest.mark.usefixtures("gl", "slang")
 

@@ -1,4 +1,4 @@
-"""Specular powers and mesh files as they are named, and what is said of files."""
+"""Mesh files as they are read, and what is said of them."""
 
 from __future__ import annotations
 
@@ -9,24 +9,9 @@ from typing import TypeVar
 from ....gbuffer.scenes.files.mesh_file import MeshFile
 from ....gbuffer.scenes.files.read import read_mesh_file
 from ....gbuffer.scenes.files.source import MissingPackageError, SceneFileError
-from ..output.errors import MissingError, UsageError, tell
+from ...ground.output.errors import MissingError, UsageError, tell
 
 T = TypeVar("T")
-MAX_POWER = 2048
-
-
-def powers_named(numbers: str) -> list[float]:
-    """The specular powers of comma-separated numbers. Raises UsageError for what is not one of 1 to 2048."""
-    made = []
-    for word in map(str.strip, numbers.split(",")):
-        try:
-            power = float(word)
-        except ValueError:
-            power = 0.0
-        if not 1 <= power <= MAX_POWER:
-            raise UsageError(f"--power {word}: a specular power is 1 to {MAX_POWER}, such as 47,1024")
-        made.append(power)
-    return list(dict.fromkeys(made))
 
 
 def mesh_file(path: Path) -> MeshFile:

@@ -9,23 +9,24 @@ from ....gbuffer.effects.effect import ChosenEffect, EffectError, chosen
 from ....gbuffer.frame.contract import Pipeline, PipelineError
 from ....gbuffer.pipelines import PIPELINES
 from ....gbuffer.scenes.scene import Scene
-from ..choose import choose
-from ..output.errors import UsageError
+from ...ground.choose import choose
+from ...ground.options.words import Names
+from ...ground.output.errors import UsageError
 
 
-def effects_named(names: str) -> list[ChosenEffect]:
-    """The effects that comma-separated names stand for, each with its settings.
+def effects_named(names: Names) -> list[ChosenEffect]:
+    """Return the effects that names stand for, each with its settings.
 
     Raises:
         UsageError: an unknown effect or setting, or a value out of range.
     """
-    made: dict[str, ChosenEffect] = {}
-    for word in (word.strip() for word in names.split(",") if word.strip() or not names.strip()):
+    effects: dict[str, ChosenEffect] = {}
+    for word in map(str, names or ("",)):
         name, *settings = word.split(":")
-        for effect in choose("effect", name, EFFECTS):
-            one = _chosen(effect.name, word, settings)
-            made[one.name] = one
-    return list(made.values())
+        for known in choose("effect", filter(None, [name]), EFFECTS):
+            effect = _chosen(known.name, word, settings)
+            effects[effect.name] = effect
+    return list(effects.values())
 
 
 def name_of(effects: Iterable[ChosenEffect]) -> str | None:

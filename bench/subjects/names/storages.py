@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 
 from ....encodings.storages.rules import BY_RULE, KINDS, storage_of
 from ....encodings.storages.storage import DITHERED, FORMATS, ROUNDINGS, STORAGES, Storage
-from ..choose import choose, unknown_name
-from ..output.errors import UsageError
-from ..spelling import channels_of, spelled
-from .option import WITH_NOISE
-from .words import given_in
+from ...ground.choose import choose, unknown_name
+from ...ground.options.words import Given, Names, Word
+from ...ground.output.errors import UsageError
+from ...ground.spelling import channels_of, spelled
 
 # Storages by rule from some bits to some others, and what begins like one.
 BITS = r"\d{1,3}(?::\d{1,3})*"
@@ -21,8 +20,10 @@ RULE = re.compile(rf"({'|'.join(KINDS)}):", re.I)
 VERTEX = re.compile(r"(?P<kind>unorm|snorm|float)(?:(?P<bits>\d+(?:-\d+)+)|(?P<size>\d+)x(?P<count>[2-4]))", re.I)
 
 
-def storages_named(names: str, known: Mapping[str, Storage] = STORAGES, what: str = "storage") -> list[Storage]:
-    """The storages of comma-separated names; by their bits as well, and in ranges of such: unorm:4:4..8:8.
+def storages_named(
+    names: Iterable[Word], known: Mapping[str, Storage] = STORAGES, what: str = "storage"
+) -> list[Storage]:
+    """Return the storages of names; by their bits as well, and in ranges of such: unorm:4:4..8:8.
 
     Args:
         known: what "all" stands for, and what messages list.
@@ -31,35 +32,33 @@ def storages_named(names: str, known: Mapping[str, Storage] = STORAGES, what: st
     Raises:
         UsageError: an unknown name, or bits that cannot be; one line.
     """
-    own = given_in(names)
-    said = storages_said(names, own)
-    unknown = [
-        word for word, one in said.items() if not (one or word in own or word == "all" or spelled(what, word, known))
-    ]
+    own = [word for word in names if isinstance(word, Given)]
+    said = storages_said(word for word in names if isinstance(word, str))
+    unknown = [word for word, storage in said.items() if not (storage or word == "all" or spelled(what, word, known))]
     if unknown:
         raise unknown_name(what, unknown, known, f"all, {', '.join(known)}; or bits, such as unorm:9:7")
-    chosen = choose(what, ",".join(said), {**known, **{word: one for word, one in said.items() if one}, **own})
+    chosen = choose(what, [*said, *own], {**known, **{word: storage for word, storage in said.items() if storage}})
     return list(dict.fromkeys(chosen))
 
 
-def roundings_named(names: str, known: Collection[str] = ROUNDINGS) -> list[str]:
-    """Ways to round by their comma-separated names. Raises UsageError for one that is not among the known."""
-    if DITHERED not in known and DITHERED in map(str.strip, names.split(",")):
-        raise UsageError(f"--rounding {DITHERED} is for {', '.join(WITH_NOISE)}; roughness has --dither")
+def roundings_named(names: Names, known: Collection[str] = ROUNDINGS) -> list[str]:
+    """Return ways to round by their names. Raises UsageError for one that is not among the known."""
+    if DITHERED not in known and DITHERED in names:
+        raise UsageError(f"--rounding {DITHERED}: no noise is added here; quality and render add it")
     return choose("rounding", names, {name: name for name in known})
 
 
-def storages_said(names: str, own: Collection[str] = ()) -> dict[str, Storage | None]:
-    """Comma-separated names, each of a range by itself, and the storage that each says; None where it says none.
+def storages_said(names: Iterable[str], others: Collection[str] = ()) -> dict[str, Storage | None]:
+    """Return names, each of a range by itself, and the storage that each says; None where it says none.
 
     Args:
-        own: names that stand for something else.
+        others: names that stand for something else.
 
     Raises:
         UsageError: bits that cannot be; one line.
     """
-    words = [one for word in map(str.strip, names.split(",")) for one in _in_range(word)]
-    return {word: None if word in own else _storage_of(word) for word in words}
+    words = [word for name in names for word in _in_range(name)]
+    return {word: None if word in others else _storage_of(word) for word in words}
 
 
 def _storage_of(word: str) -> Storage | None:

@@ -9,8 +9,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
-from ...ground.options.option import Sources
-from ...ground.output.errors import UsageError
+from ..output.errors import UsageError
+from ..user_files import is_a_users_file, with_settings
+from .option import Sources
 
 # The options whose names may be users' files.
 NAMED = ("encoding", "against", "codec", "depth", "light_buffer")
@@ -24,11 +25,12 @@ def in_names(values: Mapping[str, Any]) -> dict[str, Any]:
         UsageError: there is no such file, or a value cannot be.
     """
     given = {field.name: value for field in fields(Sources) if (value := values.get(field.name))}
-    said = {name: "yes" if value is True else value for name, value in given.items()}
+    said = {
+        name: value if isinstance(value, tuple) else ("yes" if value is True else value,)
+        for name, value in given.items()
+    }
     if not said:
         return dict(values)
-    from .words import with_settings
-
     if not names_files(values):
         option = next(iter(said))
         raise UsageError(NO_FILE.format(option.replace("_", "-"), option))
@@ -38,9 +40,7 @@ def in_names(values: Mapping[str, Any]) -> dict[str, Any]:
 
 def names_files(values: Mapping[str, Any]) -> bool:
     """Whether a value of an option names a user's file."""
-    from .words import names_a_users_file
-
-    return any(names_a_users_file(str(values.get(name) or "")) for name in NAMED)
+    return any(is_a_users_file(word) for name in NAMED for word in values.get(name) or ())
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,6 +48,7 @@ class SourceOptions(Sources):
     """Options of a table that measures users' files; the names have how they are read."""
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         values = {field.name: getattr(self, field.name) for field in fields(self)}
         for name, value in in_names(values).items():
             object.__setattr__(self, name, value)

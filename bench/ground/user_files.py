@@ -7,15 +7,17 @@ Imports nothing heavy: gates read these names before anything is measured.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple
 
-from ...ground.choose import PART, names_a_file, split, whole_file_of
-from ...ground.options.words import Words, given_in
-from ...ground.output.errors import UsageError
-from ...ground.spelling import spelled
+from .choose import PART, names_a_file, whole_file_of
+from .options.words import Names, Word, names
+from .output.errors import UsageError
+from .spelling import spelled
 
 GLSL = ".glsl"
 # The languages that are translated, by what their files end in; empty where the text has to say. A new one is a line
@@ -64,8 +66,8 @@ _TWO = re.compile(
 )
 
 
-def _match(word: str | Path) -> re.Match[str] | None:
-    return _TWO.fullmatch(str(word)) or _WORD.fullmatch(str(word))
+def _match(word: str) -> re.Match[str] | None:
+    return _TWO.fullmatch(word) or _WORD.fullmatch(word)
 
 
 class Settings(NamedTuple):
@@ -92,49 +94,107 @@ LANGUAGES = tuple(dict.fromkeys(name for name in ("HLSL", *TRANSLATED.values()) 
 _MACRO = re.compile(r"[A-Za-z_]\w*(?:=.*)?")
 
 
-def settings_of(word: str | Path) -> Settings:
-    """How the file of a word is read. Raises UsageError for a macro or a language that cannot be."""
-    match = _match(word)
-    said = re.findall(_SETTING, match["settings"], re.I) if match else []
-    of = {kind: tuple(value for name, value in said if name.lower() == kind) for kind in SETTINGS}
-    if odd := [f"{kind}={value}" for kind, value in said if not (value and value.isprintable())]:
-        raise UsageError(f"{odd[0]!r}: nothing can be called so; leave it out")
-    if wrong := [one for one in of[DEFINE] if not _MACRO.fullmatch(one)]:
-        raise UsageError(
-            f"-D {wrong[0]!r}: it is NAME or NAME=VALUE; write a macro with a comma in a file for --prelude"
-        )
-    names = [one for name in of[LANGUAGE] for one in LANGUAGES if one.lower() == name.lower()]
-    if of[LANGUAGE] and not names:
-        raise UsageError(f"--language {of[LANGUAGE][0]}: it is one of {', '.join(LANGUAGES).lower()}")
-    roots = tuple(_root(one) for one in of[INCLUDE])
-    return Settings(
-        of[DEFINE], of[PRELUDE], roots, names[0] if names else "", bool(of[ALL_PAIRS]), "".join(of[FORMAT][:1])
-    )
-
-
 def _root(said: str) -> tuple[str, str]:
     """What names begin with, and the folder: of FOLDER, and of VIRTUAL=FOLDER."""
     virtual, mark, folder = said.partition("=")
     return (virtual.strip("/"), folder) if mark else ("", said)
 
 
-def with_settings(names: str, **settings: str | None) -> str:
-    """Names with settings behind each of those that are users' files.
+@dataclass(frozen=True)
+class UserFile:
+    """A user's file of shaders: which of its functions are meant, and how it is read.
+
+    Attributes:
+        word: as the user names it.
+    """
+
+    word: str
+
+    def __str__(self) -> str:
+        return self.word
+
+    @cached_property
+    def path(self) -> Path:
+        """The file; of two, the encoder's."""
+        return file_of(self.word)
+
+    @cached_property
+    def paths(self) -> list[Path]:
+        """The file; of one that names two, the encoder's and the decoder's."""
+        match = _match(self.word)
+        return [self.path, *([Path(match["other"])] if match and match.re is _TWO else [])]
+
+    @cached_property
+    def settings(self) -> Settings:
+        """How it is read. Raises UsageError for a macro or a language that cannot be."""
+        match = _match(self.word)
+        said = re.findall(_SETTING, match["settings"], re.I) if match else []
+        of = {kind: tuple(value for name, value in said if name.lower() == kind) for kind in SETTINGS}
+        if odd := [f"{kind}={value}" for kind, value in said if not (value and value.isprintable())]:
+            raise UsageError(f"{odd[0]!r}: nothing can be called so; leave it out")
+        if wrong := [one for one in of[DEFINE] if not _MACRO.fullmatch(one)]:
+            raise UsageError(
+                f"-D {wrong[0]!r}: it is NAME or NAME=VALUE; write a macro with a comma in a file for --prelude"
+            )
+        names = [one for name in of[LANGUAGE] for one in LANGUAGES if one.lower() == name.lower()]
+        if of[LANGUAGE] and not names:
+            raise UsageError(f"--language {of[LANGUAGE][0]}: it is one of {', '.join(LANGUAGES).lower()}")
+        roots = tuple(_root(one) for one in of[INCLUDE])
+        return Settings(
+            of[DEFINE], of[PRELUDE], roots, names[0] if names else "", bool(of[ALL_PAIRS]), "".join(of[FORMAT][:1])
+        )
+
+    @property
+    def functions(self) -> tuple[str, str] | None:
+        """The two functions that are meant; None where none is named."""
+        match = _match(self.word)
+        return (match["encode"], match["decode"]) if match and match["encode"] else None
+
+    @property
+    def plain(self) -> str:
+        """Its name without how it is read."""
+        match = _match(self.word)
+        return self.word[: match.start("settings")] if match else self.word
+
+    @property
+    def twin(self) -> Path:
+        """The Python file that may lie next to it."""
+        return self.path.with_suffix(".py")
+
+    @property
+    def is_translated(self) -> bool:
+        """Whether it is in another language than GLSL, or more is said of it than its name."""
+        match = _match(self.word)
+        return self.path.suffix.lower() in TRANSLATED or bool(match and (match["encode"] or match["settings"]))
+
+    def with_pair(self, pair: str) -> UserFile:
+        """Return it with two functions, ENCODE:DECODE, that it does not name."""
+        match = _match(self.word)
+        if not match:
+            return UserFile(f"{self.word}:{pair}")
+        settings = re.sub(rf":{ALL_PAIRS}=[^:,]*", "", match["settings"], flags=re.I)
+        return UserFile(f"{match['file']}:{pair}{settings}")
+
+    def with_language(self, language: str) -> UserFile:
+        """Return it with what it is written in."""
+        return UserFile(_with_settings(self.word, [f":{LANGUAGE}={language}"]))
+
+
+def with_settings(words: Iterable[Word], **settings: Iterable[Word]) -> Names:
+    """Return names with settings behind each of those that are users' files.
 
     Args:
-        settings: by one of SETTINGS, comma-separated.
+        settings: by one of SETTINGS.
 
     Raises:
         UsageError: a value that no word can have.
     """
-    said = [(kind, one.strip()) for kind, values in settings.items() for one in (values or "").split(",")]
-    more = [f":{kind}={one}" for kind, one in said if one]
+    more = [f":{kind}={value}" for kind, values in settings.items() for value in values]
     if wrong := next((one for one in more if ":" in one[1:]), ""):
         raise UsageError(
             f"--{wrong[1:].replace('=', ' ', 1)}: a colon ends a setting; write it in a file for --prelude"
         )
-    made = [_with_settings(word, more) for word in split_names(names)]
-    return Words(made, given_in(names)) if made != split_names(names) else names
+    return tuple(_with_settings(word, more) if isinstance(word, str) else word for word in words)
 
 
 def _with_settings(word: str, more: Sequence[str]) -> str:
@@ -148,28 +208,19 @@ def _with_settings(word: str, more: Sequence[str]) -> str:
     return f"{_with_settings(name, more)}/{storage}{CHAIN}{_with_settings(then, more)}"
 
 
-def with_pair(word: str | Path, pair: str) -> Path:
-    """A word of a file with two functions, ENCODE:DECODE, that it does not name."""
-    match = _match(word)
-    if not match:
-        return Path(f"{word}:{pair}")
-    settings = re.sub(rf":{ALL_PAIRS}=[^:,]*", "", match["settings"], flags=re.I)
-    return Path(f"{match['file']}:{pair}{settings}")
+def is_a_users_file(word: Word) -> bool:
+    """Tell whether a word is a user's file of an encoder, by itself or in a chain."""
+    return isinstance(word, str) and _with_settings(word, [":"]) != word
 
 
-def names_a_users_file(names: str) -> bool:
-    """Whether one of comma-separated names is a user's file, by itself or in a chain."""
-    return any(_with_settings(word, [":"]) != word for word in split_names(names))
-
-
-def split_names(names: str, folder: Path = Path()) -> list[str]:
-    """Comma-separated names, each once; a comma in a user's file is a part of its name, and one between an encoder and
+def file_names(text: str, folder: Path = Path()) -> tuple[str, ...]:
+    """Split comma-separated names, each once; a comma in a file's name is a part of it, and one between an encoder and
     its decoder in two files joins them.
 
     Args:
         folder: where files are looked for.
     """
-    return split(names, lambda word: bool(_TWO.fullmatch(word)) or is_file(folder, str(file_of(word))))
+    return names(text, lambda word: bool(_TWO.fullmatch(word)) or is_file(folder, str(file_of(word))))
 
 
 def parts_of(word: str) -> list[str]:
@@ -190,22 +241,10 @@ def _is_only_an_ending(word: str) -> bool:
     return Path(word).name.lower() in ENDINGS
 
 
-def file_of(word: str | Path) -> Path:
+def file_of(word: str) -> Path:
     """The file of a word: mine.hlsl of mine.hlsl:EncodeNormal:DecodeNormal, mesh.glb of mesh.glb#vertices."""
     match = _match(word)
-    return Path(match["file"] if match else whole_file_of(str(word)))
-
-
-def files_of(word: str | Path) -> list[Path]:
-    """The file of a word; of one that names two, the encoder's and the decoder's."""
-    match = _match(word)
-    return [file_of(word), *([Path(match["other"])] if match and match.re is _TWO else [])]
-
-
-def without_settings(word: str | Path) -> str:
-    """A word without how its file is read."""
-    match = _match(word)
-    return str(word)[: match.start("settings")] if match else str(word)
+    return Path(match["file"] if match else whole_file_of(word))
 
 
 def files_in(word: str, folder: Path = Path()) -> list[str]:
@@ -218,8 +257,8 @@ def files_in(word: str, folder: Path = Path()) -> list[str]:
     match = _match(word)
     whole = match["file"] if match else whole_file_of(word)
     if is_file(folder, whole):
-        settings = settings_of(word)
-        others = [one for one in (*map(str, files_of(word)[1:]), *settings.preludes) if is_file(folder, one)]
+        settings = UserFile(word).settings
+        others = [one for one in (*map(str, UserFile(word).paths[1:]), *settings.preludes) if is_file(folder, one)]
         folders = [root for _, root in settings.roots if (folder / root).is_dir()]
         return list(dict.fromkeys([whole, *others, *folders]))
     found = [value for setting in re.split(r":(?![\\/])", word) if is_file(folder, value := setting.partition("=")[2])]
@@ -261,7 +300,7 @@ def check_word(word: str, known: Collection[str], has_format: bool = False) -> N
     file = next((word + ending for ending in ENDINGS if names_a_file(word + ending)), None)
     if file and spelled("encoding", word, known) is None:
         raise UsageError(f"unknown encoding {word!r}; did you mean the file {file}?")
-    if settings_of(word).format and not has_format:
+    if UserFile(word).settings.format and not has_format:
         raise UsageError(f"{word}: {FORMAT} is of light buffers; --storage names what others lie in")
     if lacks_a_function(word):
         raise UsageError(
@@ -271,20 +310,3 @@ def check_word(word: str, known: Collection[str], has_format: bool = False) -> N
     if (ending := Path(word).suffix.lower()) in OTHER_LANGUAGES:
         language, how = OTHER_LANGUAGES[ending]
         raise UsageError(f"{word}: {language} is not read; {how}. docs/bring-your-own.md shows how two functions look")
-
-
-def functions_of(word: str | Path) -> tuple[str, str] | None:
-    """The two functions that a word names; None where it names none."""
-    match = _match(word)
-    return (match["encode"], match["decode"]) if match and match["encode"] else None
-
-
-def twin_of(word: str | Path) -> Path:
-    """The Python file that may lie next to an encoder."""
-    return file_of(word).with_suffix(".py")
-
-
-def is_translated(word: str | Path) -> bool:
-    """Whether a word's file is translated: it is in another language than GLSL, or more is said of it than its name."""
-    match = _match(word)
-    return file_of(word).suffix.lower() in TRANSLATED or bool(match and (match["encode"] or match["settings"]))

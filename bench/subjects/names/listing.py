@@ -22,7 +22,8 @@ from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.pipelines import PIPELINES
 from ....gbuffer.scenes.catalogue import SCENES
 from ....reports.sheets import Row
-from ..choose import choose
+from ...ground.choose import choose
+from ...ground.options.words import Names
 
 # Said here and not asked of normal_sets.py, which imports JAX; a test compares the two.
 NORMAL_SETS = {
@@ -207,6 +208,6 @@ KINDS = {
 }
 
 
-def listing(what: str) -> list[Row]:
-    """Rows for some of KINDS (comma-separated) or "all". Raises UsageError."""
+def listing(what: Names) -> list[Row]:
+    """Return rows for some of KINDS or "all". Raises UsageError."""
     return [row for rows in choose("list", what, KINDS) for row in rows()]

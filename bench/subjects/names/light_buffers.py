@@ -3,30 +3,32 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import replace
 
 from ....encodings.catalogue import LIGHT_BUFFERS, LIGHT_ENCODINGS
 from ....encodings.codecs.light_codec import LightCodec
 from ....encodings.storages.storage import FORMATS
-from ..choose import choose
-from ..output.errors import UsageError
-from .storage_names import RULE, storages_named
+from ...ground.choose import choose
+from ...ground.options.words import Word
+from ...ground.output.errors import UsageError
+from .storages import RULE, storages_named
 
 LEAST_RANGE, MOST_LIGHT = 1e-3, 1e4
 PLAIN = "plain"
 
 
-def light_buffers_named(names: str) -> list[LightCodec]:
-    """The light codecs that comma-separated names stand for; `linear:1` and `linear:range=1` are over [0, 1], and
+def light_buffers_named(names: Iterable[Word]) -> list[LightCodec]:
+    """Return the light codecs that names stand for; `linear:1` and `linear:range=1` are over [0, 1], and
     `linear/unorm:10:10:10` is in other bits. Bits alone, as in `ufloat:6:9`, are those of light as it is.
 
     Raises:
         UsageError: an unknown name, a range that is none or that the encoding does not have, or a storage that does not
             hold the code.
     """
-    words = dict.fromkeys(name.strip() for name in names.split(","))
-    said = {word: _said_codec(word) for word in words if ":" in word or "/" in word}
-    chosen = choose("light buffer", names, {**LIGHT_BUFFERS, **said})
+    words = list(names)
+    said = {word: _said_codec(word) for word in words if isinstance(word, str) and (":" in word or "/" in word)}
+    chosen = choose("light buffer", words, {**LIGHT_BUFFERS, **said})
     return list({codec.name: codec for codec in chosen}.values())
 
 
@@ -36,7 +38,7 @@ def _said_codec(word: str) -> LightCodec:
     codec = ranged_light_buffer(name) if ":" in name else LIGHT_BUFFERS.get(name) or _plain_codec(name, word)
     if not is_in:
         return codec
-    chosen = storages_named(storage, FORMATS, "light storage")
+    chosen = storages_named((storage,), FORMATS, "light storage")
     if len(chosen) > 1:
         raise UsageError(f"light buffer {word}: one storage, not {len(chosen)}")
     made = replace(codec, storage=chosen[0])

@@ -1,0 +1,46 @@
+"""Back ends as they are named: those that a table has, of all that there are."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from ...ground.choose import choose
+from ...ground.options.words import Names
+from ...ground.output.errors import UsageError, leave_out
+
+BACKENDS = ("jax", "glsl", "wgsl")
+
+
+def backends_named(names: Names, has: Collection[str]) -> list[str]:
+    """Return the back ends of some names that a table has; the others are named on standard error.
+
+    Raises:
+        UsageError: an unknown name, or none that the table has.
+    """
+    if "all" in names:
+        return list(has)
+    picked = choose("back end", names, dict(zip(BACKENDS, BACKENDS, strict=True)))
+    found, lacking = [name for name in picked if name in has], [name for name in picked if name not in has]
+    said = f"{', '.join(lacking)}: this table measures by {' and '.join(has)}"
+    if not found:
+        raise UsageError(said)
+    if lacking:
+        leave_out(said)
+    return found
+
+
+def backends_here(names: Names, has: Collection[str]) -> list[str]:
+    """Return the back ends of some names that a table has and this machine runs.
+
+    Raises:
+        UsageError: as `backends_named`.
+        MissingError: JAX is broken, or only GLSL is asked for and there is no GL device.
+    """
+    # It imports JAX, which charts that name back ends do not need.
+    from ...ground.machine.devices import require_device, require_jax
+
+    backends = backends_named(names, has)
+    require_jax()
+    if backends == ["glsl"]:
+        require_device()
+    return backends

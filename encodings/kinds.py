@@ -1,0 +1,121 @@
+"""The kinds of encodings: of normals, depth, tangent frames, light and motion, and curves of what materials are.
+
+Pure data: readers of users' files ask for it, and import no JAX for it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING, ClassVar, Protocol
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+# A word of a name.
+WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z0-9]+")
+
+
+def words_in(name: str) -> set[str]:
+    """Return the words of a name, in lower case."""
+    return {word.lower() for word in WORD.findall(name)}
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What encodings are of.
+
+    Attributes:
+        name: what a reader calls what is encoded.
+        folder: where the pairs of files lie.
+        plural: what is encoded, of several.
+        command: what measures a user's file of it, with {} for the file.
+        spoken: what names of functions that are of it have in them, in lower case.
+        begins: what a word of such a name begins with, which others may have in them: Through has rough.
+    """
+
+    name: str
+    folder: str
+    plural: str
+    command: str
+    spoken: tuple[str, ...] = ()
+    begins: tuple[str, ...] = ()
+
+    @property
+    def word(self) -> str:
+        """Its name as one word: frame of tangent frames."""
+        return self.name.rpartition(" ")[2]
+
+    def is_in(self, name: str) -> bool:
+        """Tell whether a function's name says that it is of this."""
+        lower = name.lower()
+        return any(part in lower for part in self.spoken) or any(
+            word.startswith(self.begins) for word in words_in(name)
+        )
+
+
+NORMAL = Kind("normal", "normals", "normals", "normalbench quality --encoding {}")
+FRAME = Kind(
+    "tangent frame",
+    "frame",
+    "tangent frames",
+    "normalbench frames --encoding {}",
+    ("frame", "tangent", "tbn", "quaternion"),
+    ("quat",),
+)
+MOTION = Kind("motion", "motion", "motion vectors", "normalbench vectors --encoding {}", ("motion", "velocity"))
+DEPTH = Kind("depth", "depth", "depth", "normalbench depth --depth {}", ("depth",))
+CURVE = Kind(
+    "curve",
+    "curve",
+    "roughness and the like",
+    "normalbench curves --encoding {}",
+    ("roughness", "metalness", "metallic", "smoothness"),
+    ("rough", "metal", "gloss"),
+)
+LIGHT = Kind(
+    "light",
+    "light",
+    "light",
+    "normalbench lights --light-buffer {}",
+    ("radiance", "luminance", "rgbm", "rgbe"),
+    ("light", "hdr"),
+)
+# Light and curves have words that others' names have too: they come last.
+KINDS = (
+    NORMAL,
+    FRAME,
+    MOTION,
+    DEPTH,
+    CURVE,
+    LIGHT,
+)
+BY_NAME: Mapping[str, Kind] = MappingProxyType({kind.name: kind for kind in KINDS})
+
+
+def kind_spoken_of(name: str) -> Kind | None:
+    """Return the kind that a function's name is of, other than normals; None where it names none of these."""
+    return next((kind for kind in KINDS if kind.is_in(name)), None)
+
+
+class AnyEncoding(Protocol):
+    """What encodings of every kind say of themselves; see each kind for what they mean there."""
+
+    kind: ClassVar[Kind]
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def title(self) -> str: ...
+    @property
+    def citation(self) -> str: ...
+    @property
+    def glsl(self) -> Path: ...
+    @property
+    def ulps(self) -> tuple[int, int]: ...
+    @property
+    def ulps_reason(self) -> str: ...
+    @property
+    def signatures(self) -> tuple[str, ...]: ...
