@@ -291,12 +291,8 @@ def lacks_a_function(word: str) -> bool:
 
 
 def check_word(word: str, known: Collection[str], has_format: bool = False) -> None:
-    """Raises UsageError for a shader of another language, for one without its ending, and for one of two functions.
-
-    Args:
-        known: names of the catalogue.
-        has_format: whether what it names may lie in a format that the word says.
-    """
+    """Raise UsageError where a word names a shader of another language, lacks its ending, names only one of its two
+    functions, or has a format where none may be."""
     file = next((word + ending for ending in ENDINGS if names_a_file(word + ending)), None)
     if file and spelled("encoding", word, known) is None:
         raise UsageError(f"unknown encoding {word!r}; did you mean the file {file}?")

@@ -90,7 +90,8 @@ def _past(folder: Path, done: Done) -> Past:
 
 
 def _number(value: object, usual: float) -> float:
-    """A number of a file that people may have edited, within the years that dates have."""
+    """Return a value as a float where it is a number of seconds before the year 3000, else `usual`: people may have
+    edited the file."""
     return float(value) if isinstance(value, int | float) and 0 <= value < LATEST else usual
 
 

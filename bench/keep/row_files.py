@@ -57,7 +57,8 @@ def _columns_of(data: bytes) -> list[str]:
 
 
 def _lines_of(data: bytes) -> list[list[str]]:
-    """The cells of each line of a text for people, which has no headings; their notes have some."""
+    """Split each line of a plain-text table into cells; return [] where a line starts with "#", as notes in Markdown
+    do."""
     lines = [] if re.search(rb"^#", data, re.M) else data[:MOST].decode(errors="replace").splitlines()
     return [[cell.replace(" ", "_") for cell in BETWEEN.split(line.strip()) if cell] for line in lines]
 

@@ -100,7 +100,7 @@ def _first_sentence(documented: Any) -> str:
 
 
 def _formula(encoding: Encoding, what: str) -> list[str]:
-    """What a function does: in words, and the formulas that stand above its lines."""
+    """Return the lines of a function's formula: the first sentence of its docstring, then the comments of its GLSL."""
     source = encoding.glsl.read_text(encoding="utf-8")
     found = re.search(BODY.format(name=f"{encoding.prefix}_{what}"), source, re.MULTILINE | re.DOTALL)
     comments = (COMMENT.fullmatch(line) for line in (found[1] if found else "").splitlines())

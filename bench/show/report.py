@@ -243,7 +243,7 @@ def _section(folder: Path, found: Found, done: Done, table: Table, remarks: list
 
 
 def _summary(done: Done, table: Table, remarks: list[str]) -> list[Sheet]:
-    """A table in short; nothing where its rows are not what this version writes."""
+    """Return the sheets that sum up a table; none, and a remark is added, where its rows are of another version."""
     try:
         return [sheet for sheet in table.work.summary(done.finished_rows(table.name)) if sheet.rows]
     except UNEXPECTED:

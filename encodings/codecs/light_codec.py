@@ -113,7 +113,7 @@ class LightCodec:
         return light if self.storage.channels == 4 else Vec4(light.x, light.y, light.z, light.x * 0.0)
 
     def stored(self, light: Vec4) -> Vec4:
-        """The texel of light as it comes back from the storage."""
+        """Encode light, and return the texel as the format gives it back, not decoded yet."""
         return self.store(self.encode(light))
 
     def round_trip(self, light: Vec4) -> Vec4:

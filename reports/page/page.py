@@ -377,7 +377,8 @@ def sources_of(scripts: Sequence[str], is_beside: bool = False) -> str:
 
 
 def part_of(found: Found, section: TableSection, specs: Mapping[str, Spec], most_cells: float) -> PageSection:
-    """A section as the template shows it, with those of its charts that are there."""
+    """Return the PageSection of a table: its charts, and its tables, as blocks of data once they have more than
+    `most_cells` cells."""
     encodings = found.encodings
     sheets = list(section.sheets)
     shown = [sheet_table(sheet, section.column, encodings) for sheet in sheets]

@@ -208,7 +208,8 @@ def facing(found, option, mask, width, fov, turn):
 
 
 def space_of(found, option, mask, width, fov, matrices):
-    """What a description says of the space of normals: the first that nearly as many face the camera in as in any."""
+    """Return {"space": ..., "view_matrix": ...} of the first space in which about as many normals face the camera as in
+    the best one; without a matrix where none is known."""
     same, into = [[1, 0, 0], [0, 1, 0], [0, 0, 1]], [[1, 0, 0], [0, 1, 0], [0, 0, -1]]
     known = [({"space": "view"}, same), ({"space": "view-left-handed"}, into)]
     for name in views(matrices)[:1]:

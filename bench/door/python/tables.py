@@ -97,7 +97,8 @@ def _framed(table: Table, done: Measured) -> Rows:
 
 
 def _typed(key: str, value: Any) -> Any:
-    """Return an argument as an option has it: several are names, values of the caller's own among them."""
+    """Return an argument as its option has it: a list, a mapping, an encoding or a storage as a tuple of names and
+    Given values, a pair for `size` as "WxH", and others as they are."""
     if isinstance(value, Mapping):
         return tuple(Given(name, _value(key, name, array)) for name, array in value.items())
     several = value if isinstance(value, list | tuple) else [value]

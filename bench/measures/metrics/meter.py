@@ -67,7 +67,8 @@ def errors(n: Vec3, decoded: Vec3, covered):
 
 
 def _packed(squared, article, angle, invalid):
-    """The same in three: 2^INVALID_BIT is added to the article's where the decode is not a number; int32."""
+    """Return (squared, article, angle) as `errors` does, with the invalid flag as the bit INVALID_BIT of the article's
+    error, int32."""
     return squared, jnp.asarray(article, jnp.int32) + (jnp.asarray(invalid, jnp.int32) << INVALID_BIT), angle
 
 

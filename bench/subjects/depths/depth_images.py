@@ -88,7 +88,7 @@ class DepthImage:
 
 
 def read_depths(path: Path, channel: str | None) -> Pixels:
-    """The channel of depths of an image. Raises UsageError."""
+    """Read the depth channel of an image as Pixels of one plane, (1, height, width). Raises UsageError."""
     if path.suffix.lower() not in READERS:
         raise UsageError(f"{path}: not an image of depths; {', '.join(READERS)} are read")
     return read_plane(path, lambda names: [_channel(path, names, channel)])

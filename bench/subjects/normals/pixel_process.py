@@ -101,7 +101,7 @@ def read_pixels(kind: str, path: str, wanted: list[str]) -> np.ndarray:
 
 
 def answer(mode: str, kind: str, path: str, out: Path, names: list[str]) -> None:
-    """Write what is asked for. Raises whatever the library makes of a damaged file."""
+    """Write to `out` the parts of a file as JSON, for the mode "header", or else the named channels as NPY."""
     if mode == "header":
         parts = parts_of(opened(kind, path))
         found = [part | {"names": full} for part, full in zip(parts, full_names(parts), strict=True)]

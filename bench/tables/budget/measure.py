@@ -290,7 +290,8 @@ class Judged:
         }
 
     def row_of(self, kind: str, layout: Layout) -> Row:
-        """What the scenes show of a layout."""
+        """Return the row of a layout: targets, bytes, traffic, and its PSNR and worst class in the scenes; `skipped`
+        says why it cannot be drawn."""
         row = self._empty(kind, layout.name) | {
             "targets": "; ".join(f"{target.format}: {target.holds}" for target in layout.targets),
             "bytes_per_pixel": layout.bytes_per_pixel,

@@ -247,7 +247,7 @@ class _Program:
         self.row(sizes, 0, READ_BYTES * len(read))
 
     def _pair(self) -> None:
-        """w = 1 where both codes of a pair are taken, and 0 where one of them is not."""
+        """Constrain the variable of each pair of codes to 1 where both are taken, else to 0."""
         for at, pair in enumerate(self.pairs):
             taken = [{i: 1.0 for i, (code, *_) in enumerate(self.choices) if code.key == key} for key in sorted(pair)]
             self.row({**taken[0], **taken[1], self.both(at): -1.0}, -np.inf, 1)

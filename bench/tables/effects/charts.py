@@ -11,7 +11,7 @@ from ..table import Row
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """What an effect makes of an error in the normals: a colour for each effect, a shape for each codec."""
+    """Yield the chart of each effect's PSNR over the mean angle of its normals; nothing without rows."""
     usable = having([row for row in rows if not row["depth"]], "effect_psnr_db", "normal_mean_deg")
     points = [
         {

@@ -15,7 +15,7 @@ RANDOM = "coloured lights with falloff, worst pixel and order"
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """What is lost over the number of lights, of the experiments equal and random."""
+    """Yield the chart of the error in light over the number of lights; nothing without rows."""
     equal = [r for r in having(rows, "sum", "lights", "error", "bound") if r.get("experiment") == "equal"]
     random = [r for r in having(rows, "lights", "model_max", "bound") if r.get("experiment") == "random"]
     points = [*_equal_rows(equal), *_random_rows(random)]

@@ -69,7 +69,8 @@ def _blocks(names: Names) -> list[BlockFormat]:
 
 
 def _is_possible(encoding: Encoding, complaints: list[str]) -> bool:
-    """Whether the numbers of a code can be compressed: two or three that may be a little off."""
+    """Tell whether a code survives compression: it has two numbers or more, no sign bit, and none that must be exact.
+    Where it does not, the reason is added to `complaints`."""
     check_twin(encoding)
     why = ""
     if encoding.sign_bits:

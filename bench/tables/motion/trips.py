@@ -48,7 +48,8 @@ def backend_of(codec: Codec) -> str:
 
 @cache
 def _program(encoding: Encoding, like: Storage, rounding: str) -> Callable[..., Any]:
-    """Codes and decodes. Fixed-point formats share it and give it their scales: it is compiled once for all."""
+    """Return a compiled function (n, view, *scales) -> (stored code, decoded normal), which fixed-point formats
+    share."""
 
     def through(n: Vec3, view: Vec3, *scales: Scale) -> tuple[Any, Vec3]:
         codec = Codec(encoding, fixed(like, scales), rounding)

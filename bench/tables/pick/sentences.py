@@ -110,7 +110,8 @@ def not_held(best: Row) -> Iterator[str]:
 
 
 def _much_better(group: Sequence[Row], best: Row) -> list[Row]:
-    """The code of another storage of the same bytes that is worth a word."""
+    """Return the rows of other storages that are worth a sentence: those in the place ELSEWHERE, else at most one that
+    is much more exact."""
     others = [row for row in group if ELSEWHERE in places_of(row)]
     rungs = [row for row in group if {MORE_EXACT, MOST_EXACT} & {*places_of(row)} and row["storage"] != best["storage"]]
     return others or sorted((row for row in rungs if is_much_better(row, best)), key=order)[:1]

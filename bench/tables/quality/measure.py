@@ -393,7 +393,8 @@ class RoundTrip:
 
 
 def planes_of(normals: NormalSet) -> tuple[Vec3, Vec3, np.ndarray]:
-    """Normals, view positions and coverage of a set that is an image, pixel by pixel."""
+    """Join the chunks of a set that is an image: normals and view positions as Vec3 of (count,), coverage (count,),
+    pixel by pixel."""
     assert normals.shape
     count, chunks = math.prod(normals.shape), [load() for load in normals.loads()]
     return jax.tree.map(lambda *parts: np.concatenate(parts)[:count], *chunks)

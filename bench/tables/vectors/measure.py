@@ -116,7 +116,8 @@ def measure(case: MotionVectorCase) -> list[Row]:
 
 
 def _noisy_trip(stack: ExitStack, case: MotionVectorCase) -> Trip:
-    """The trip with noise of its own for each frame, whose points lie below those of the frame before."""
+    """Return a round trip of motions that adds noise of its own to each frame; the noise of all frames lies one below
+    the other."""
     noise = np.concatenate([case.codec.dither(frame).added[: POINTS // WIDTH] for frame in range(FRAMES)])
     return stack.enter_context(BACKENDS[case.backend](case.codec, case.largest, noise))[0]
 

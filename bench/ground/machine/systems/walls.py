@@ -63,7 +63,8 @@ def of_program(path: Path | str) -> Wall:
 
 
 def of_tool(path: Path | str) -> Wall:
-    """For a program that comes with files: its own folder, and libraries next to that, as in a wheel."""
+    """Return the Wall of a program: the files that `of_program` leaves it, its own folder, and lib and lib64 next to
+    that."""
     folder = Path(path).resolve().parent
     own = (folder, *(folder.parent / name for name in ("lib", "lib64")))
     return of_program(path) | Wall(_spared(own) if folder.parent != Path("/usr") else ())

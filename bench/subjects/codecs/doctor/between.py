@@ -101,7 +101,8 @@ def _order_text(order: Sequence[int], signs: Sequence[int]) -> str:
 
 @cache
 def steps(size: int) -> tuple[Step, ...]:
-    """What is tried of codes of so many numbers, the plainest first, nothing left out."""
+    """Return every Step to try between an encoder and a decoder whose code has `size` numbers, the plainest first, but
+    the one that changes nothing."""
     kinds = (RANGES, _orders(size), TURNS, FOLDS) if size == 2 else (RANGES, _orders(size))
     made = [_one_after_another(parts) for parts in itertools.product(*kinds)]
     return tuple(sorted(made, key=lambda step: (step.said.count(THEN), len(step.said))))[1:]

@@ -112,7 +112,7 @@ UNCHANGED = Start()
 
 
 def start(trip: Trip, probe: Probe) -> Start:
-    """The scale of codes at which most comes back best, of a few, about 0 and about the middle of [0, 1]."""
+    """Return the Start whose median angle is the least, of a few scales about 0 and about 0.5."""
     scales = np.geomspace(1 / FARTHEST, FARTHEST, SCALES)
     tried = [Start(float(scale), about) for about in (0.0, 0.5) for scale in scales]
     few = trip.of(np.arange(max(len(trip.n) - FEW, 0), len(trip.n)))

@@ -135,7 +135,7 @@ def of_range(count: int) -> np.ndarray:
 
 
 def numbers(given: np.ndarray, _: np.ndarray) -> str:
-    """What an adapter is given, in words: all of it."""
+    """Return the numbers of a value as text, four digits each: (0.1, 0.25)."""
     return f"({', '.join(f'{value:.4g}' for value in given)})"
 
 
