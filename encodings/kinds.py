@@ -83,7 +83,7 @@ LIGHT = Kind(
     ("radiance", "luminance", "rgbm", "rgbe"),
     ("light", "hdr"),
 )
-# Light and curves have words that others' names have too: they come last.
+# Names are looked through in this order: light and curves have words that others' names have too.
 KINDS = (
     NORMAL,
     FRAME,

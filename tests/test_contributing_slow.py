@@ -52,6 +52,14 @@ def test_a_kind_is_a_class_a_pair_a_module_and_six_lines(copy):
     (row,) = json.loads(normalbench_in(copy, "code", "metres", "--check", "--to", "glsl", "--format", "json").stdout)
     assert (row["encoding"], row["storage"], row["differing"]) == ("metres", "r16", 0), row
     assert "float height_encode(float x)" in normalbench_in(copy, "code", "metres", "--to", "glsl").stdout
+    (copy / "mine.glsl").write_text(
+        "float EncodeHeightmap(float x) { return x; }\nfloat DecodeHeightmap(float e) { return e; }\n"
+    )
+    done = normalbench_in(copy, "code", "mine.glsl", "--of", "height")
+    assert (done.returncode, done.stdout) == (
+        2,
+        "",
+    ) and "mine.glsl: codes of heights are the catalogue's alone" in done.stderr
 
 
 @pytest.mark.usefixtures("gl")

@@ -53,6 +53,8 @@ def own_codes_named(kind: Kind, names: Names, catalogue: Mapping[str, T], what: 
     for word in names:
         if isinstance(word, str):
             check_word(word, catalogue, has_format=kind is LIGHT)
+            if kind not in OWN and names_an_encoder(word):
+                raise UsageError(f"{word}: codes of {kind.plural} are the catalogue's alone")
     return choose_or_look(what or f"{kind.name} encoding", names, catalogue, partial(_looked_at, kind))
 
 
