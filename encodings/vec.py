@@ -180,7 +180,7 @@ def select(condition, a: S, b: S) -> S:
     return cast("S", chosen)
 
 
-def dot(a: V, b: V):
+def dot(a: V, b: V) -> Any:
     """The sum of the products of components: one array."""
     products = a * b
     return sum(products[1:], start=products[0])

@@ -195,12 +195,18 @@ def test_a_folder_of_the_renderer_is_read_at_a_glance():
         assert len(things) <= 13, f"{folder.relative_to(ROOT)} holds {len(things)}: {', '.join(sorted(things))}"
 
 
-def test_encodings_import_nothing_but_jax_and_numpy_and_no_other_encoding():
+def test_encodings_import_nothing_but_jax_numpy_and_names_of_shapes_and_no_other_encoding():
     for path in (ROOT / "encodings").rglob("*.py"):
         tops = {m.split(".")[0] for m in imported(path)}
-        assert tops - sys.stdlib_module_names <= {"encodings", "jax", "numpy"}, path.name
+        assert tops - sys.stdlib_module_names <= {"encodings", "jax", "jaxtyping", "numpy"}, path.name
         others = [m for m in imported(path) if re.match(r"encodings\.(normals|light|depth|frame|motion)\.", m)]
         assert not others, f"{path.name} imports {others}"
+
+
+def test_names_of_shapes_are_imported_for_type_checkers_alone():
+    """By the one block of a file for them: what runs needs no jaxtyping."""
+    wrong = [path.name for path in SOURCES if re.search(r"^(?:import|from) jaxtyping", path.read_text(), re.M)]
+    assert not wrong, wrong
 
 
 def test_no_two_modules_of_tests_have_one_name():

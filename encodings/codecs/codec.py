@@ -7,6 +7,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import reduce
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,7 +16,10 @@ from ..storages.rounding import numbers_around, store_number
 from ..storages.rules import of_count
 from ..storages.storage import BITS_32, DITHERED, FORMS, Storage, of_unit, rounds_to
 from ..vec import Vec3, dot, jnp, select
-from .encoding import Encoding
+from .encoding import Code, Encoding
+
+if TYPE_CHECKING:
+    from jaxtyping import Array, Float
 
 # A number that is not one of few values is not laid into fewer bits, unless somebody said them.
 LEAST_BITS = 4
@@ -184,7 +188,7 @@ class Codec:
         is_fixed = all(map(self.encoding.levels_of, range(self.encoding.components)))
         return math.log2(self.codes) if is_fixed else None
 
-    def numbers(self, component: int) -> np.ndarray:
+    def numbers(self, component: int) -> Float[np.ndarray, " numbers"]:
         """Every number in [-1, 1] that a component comes back as from the storage, ascending; float64."""
         if component >= self.encoding.components:
             return np.array([-1.0, 1.0])
@@ -208,7 +212,7 @@ class Codec:
         )
         return type(code)(*stored)
 
-    def stored(self, n: Vec3, view: Vec3, noise: Sequence | None = None):
+    def stored(self, n: Vec3, view: Vec3, noise: Sequence[Float[Array | np.ndarray, "*shape"]] | None = None):
         """The code of unit normals as it comes back from the storage.
 
         Args:
@@ -235,7 +239,9 @@ class Codec:
         misses = [n - self.encoding.decode(candidate, view) for candidate in codes]
         return reduce(_nearer, zip((dot(miss, miss) for miss in misses), codes, strict=True))[1]
 
-    def round_trip(self, n: Vec3, view: Vec3, noise: Sequence | None = None) -> Vec3:
+    def round_trip(
+        self, n: Vec3, view: Vec3, noise: Sequence[Float[Array | np.ndarray, "*shape"]] | None = None
+    ) -> Vec3:
         """Unit normals (any shape, as `from_array` makes them) encoded, stored and decoded; not renormalised. See
         `stored`."""
         decoded = self.encoding.decode(self.stored(n, view, noise), view)
@@ -243,7 +249,9 @@ class Codec:
         return Vec3(*(jnp.broadcast_to(jnp.asarray(c, n.z.dtype), jnp.shape(n.z)) for c in decoded))
 
 
-def _nearer(a, b):
+def _nearer(
+    a: tuple[Float[Array, "*shape"], Code], b: tuple[Float[Array, "*shape"], Code]
+) -> tuple[Float[Array, "*shape"], Code]:
     """Of two codes with their distance the nearer one, and the first where they are as near."""
     is_nearer = b[0] < a[0]
     return select(is_nearer, b[0], a[0]), select(is_nearer, b[1], a[1])

@@ -6,13 +6,17 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from ..kinds import CURVE, Kind
 from ..storages.rounding import store_texel
 from ..storages.rules import of_count
 from ..storages.storage import DITHERED, Storage, rounds_to
 from .codec import rounding_misfit
+
+if TYPE_CHECKING:
+    import numpy as np
+    from jaxtyping import Array, ArrayLike, Float
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,7 +126,9 @@ class CurveCodec:
         count = self.storage.count(0)
         return count if self.storage.is_biased else count // 2 + 1
 
-    def stored(self, x: Any, noise: Any = 0.0) -> Any:
+    def stored(
+        self, x: Float[Array | np.ndarray, "*shape"], noise: Float[ArrayLike, "*shape"] = 0.0
+    ) -> Float[Array | np.ndarray, "*shape"]:
         """The number of a quantity (float32, any shape, not negative) as it comes back from the storage.
 
         Args:
@@ -130,6 +136,8 @@ class CurveCodec:
         """
         return store_texel(self.encoding.encode(x, self.range) + noise, self.storage, 0, rounds_to(self.rounding))
 
-    def round_trip(self, x: Any, noise: Any = 0.0) -> Any:
+    def round_trip(
+        self, x: Float[Array | np.ndarray, "*shape"], noise: Float[ArrayLike, "*shape"] = 0.0
+    ) -> Float[Array | np.ndarray, "*shape"]:
         """Quantities encoded, stored and decoded; see `stored`."""
         return self.encoding.decode(self.stored(x, noise), self.range)

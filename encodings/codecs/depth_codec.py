@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -25,6 +25,9 @@ from ..storages.dither import Dither
 from ..storages.storage import DITHERED, rounds_to
 from ..vec import Vec2, Vec3, depth_or_far, jnp, maximum, with_sign_of
 from .codec import codec_name, rounding_misfit
+
+if TYPE_CHECKING:
+    from jaxtyping import Array, ArrayLike, Float
 
 # A unit in the last place of 1 in float32.
 ULP = 2.0**-23
@@ -154,16 +157,22 @@ class DepthCodec:
         """Whether the number is what a depth buffer holds."""
         return self.encoding.projection is not None
 
-    def far(self, far):
+    def far(self, far: Float[ArrayLike, "*shape"]) -> Float[ArrayLike, "*shape"]:
         """The far plane as the encoding is given it: at 1 where the storage holds the depth in the scene's units."""
         return jnp.ones_like(far) if self.encoding.own_units and self.storage.is_open else far
 
-    def stored(self, depth, near, far, noise=None):
+    def stored(
+        self,
+        depth: Float[Array | np.ndarray, "*shape"],
+        near: Float[ArrayLike, "*#shape"],
+        far: Float[ArrayLike, "*#shape"],
+        noise: Float[Array | np.ndarray, "*shape"] | None = None,
+    ) -> Float[Array | np.ndarray, "*shape"]:
         """The numbers of depths (float32, any shape) as they come back from the storage.
 
         Args:
             depth: view depth, with the sign of the normal's z where the encoding keeps one.
-            near, far: the planes' distances, float32 scalars; 0 < near < far.
+            near, far: the planes' distances, float32, for all depths or for each; 0 < near < far.
             noise: what is added to the numbers before they are rounded, of the depths' shape; None for nothing. Their
                 sign stays.
         """
@@ -172,25 +181,37 @@ class DepthCodec:
             number = with_sign_of(maximum(abs(number) + noise, 0.0), number)
         return store_depth(number, self.storage, self.encoding.signed, rounds_to(self.rounding))
 
-    def depths(self, number, near, far):
+    def depths(
+        self,
+        number: Float[Array | np.ndarray, "*shape"],
+        near: Float[ArrayLike, "*#shape"],
+        far: Float[ArrayLike, "*#shape"],
+    ) -> Float[Array | np.ndarray, "*shape"]:
         """The depths of numbers, under the sign that was kept."""
         return self.encoding.decode(number, near, self.far(far))
 
-    def round_trip(self, depth, near, far):
+    def round_trip(
+        self,
+        depth: Float[Array | np.ndarray, "*shape"],
+        near: Float[ArrayLike, "*#shape"],
+        far: Float[ArrayLike, "*#shape"],
+    ) -> Float[Array | np.ndarray, "*shape"]:
         """Depths encoded, stored and decoded; see `stored`."""
         return self.depths(self.stored(depth, near, far), near, far)
 
-    def furthest(self, depth: np.ndarray, camera: Camera, with_arithmetic: bool = True) -> np.ndarray:
+    def furthest(
+        self, depth: Float[np.ndarray, "*shape"], camera: Camera, with_arithmetic: bool = True
+    ) -> Float[np.ndarray, "*shape"]:
         """How far each depth may move on its way through the storage, at worst.
 
         What rounding moves the number by, through the exact maps; and, if asked for, what float32 arithmetic adds to
         the number and to the depth, down to the position.
 
         Args:
-            depth: float64, positive, any shape.
+            depth: float64, positive.
 
         Returns:
-            float64 of the same shape; infinite where the storage may give anything.
+            float64; infinite where the storage may give anything.
         """
         import jax
 
@@ -209,7 +230,7 @@ class DepthCodec:
             errors = [jnp.where(d >= 0, abs(d - exact) + after * jnp.maximum(d, exact), jnp.inf) for d in moved]
             return np.asarray(jnp.maximum(*errors))
 
-    def _rounded_by(self, number: np.ndarray) -> np.ndarray:
+    def _rounded_by(self, number: Float[np.ndarray, "*shape"]) -> Float[np.ndarray, "*shape"]:
         """How far rounding moves numbers of float64 at most: half a step of the storage to the nearest, else a step."""
         share = 0.5 if self.rounding == "nearest" else 1.0
         if self.storage.format.kind != "float":
@@ -220,17 +241,21 @@ class DepthCodec:
             return np.where(finite, share * np.spacing(np.where(finite, rounded, 1)).astype(np.float64), np.inf)
 
 
-def by_inverse_projection(_: DepthCodec, number, place: Vec2, seen: CameraTerms) -> Vec3:
+def by_inverse_projection(
+    _: DepthCodec, number: Float[Array | np.ndarray, "*shape"], place: Vec2, seen: CameraTerms
+) -> Vec3:
     """Positions of stored numbers by the inverse projection; the encoding has a projection."""
     return position_from_window_depth(place, number, seen.clip, seen.clip_to_view)
 
 
-def by_projection_terms(_: DepthCodec, number, place: Vec2, seen: CameraTerms) -> Vec3:
+def by_projection_terms(
+    _: DepthCodec, number: Float[Array | np.ndarray, "*shape"], place: Vec2, seen: CameraTerms
+) -> Vec3:
     """Positions of stored numbers by the two terms of the projection; the encoding has a projection."""
     return position_from_projection_terms(place, number, seen.clip, seen.terms, seen.rays)
 
 
-def by_eye_ray(codec: DepthCodec, number, place: Vec2, seen: CameraTerms) -> Vec3:
+def by_eye_ray(codec: DepthCodec, number: Float[Array | np.ndarray, "*shape"], place: Vec2, seen: CameraTerms) -> Vec3:
     """Positions of stored numbers by the decoder and the eye's ray."""
     return position_from_linear_depth(place, abs(codec.depths(number, seen.near, seen.far)), seen.rays)
 

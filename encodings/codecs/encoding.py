@@ -7,11 +7,15 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from ..kinds import NORMAL, Kind
 from ..vec import Vec2, Vec3, jnp, unit
 from .fingerprint import fingerprint
+
+if TYPE_CHECKING:
+    import numpy as np
+    from jaxtyping import Array, Float
 
 Code = Vec2 | Vec3
 
@@ -248,7 +252,7 @@ class Encoding:
         named = {"name": f"{before.name}+{self.name}", "title": title, "functions": self.prefix, "domain": domain}
         return replace(self, encode=encode_again, before=before, **named)
 
-    def with_table(self, table: Any, said: str) -> Encoding:
+    def with_table(self, table: Float[Array | np.ndarray, "height width channels"], said: str) -> Encoding:
         """The encoding with another look-up table, float32 of the published one's shape, named after `said`."""
         assert self.look_up
         tables = {**self.tables(), self.look_up.sampler: table}

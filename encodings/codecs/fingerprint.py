@@ -6,11 +6,14 @@ import hashlib
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .files import MOST_TEXT, file_bytes
+
+if TYPE_CHECKING:
+    from jaxtyping import Shaped
 
 DIGITS = 16
 _INCLUDE = re.compile(rb'^\s*#include\s+"([^"]+)"', re.M)
@@ -42,7 +45,7 @@ def _texts(path: Path, seen: set[Path]) -> Iterator[bytes]:
             yield from _texts(target, seen)
 
 
-def _array_parts(name: str, array: np.ndarray) -> tuple[bytes, bytes]:
+def _array_parts(name: str, array: Shaped[np.ndarray, "*shape"]) -> tuple[bytes, bytes]:
     return f"{name} {array.dtype} {array.shape}".encode(), array.tobytes()
 
 

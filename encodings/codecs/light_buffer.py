@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from ..vec import Vec4, jnp, light_or_none
 from .light_codec import LightCodec
+
+if TYPE_CHECKING:
+    from jaxtyping import Array, ArrayLike, Float, Int
 
 
 @dataclass(frozen=True)
@@ -43,7 +47,7 @@ def blended(codec: LightCodec, texel: Vec4, light: Vec4, blending: Blending = ID
     return codec.store(texel * source, blending.rounding)
 
 
-def _shifted(a, b, scale: int):
+def _shifted(a: Float[Array, "*shape"], b: Float[Array, "*shape"], scale: int) -> Float[Array, "*shape"]:
     """The product of two codes of a fixed-point channel, rounded as shifts round it."""
     bits = (scale + 1).bit_length() - 1
     product = jnp.round(a * scale).astype(jnp.int32) * jnp.round(b * scale).astype(jnp.int32)
@@ -51,7 +55,7 @@ def _shifted(a, b, scale: int):
     return code.astype(jnp.float32) * jnp.float32(1.0 / scale)
 
 
-def accumulate(codec: LightCodec, lights: Vec4, count, blending: Blending = IDEAL) -> Vec4:
+def accumulate(codec: LightCodec, lights: Vec4, count: Int[ArrayLike, ""], blending: Blending = IDEAL) -> Vec4:
     """Texels after lights have been added one by one, in their order.
 
     Args:

@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from ..kinds import MOTION, Kind
 from ..storages.dither import Dither
@@ -16,6 +16,9 @@ from ..storages.rules import of_count
 from ..storages.storage import DITHERED, Storage, of_unit, rounds_to
 from ..vec import Vec2
 from .codec import codec_name, dither_of, numbers_misfit, rounding_misfit
+
+if TYPE_CHECKING:
+    from jaxtyping import ArrayLike, Float
 
 NUMBERS = 2
 
@@ -136,21 +139,21 @@ class MotionCodec:
         """Whether motions beyond the range come back as the range."""
         return self.storage.kind != "float"
 
-    def stored(self, motion: Vec2, largest, noise: Vec2 | None = None) -> Vec2:
+    def stored(self, motion: Vec2, largest: Float[ArrayLike, "*shape"], noise: Vec2 | None = None) -> Vec2:
         """The code of motions as it comes back from the storage.
 
         Args:
             motion: screens a frame, float32 of any shape.
-            largest: the range, float32 scalar; not used where `needs_range` is not.
+            largest: the range, float32, for all motions or for each; not used where `needs_range` is not.
             noise: what is added to the numbers before they are rounded, of the same shape; None for nothing.
         """
         code = self.encoding.encode(motion, self._range_or_one(largest))
         noisy, rounding = (code + noise if noise else code), rounds_to(self.rounding)
         return Vec2(*(store_number(c, self.storage, i, rounding) for i, c in enumerate(noisy)))
 
-    def round_trip(self, motion: Vec2, largest, noise: Vec2 | None = None) -> Vec2:
+    def round_trip(self, motion: Vec2, largest: Float[ArrayLike, "*shape"], noise: Vec2 | None = None) -> Vec2:
         """Motions encoded, stored and decoded; see `stored`."""
         return self.encoding.decode(self.stored(motion, largest, noise), self._range_or_one(largest))
 
-    def _range_or_one(self, largest):
+    def _range_or_one(self, largest: Float[ArrayLike, "*shape"]) -> Float[ArrayLike, "*shape"]:
         return largest if self.needs_range else 1.0

@@ -7,24 +7,27 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ..vec import Vec2, Vec3, jnp
 
+if TYPE_CHECKING:
+    from jaxtyping import Array, Float
+
 
 class CameraTerms(NamedTuple):
-    """What a shader knows of a camera and a projection, in float32: scalars, and `clip_to_view` of shape (4, 4).
+    """What a shader knows of a camera and a projection, in float32.
 
     `terms` are the two of the projection's row for z: clip-space z is terms.x z + terms.y.
     """
 
-    near: Any
-    far: Any
+    near: Float[Array, ""]
+    far: Float[Array, ""]
     rays: Vec2
     clip: Vec2
-    clip_to_view: Any
+    clip_to_view: Float[Array, "4 4"]
     terms: Vec2
 
 
@@ -63,8 +66,8 @@ class Camera:
         up = float(np.tan(np.radians(self.fov) / 2))
         return up * self.aspect, up
 
-    def clip_to_view(self, projection: Projection | None) -> np.ndarray:
-        """The inverse of a projection, float64 of shape (4, 4), for column vectors; of none the identity."""
+    def clip_to_view(self, projection: Projection | None) -> Float[np.ndarray, "4 4"]:
+        """The inverse of a projection, float64, for column vectors; of none the identity."""
         if projection is None:
             return np.eye(4)
         right, up = self.rays
@@ -85,13 +88,15 @@ class Camera:
         return CameraTerms(near, far, Vec2(*rays), clip, jnp.asarray(self.clip_to_view(projection), jnp.float32), terms)
 
 
-def position_from_window_depth(place: Vec2, depth, clip: Vec2, clip_to_view) -> Vec3:
+def position_from_window_depth(
+    place: Vec2, depth: Float[Array | np.ndarray, "*shape"], clip: Vec2, clip_to_view: Float[Array, "4 4"]
+) -> Vec3:
     """The position of a depth buffer's depth, from 0 to 1, by the inverse projection.
 
     Args:
         place: on the screen, arrays of one shape with `depth`.
         clip: how clip space counts depth, see `Projection`.
-        clip_to_view: float32 of shape (4, 4), the inverse projection.
+        clip_to_view: the inverse projection, float32.
     """
     # p = clip_to_view (place, clip.x depth + clip.y, 1), position = p.xyz / p.w
     m, z = clip_to_view, clip.x * depth + clip.y
@@ -99,7 +104,9 @@ def position_from_window_depth(place: Vec2, depth, clip: Vec2, clip_to_view) -> 
     return Vec3(*p[:3]) / p[3]
 
 
-def position_from_projection_terms(place: Vec2, depth, clip: Vec2, terms: Vec2, rays: Vec2) -> Vec3:
+def position_from_projection_terms(
+    place: Vec2, depth: Float[Array | np.ndarray, "*shape"], clip: Vec2, terms: Vec2, rays: Vec2
+) -> Vec3:
     """The position of a depth buffer's depth by the two terms of the projection, as many engines compute it.
 
     Args:
@@ -111,7 +118,7 @@ def position_from_projection_terms(place: Vec2, depth, clip: Vec2, terms: Vec2, 
     return position_from_linear_depth(place, terms.y / (clip.x * depth + clip.y + terms.x), rays)
 
 
-def position_from_linear_depth(place: Vec2, depth, rays: Vec2) -> Vec3:
+def position_from_linear_depth(place: Vec2, depth: Float[Array | np.ndarray, "*shape"], rays: Vec2) -> Vec3:
     """The position of a linear depth, which is planar (-z): the eye's ray times the depth."""
     # position = (place rays, -1) depth
     ray = place * rays

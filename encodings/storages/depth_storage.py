@@ -5,10 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 from ..vec import jnp, maximum, minimum, select, sign_bit
 from .rounding import rounded, scale_of, store_half, store_unorm
 from .storage import R16F, R32F, STORAGES, Storage
+
+if TYPE_CHECKING:
+    import numpy as np
+    from jaxtyping import Array, Float, UInt
 
 
 @dataclass(frozen=True)
@@ -79,7 +84,9 @@ def depth_storage_of(storage: Storage) -> DepthStorage | None:
     )
 
 
-def fixed(c, scale: int, is_signed: bool, rounding: str = "nearest"):
+def fixed(
+    c: Float[Array | np.ndarray, "*shape"], scale: int, is_signed: bool, rounding: str = "nearest"
+) -> UInt[Array, "*shape"]:
     """The unsigned integer (uint32) for c in [0, 1] (float32, any shape) where `scale` stands for 1; NaN is 0. It is
     rounded in one of ROUNDINGS.
 
@@ -91,7 +98,7 @@ def fixed(c, scale: int, is_signed: bool, rounding: str = "nearest"):
     return select(sign_bit(c), integer + jnp.uint32(half + 1), integer) if is_signed else integer
 
 
-def from_fixed(integer, scale: int, is_signed: bool):
+def from_fixed(integer: UInt[Array, "*shape"], scale: int, is_signed: bool) -> Float[Array, "*shape"]:
     """The number that an unsigned integer (uint32) stands for."""
     half = scale // 2
     if not is_signed:
@@ -101,7 +108,7 @@ def from_fixed(integer, scale: int, is_signed: bool):
     return select(is_negative, -magnitude, magnitude)
 
 
-def _share(integer, scale: int):
+def _share(integer: UInt[Array, "*shape"], scale: int) -> Float[Array, "*shape"]:
     """integer / scale for a scale of 2^n - 1, rounded once: i / (2^n - 1) = i 2^-n + i 2^-2n + ...
 
     As a quotient a compiler may multiply by the rounded reciprocal, which is a whole step off where n is 24.
@@ -110,7 +117,7 @@ def _share(integer, scale: int):
     return high + high * jnp.float32(1.0 / (scale + 1))
 
 
-def store_bytes(integer, bits: int):
+def store_bytes(integer: UInt[Array, "*shape"], bits: int) -> UInt[Array, "*shape"]:
     """An unsigned integer over channels of 8-bit UNORM, the highest byte first, and back. No byte is rounded by itself,
     so none can carry into another."""
     together = jnp.zeros_like(integer)
@@ -121,7 +128,9 @@ def store_bytes(integer, bits: int):
     return together
 
 
-def store_depth(c, storage: DepthStorage, is_signed: bool = False, rounding: str = "nearest"):
+def store_depth(
+    c: Float[Array | np.ndarray, "*shape"], storage: DepthStorage, is_signed: bool = False, rounding: str = "nearest"
+) -> Float[Array | np.ndarray, "*shape"]:
     """The number of a depth (float32, any shape) as it comes back, rounded in one of ROUNDINGS; with a sign where
     `is_signed`. A depth buffer rounds to the nearest."""
     if storage.home == "packed":

@@ -16,12 +16,15 @@ Numbers in float64 stand for the exact map: the same integers and floats, produc
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ..vec import jnp, maximum, minimum, select, sign_bit
 from .storage import FORMS, STORAGES, FloatForm, Storage, of_unit
+
+if TYPE_CHECKING:
+    from jaxtyping import Array, Float
 
 # IEC 61966-2-1: x is slope x up to the knee, and (1 + offset) x^(1/power) - offset above.
 SRGB_KNEE, SRGB_SLOPE, SRGB_OFFSET, SRGB_POWER = 0.0031308, 12.92, 0.055, 2.4
@@ -39,7 +42,7 @@ def scale_of(integer: int) -> Scale:
     return Scale(float(integer), 1.0 / integer)
 
 
-def rounded(x, scale: Scale, rounding: str = "nearest", most=None):
+def rounded(x: Float[Array, "*shape"], scale: Scale, rounding: str = "nearest", most=None) -> Float[Array, "*shape"]:
     """x in [-1, 1] (any shape) as a whole number: nearest, or cut off toward zero, or cut off of x (one + 1/2).
 
     Args:
@@ -52,19 +55,25 @@ def rounded(x, scale: Scale, rounding: str = "nearest", most=None):
     return minimum(maximum(widened, -scale.one), scale.one if most is None else most)
 
 
-def store_unorm(x, scale: Scale, rounding: str = "nearest"):
+def store_unorm(
+    x: Float[Array | np.ndarray, "*shape"], scale: Scale, rounding: str = "nearest"
+) -> Float[Array, "*shape"]:
     """x (float32, any shape) as UNORM stores it and gives it back, in [0, 1]; NaN is 0."""
     return rounded(minimum(maximum(x, 0.0), 1.0), scale, rounding) * scale.reciprocal
 
 
-def store_snorm(x, scale: Scale, rounding: str = "nearest", is_full: bool = False):
+def store_snorm(
+    x: Float[Array | np.ndarray, "*shape"], scale: Scale, rounding: str = "nearest", is_full: bool = False
+) -> Float[Array, "*shape"]:
     """x (float32, any shape) as SNORM stores it and gives it back, in [-1, 1]; NaN is -1. One that is full has no 1."""
     code = rounded(minimum(maximum(x, -1.0), 1.0), scale, rounding, scale.one - 1 if is_full else None)
     # An integer has no negative zero.
     return code.astype(jnp.int32).astype(x.dtype) * scale.reciprocal
 
 
-def store_half(x, rounding: str = "nearest"):
+def store_half(
+    x: Float[Array | np.ndarray, "*shape"], rounding: str = "nearest"
+) -> Float[Array | np.ndarray, "*shape"]:
     """x (float32, any shape) as a 16-bit float stores it: 11 significant bits, steps of 2^-24 below 2^-14.
 
     Nearest turns what is at least 65520 into infinity; toward zero stops at 65504 and keeps only infinity infinite.
@@ -74,7 +83,9 @@ def store_half(x, rounding: str = "nearest"):
     return store_small_float(x, FORMS[16], rounding)
 
 
-def store_small_float(x, form: FloatForm, rounding: str = "nearest"):
+def store_small_float(
+    x: Float[Array | np.ndarray, "*shape"], form: FloatForm, rounding: str = "nearest"
+) -> Float[Array, "*shape"]:
     """x (float32, any shape) as a float of so many bits stores it.
 
     Without a sign there is nothing below 0, and what is finite stays finite (OpenGL 4.6, 2.3.4.3 and 2.3.4.4). With a
@@ -98,7 +109,9 @@ def store_small_float(x, form: FloatForm, rounding: str = "nearest"):
     return select(is_endless | jnp.isnan(x), x, signed)
 
 
-def store_float(x, form: FloatForm, rounding: str = "nearest"):
+def store_float(
+    x: Float[Array | np.ndarray, "*shape"], form: FloatForm, rounding: str = "nearest"
+) -> Float[Array | np.ndarray, "*shape"]:
     """x (float64, any shape, magnitude below 2^15) as a float of so many bits stores it, by arithmetic: what stands for
     the exact map. Without a sign there is nothing below 0."""
     if form == FORMS[32]:
@@ -110,24 +123,26 @@ def store_float(x, form: FloatForm, rounding: str = "nearest"):
     return stored if form.is_signed else maximum(stored, 0.0)
 
 
-def to_srgb(x):
+def to_srgb(x: Float[Array | np.ndarray, "*shape"]) -> Float[Array | np.ndarray, "*shape"]:
     """Linear light in [0, 1] (float32, any shape) by the sRGB curve."""
     curved = (1.0 + SRGB_OFFSET) * maximum(x, SRGB_KNEE) ** (1.0 / SRGB_POWER) - SRGB_OFFSET
     return select(x <= SRGB_KNEE, x * SRGB_SLOPE, curved)
 
 
-def from_srgb(x):
+def from_srgb(x: Float[Array | np.ndarray, "*shape"]) -> Float[Array | np.ndarray, "*shape"]:
     """Linear light of a value of the sRGB curve in [0, 1] (float32, any shape)."""
     straight = x * (1.0 / SRGB_SLOPE)
     return select(straight <= SRGB_KNEE, straight, ((x + SRGB_OFFSET) / (1.0 + SRGB_OFFSET)) ** SRGB_POWER)
 
 
-def store_srgb(x, scale: Scale, rounding: str = "nearest"):
+def store_srgb(
+    x: Float[Array | np.ndarray, "*shape"], scale: Scale, rounding: str = "nearest"
+) -> Float[Array | np.ndarray, "*shape"]:
     """x (float32, any shape) as a colour of an sRGB target stores it and gives it back, in [0, 1]; NaN is 0."""
     return from_srgb(store_unorm(to_srgb(minimum(maximum(x, 0.0), 1.0)), scale, rounding))
 
 
-def store_exactly(x):
+def store_exactly(x: Float[Array | np.ndarray, "*shape"]) -> Float[Array | np.ndarray, "*shape"]:
     """x (float32, any shape) as it is. Nothing is rounded, and yet XLA must not see through it: it would make one scale
     and offset of the encoder's and the decoder's, and measure another method."""
     from jax.lax import optimization_barrier  # a second to import, which `normalbench list` does not take
@@ -176,7 +191,9 @@ def _scale(storage: Storage, channel: int) -> Scale:
     return storage.scales[channel] if isinstance(storage, Fixed) else scale_of(storage.scale(channel))
 
 
-def store_texel(x, storage: Storage, channel: int, rounding: str = "nearest"):
+def store_texel(
+    x: Float[Array | np.ndarray, "*shape"], storage: Storage, channel: int, rounding: str = "nearest"
+) -> Float[Array | np.ndarray, "*shape"]:
     """One number of a texel (float32, any shape), as the format is given it, through one channel and back.
 
     A float16 is a result of half arithmetic: the format's own conversion is not part of that, the shader's number is.
@@ -190,7 +207,9 @@ def store_texel(x, storage: Storage, channel: int, rounding: str = "nearest"):
     return (store_srgb if channel < storage.curved else store_unorm)(x, _scale(storage, channel), rounding)
 
 
-def _store_float_texel(x, form: FloatForm, rounding: str):
+def _store_float_texel(
+    x: Float[Array | np.ndarray, "*shape"], form: FloatForm, rounding: str
+) -> Float[Array | np.ndarray, "*shape"]:
     if x.dtype != jnp.float32:
         return store_float(x, form, rounding)
     if form == FORMS[32]:
@@ -198,7 +217,9 @@ def _store_float_texel(x, form: FloatForm, rounding: str):
     return store_half(x, rounding) if form == FORMS[16] else store_small_float(x, form, rounding)
 
 
-def store_number(c, storage: Storage, channel: int, rounding: str = "nearest"):
+def store_number(
+    c: Float[Array | np.ndarray, "*shape"], storage: Storage, channel: int, rounding: str = "nearest"
+) -> Float[Array | np.ndarray, "*shape"]:
     """One number of a code (float32, any shape, nominally in [-1, 1]) through one channel and back."""
     # What is laid across channels is a whole number as UNORM and SNORM have it; its bytes are exact.
     if storage.is_biased:
@@ -206,7 +227,7 @@ def store_number(c, storage: Storage, channel: int, rounding: str = "nearest"):
     return store_texel(c, storage, channel, rounding)
 
 
-def numbers_around(c, storage: Storage, channel: int):
+def numbers_around(c: Float[Array, "*shape"], storage: Storage, channel: int) -> tuple[Float[Array, "*shape"], ...]:
     """The two numbers that a fixed-point channel can hold around c (float32, any shape), the lower one first."""
     scale = _scale(storage, channel)
     x = minimum(maximum(c * 0.5 + 0.5, 0.0) if storage.is_biased else maximum(c, -1.0), 1.0)

@@ -6,8 +6,13 @@ go from 2^-40 degrees to 180 and above, and their numbers fit in 16 bits.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import jax.numpy as jnp
 import numpy as np
+
+if TYPE_CHECKING:
+    from jaxtyping import Array, ArrayLike, Bool, Float, Int, UInt
 
 BIN_SHIFT = 13
 FIRST_BIN = int(np.float32(2.0**-40).view(np.uint32)) >> BIN_SHIFT
@@ -18,7 +23,7 @@ UNCOVERED = BINS
 BINS_TOGETHER = 2**7
 
 
-def bins_of(angle, covered):
+def bins_of(angle: Float[Array, "*shape"], covered: Bool[ArrayLike, "*shape"]) -> UInt[Array, "*shape"]:
     """The bin of each angle (float32, degrees, any shape), uint16; UNCOVERED where a normal does not count."""
     key = (angle.view(jnp.uint32) >> BIN_SHIFT).astype(jnp.int32) - FIRST_BIN
     return jnp.where(covered, jnp.clip(key, 0, BINS - 1), UNCOVERED).astype(jnp.uint16)
@@ -34,13 +39,13 @@ def lower_edge(number: int) -> float:
     return float(np.uint32(number + FIRST_BIN << BIN_SHIFT).view(np.float32)) if number else 0.0
 
 
-def tally(bins):
+def tally(bins: UInt[Array, "*shape"]) -> Int[Array, " bins"]:
     """How many normals lie in each bin, int32 of shape (BINS + 1,). Integers: the order in which they are counted does
     not matter."""
     return jnp.zeros(BINS + 1, jnp.int32).at[bins.ravel()].add(1, mode="promise_in_bounds")
 
 
-def percentile(histogram: np.ndarray, largest: float, share: float) -> float:
+def percentile(histogram: Int[np.ndarray, " bins"], largest: float, share: float) -> float:
     """The value below which `share` of the counts lie, interpolated within its bin."""
     cumulative = np.cumsum(histogram[:BINS])
     rank = share * cumulative[-1]
@@ -50,7 +55,7 @@ def percentile(histogram: np.ndarray, largest: float, share: float) -> float:
     return min(float(edges[0] + within * (edges[1] - edges[0])), largest) if largest else 0.0
 
 
-def counts_by_angle(histogram: np.ndarray) -> tuple[tuple[float, int], ...]:
+def counts_by_angle(histogram: Int[np.ndarray, " bins"]) -> tuple[tuple[float, int], ...]:
     """How many angles lie in each eighth of an octave that has any, by its lower edge; the first edge is 0."""
     counts = histogram[:BINS].reshape(-1, BINS_TOGETHER).sum(axis=1)
     edges = ((np.arange(0, BINS, BINS_TOGETHER) + FIRST_BIN) << BIN_SHIFT).astype(np.uint32).view(np.float32)
@@ -58,7 +63,7 @@ def counts_by_angle(histogram: np.ndarray) -> tuple[tuple[float, int], ...]:
     return tuple((float(edges[i]), int(counts[i])) for i in np.flatnonzero(counts))
 
 
-def counts_below(histogram: np.ndarray) -> tuple[tuple[float, int], ...]:
+def counts_below(histogram: Int[np.ndarray, " bins"]) -> tuple[tuple[float, int], ...]:
     """How many angles are below each power of two of degrees, ascending."""
     octave = 2 ** (23 - BIN_SHIFT)
     below = np.cumsum(histogram[:BINS])[octave - 1 :: octave]

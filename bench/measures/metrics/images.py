@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ...ground.output.errors import MissingError
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
-def squared_error(image: np.ndarray, reference: np.ndarray) -> tuple[float, int]:
-    """Mean squared error over every pixel and channel of two displayed images of shape (height, width, 3), in [0, 1].
+
+def squared_error(image: Float[np.ndarray, "*shape 3"], reference: Float[np.ndarray, "*shape 3"]) -> tuple[float, int]:
+    """Mean squared error over every pixel and channel of two displayed images, or of some of their pixels, in [0, 1].
 
     Returns:
         the error, and how many pixels are no number; each of those counts as 1 in every channel.
@@ -30,9 +35,11 @@ def require_flip(what: str = "--flip") -> None:
         raise MissingError(f"{what} needs flip-evaluator ({error}); pip install flip-evaluator") from error
 
 
-def flip(image: np.ndarray, reference: np.ndarray) -> np.ndarray:
+def flip(
+    image: Float[np.ndarray, "height width 3"], reference: Float[np.ndarray, "height width 3"]
+) -> Float[np.ndarray, "height width"]:
     """NVIDIA's FLIP (Andersson et al. 2020) of two displayed images at its usual 67 pixels a degree: 0 to 1 for each
-    pixel, (height, width)."""
+    pixel."""
     from flip_evaluator import evaluate
 
     # It passes over a pixel that is not a number; as black it differs.

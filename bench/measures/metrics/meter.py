@@ -13,7 +13,7 @@ import operator
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import reduce
 from threading import Lock
-from typing import Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import jax
 import jax.numpy as jnp
@@ -25,6 +25,9 @@ from ...ground.angles import angles_deg
 from ...ground.machine.cores import on_all_cores
 from .histogram import bin_of, bins_of, tally
 from .totals import ChunkTotal, ErrorTotal, Figures, Statistics, Worst, statistics
+
+if TYPE_CHECKING:
+    from jaxtyping import Array, ArrayLike, Bool, Float, Int, Num, Shaped, UInt
 
 # Lanes that are summed apart, and the rows added to them at a time. XLA copies a computation into each of its uses, up
 # to 15, and computes it anew for each. With 16 rows each number is computed once.
@@ -42,20 +45,22 @@ def idle() -> None:
     """What is done at each chunk when nobody watches."""
 
 
-def angle_between(a: Vec3, b: Vec3):
+def angle_between(a: Vec3, b: Vec3) -> Float[Array, "*shape"]:
     """The angle between a unit vector and one of any length, in degrees; 180 where the other is zero."""
     crossed = cross(a, b - a)
     across = jnp.sqrt(dot(crossed, crossed))
     return jnp.where(dot(b, b) > 0.0, 180.0 * atan2_pi(across, dot(a, b)), 180.0)
 
 
-def readable(n: Vec3, decoded: Vec3) -> tuple[Vec3, Any]:
+def readable(n: Vec3, decoded: Vec3) -> tuple[Vec3, Bool[Array, "*shape"]]:
     """Decodes, the opposite direction where one is not a number; and which of them are numbers."""
     finite = jnp.isfinite(dot(decoded, decoded))
     return select(finite, decoded, -n), finite
 
 
-def errors(n: Vec3, decoded: Vec3, covered):
+def errors(
+    n: Vec3, decoded: Vec3, covered: Bool[ArrayLike, "*shape"]
+) -> tuple[Float[Array, "*shape"], Float[Array, "*shape"], Float[Array, "*shape"], Bool[Array, "*shape"]]:
     """Per normal: squared error, the article's squared error, a whole number, and angle, all float32; and whether the
     decode is not a number, which then counts as the opposite direction."""
     decoded, finite = readable(n, decoded)
@@ -66,7 +71,12 @@ def errors(n: Vec3, decoded: Vec3, covered):
     return dot(difference, difference), dot(eighths, eighths), angle, ~finite & covered
 
 
-def _packed(squared, article, angle, invalid):
+def _packed(
+    squared: Float[Array, "*shape"],
+    article: Float[Array, "*shape"],
+    angle: Float[Array, "*shape"],
+    invalid: Bool[Array, "*shape"],
+) -> tuple[Float[Array, "*shape"], Int[Array, "*shape"], Float[Array, "*shape"]]:
     """Return (squared, article, angle) as `errors` does, with the invalid flag as the bit INVALID_BIT of the article's
     error, int32."""
     return squared, jnp.asarray(article, jnp.int32) + (jnp.asarray(invalid, jnp.int32) << INVALID_BIT), angle
@@ -77,7 +87,7 @@ class Decoded(NamedTuple):
 
     n: Vec3
     decoded: Vec3
-    covered: Any
+    covered: Bool[Array, "*shape"]
 
 
 def _chunk_in_rows(chunk):
@@ -88,7 +98,7 @@ def _as_it_is(row):
     return row
 
 
-def _added(start, rows, of=_as_it_is):
+def _added(start: Num[Array, " lanes"], rows: Num[Array, "rows lanes"], of=_as_it_is) -> Num[Array, " lanes"]:
     """`of` a lane's numbers added one row after the other: the same bits however many rows a block has.
 
     A row is computed and converted when it is added. XLA would write whole blocks in float64 first.
@@ -96,7 +106,7 @@ def _added(start, rows, of=_as_it_is):
     return reduce(operator.add, (of(rows[row]).astype(start.dtype) for row in range(ROWS)), start)
 
 
-def _traced_scan(chunk: Decoded):
+def _traced_scan(chunk: Decoded) -> tuple[Float[Array, " figures"], Int[Array, " bins"], UInt[Array, " count"]]:
     """Figures of one chunk, float64 in the order of `Figures`; how many normals lie in each bin; each normal's bin."""
 
     def step(carry: Figures, block: Decoded):
@@ -123,7 +133,7 @@ def _traced_scan(chunk: Decoded):
 _scan = jax.jit(_traced_scan)
 
 
-def _worst(bins: np.ndarray, largest: float, n: Vec3, decoded: Vec3) -> Worst | None:
+def _worst(bins: UInt[np.ndarray, " count"], largest: float, n: Vec3, decoded: Vec3) -> Worst | None:
     """The normal of a chunk with the largest angle, among those of the highest bin; None where none counts."""
     at = np.flatnonzero(bins == bin_of(largest))
     if not at.size:
@@ -135,12 +145,8 @@ def _worst(bins: np.ndarray, largest: float, n: Vec3, decoded: Vec3) -> Worst | 
     return worst_of(*(np.stack([plane[some] for plane in planes], axis=1) for planes in (normals, found)))
 
 
-def worst_of(normals: np.ndarray, decoded: np.ndarray) -> Worst | None:
-    """The normal with the largest angle, the first of them; None of none.
-
-    Args:
-        normals, decoded: float32 of shape (count, 3).
-    """
+def worst_of(normals: Float[np.ndarray, "count 3"], decoded: Float[np.ndarray, "count 3"]) -> Worst | None:
+    """The normal with the largest angle, the first of them; None of none. Both are float32."""
     if not len(normals):
         return None
     angles = _angles(normals, decoded)
@@ -153,14 +159,14 @@ def is_smaller(largest: float, met_deg: float) -> bool:
     return largest < SAME_ANGLE * met_deg
 
 
-def _angles(n: np.ndarray, decoded: np.ndarray) -> np.ndarray:
+def _angles(n: Float[np.ndarray, "count 3"], decoded: Float[np.ndarray, "count 3"]) -> Float[np.ndarray, " count"]:
     """As `angle_between`, in float64, of rows; 180 where a decode is not a number."""
     with np.errstate(invalid="ignore", over="ignore"):
         angles = angles_deg(n, decoded)
     return np.where(np.isfinite(decoded).all(axis=1) & (decoded != 0).any(axis=1), angles, 180.0)
 
 
-def _on_device(plane: Any) -> Any:
+def _on_device(plane: Shaped[Array | np.ndarray, "*shape"]) -> Shaped[Array, "*shape"]:
     """A plane as JAX has it. To ask this of each is ten times as fast as to convert what is there already."""
     return plane if isinstance(plane, jax.Array) else jnp.asarray(plane)
 

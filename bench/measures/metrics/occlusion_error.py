@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -16,6 +16,9 @@ from ....gbuffer.pipelines import PIPELINES
 from ....gbuffer.render import rendering
 from ....gbuffer.scenes.scene import KINDS, Scene
 from .visibility import NEARER, RayCaster, triangles_of
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 PIXELS, RAYS = 4096, 1024
 HAIR = KINDS.index("hair")
@@ -40,12 +43,12 @@ class OcclusionError(NamedTuple):
 
 
 class Pixels(NamedTuple):
-    """What was drawn at some pixels: world-space positions, drawn towards the eye, and normals, (pixels, 3); visibility
-    by the effect, (pixels,)."""
+    """What was drawn at some pixels: world-space positions, drawn towards the eye, and normals; visibility by the
+    effect."""
 
-    positions: np.ndarray
-    normals: np.ndarray
-    visibility: np.ndarray
+    positions: Float[np.ndarray, "pixels 3"]
+    normals: Float[np.ndarray, "pixels 3"]
+    visibility: Float[np.ndarray, " pixels"]
 
 
 def method_error(
@@ -81,8 +84,10 @@ def method_error(
     return compared(drawn.visibility, exact.visibility, exact.error)
 
 
-def compared(found: np.ndarray, exact: np.ndarray, error: np.ndarray) -> OcclusionError:
-    """Visibilities, (pixels,), against those of rays with their standard errors."""
+def compared(
+    found: Float[np.ndarray, " pixels"], exact: Float[np.ndarray, " pixels"], error: Float[np.ndarray, " pixels"]
+) -> OcclusionError:
+    """Visibilities against those of rays with their standard errors."""
     difference, noise = found - exact, float(np.mean(error**2))
     square = difference**2
     rms = float(np.sqrt(max(np.mean(square) - noise, 0.0)))
@@ -115,7 +120,9 @@ def drawn_pixels(
     )
 
 
-def _rays_in_world(scene: Scene, position: np.ndarray, direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _rays_in_world(
+    scene: Scene, position: Float[np.ndarray, "pixels 3"], direction: Float[np.ndarray, "pixels 3"]
+) -> tuple[Float[np.ndarray, "pixels 3"], Float[np.ndarray, "pixels 3"]]:
     to_world = np.linalg.inv(scene.view.matrix())
     nearer = position.astype(np.float64) * (1 - NEARER)
     return nearer @ to_world[:3, :3].T + to_world[:3, 3], direction.astype(np.float64) @ to_world[:3, :3].T

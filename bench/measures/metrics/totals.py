@@ -9,11 +9,14 @@ import operator
 import zlib
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from .histogram import BINS, counts_below, counts_by_angle, percentile
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 
 class Figures(NamedTuple):
@@ -61,10 +64,10 @@ class Statistics:
 
 @dataclass(frozen=True)
 class Worst:
-    """The normal that came back farthest off, what it came back as, float32 of shape (3,), and by how many degrees."""
+    """The normal that came back farthest off, what it came back as, both float32, and by how many degrees."""
 
-    normal: np.ndarray
-    decoded: np.ndarray
+    normal: Float[np.ndarray, " 3"]
+    decoded: Float[np.ndarray, " 3"]
     angle_deg: float
 
     def __str__(self) -> str:

@@ -9,12 +9,15 @@ fall-off in place of the method. Rays are drawn with the density of the cosine, 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ....gbuffer.scenes.scene import Scene
 from ...ground.output.errors import MissingError
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 # Rays in flight: some 50 MB.
 BLOCK = 2**19
@@ -27,18 +30,18 @@ class Visible(NamedTuple):
     """What rays say of points.
 
     Attributes:
-        visibility: (points,).
-        error: its standard error, (points,).
-        bent: the mean direction that light arrives from, times how much does, (points, 3).
+        visibility: of each point.
+        error: its standard error.
+        bent: the mean direction that light arrives from, times how much does.
     """
 
-    visibility: np.ndarray
-    error: np.ndarray
-    bent: np.ndarray
+    visibility: Float[np.ndarray, " points"]
+    error: Float[np.ndarray, " points"]
+    bent: Float[np.ndarray, "points 3"]
 
 
-def triangles_of(scene: Scene) -> np.ndarray:
-    """The corners of all that is opaque, in world space, (triangles, 3, 3)."""
+def triangles_of(scene: Scene) -> Float[np.ndarray, "triangles 3 3"]:
+    """The corners of all that is opaque, in world space."""
     there = [
         part.mesh.positions[part.mesh.triangles] @ model[:3, :3].T + model[:3, 3]
         for part in scene.parts
@@ -60,13 +63,13 @@ class RayCaster:
     """Triangles that rays can meet, by Embree in float32.
 
     Args:
-        triangles: corners, (triangles, 3, 3). Either side of them stops a ray.
+        triangles: corners. Either side of them stops a ray.
 
     Raises:
         MissingError: embreex is not installed.
     """
 
-    def __init__(self, triangles: np.ndarray):
+    def __init__(self, triangles: Float[np.ndarray, "triangles 3 3"]):
         require_rays()
         from embreex.mesh_construction import TriangleMesh
         from embreex.rtcore_scene import EmbreeScene
@@ -74,28 +77,26 @@ class RayCaster:
         self._scene = EmbreeScene(robust=True)
         TriangleMesh(self._scene, np.ascontiguousarray(triangles, np.float32))
 
-    def distances(self, origins: np.ndarray, directions: np.ndarray) -> np.ndarray:
-        """How far rays go until they meet a triangle, (rays,); more than 1e30 where they meet none.
-
-        Args:
-            origins, directions: (rays, 3), directions of length 1.
-        """
+    def distances(
+        self, origins: Float[np.ndarray, "rays 3"], directions: Float[np.ndarray, "rays 3"]
+    ) -> Float[np.ndarray, " rays"]:
+        """How far rays go until they meet a triangle; more than 1e30 where they meet none. Directions have length 1."""
         given = (np.ascontiguousarray(a, np.float32) for a in (origins, directions))
         return self._scene.run(*given, query="DISTANCE")
 
     def visible(
         self,
-        positions: np.ndarray,
-        normals: np.ndarray,
+        positions: Float[np.ndarray, "points 3"],
+        normals: Float[np.ndarray, "points 3"],
         rays: int,
-        lost: Callable[[np.ndarray], np.ndarray],
+        lost: Callable[[Float[np.ndarray, "points rays"]], Float[np.ndarray, "points rays"]],
         seed: int = 0,
     ) -> Visible:
         """The visibility of points.
 
         Args:
-            positions: (points, 3), each a little over its own surface.
-            normals: (points, 3), unit.
+            positions: each a little over its own surface.
+            normals: unit.
             rays: for each point, 2 or more.
             lost: w of distances.
             seed: of the directions.
@@ -116,8 +117,10 @@ def _block_ranges(total: int, most: int) -> Iterator[tuple[int, int]]:
     yield from ((first, min(most, total - first)) for first in range(0, total, most))
 
 
-def cosine_directions(normals: np.ndarray, count: int, rng: np.random.Generator) -> np.ndarray:
-    """Directions over each normal, as dense as the cosine of their angle to it: (normals, count, 3), unit.
+def cosine_directions(
+    normals: Float[np.ndarray, "normals 3"], count: int, rng: np.random.Generator
+) -> Float[np.ndarray, "normals {count} 3"]:
+    """Directions over each normal, as dense as the cosine of their angle to it; unit.
 
     A point on the unit ball around the tip of the normal, seen from the origin: the cosine's density exactly.
     """

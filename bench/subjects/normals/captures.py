@@ -44,7 +44,7 @@ SPACES: Mapping[str, np.ndarray | None] = MappingProxyType(
 CODE_SPACES = ("view", "world")
 
 
-def _curve_on_arrays(curve: Callable[[jax.Array], jax.Array]) -> Callable[[np.ndarray], np.ndarray]:
+def _curve_on_arrays(curve: Callable[[jax.Array], jax.Array | np.ndarray]) -> Callable[[np.ndarray], np.ndarray]:
     return lambda stored: np.asarray(curve(jnp.asarray(stored)))
 
 

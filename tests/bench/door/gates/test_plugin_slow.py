@@ -20,7 +20,7 @@ SMALL = 'dict(encoding="xy", normals="sphere", count=4096)'
 
 
 # Hypothesis is rewritten anew each time pytest is run inside pytest, which takes seconds.
-PLAIN = ("-p", "no:cacheprovider", "-p", "no:hypothesispytest")
+PLAIN = ("-p", "no:cacheprovider", "-p", "no:hypothesispytest", "-p", "no:jaxtyping")
 
 
 PASSES = f"""
