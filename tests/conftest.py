@@ -88,15 +88,19 @@ LONG_FIXTURES = frozenset(
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items, config):
-    """Skip what Firefox cannot be asked. Raises UsageError for a quick file that opens a browser, starts workers or
-    asks for a vendor's compilers."""
+    """Skip what Firefox cannot be asked, and leave out what this commit does not draw."""
     for item in items:
         if config.option.firefox and (mark := item.get_closest_marker("chromium")):
             item.add_marker(pytest.mark.skip(reason=mark.args[0]))
-        if tier_of(item.path) == TIERS[0] and (asked := LONG_FIXTURES.intersection(item.fixturenames)):
-            raise pytest.UsageError(f"{item.nodeid} asks for {', '.join(asked)}: move it to a file test_..._slow.py")
     if config.option.tier != TIERS[-1] and not any("::" in word for word in config.args):
         _leave_out_undrawn(items, config)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item):
+    """Fail a test of a quick file that opens a browser, starts workers or asks for a vendor's compilers."""
+    if tier_of(item.path) == TIERS[0] and (asked := LONG_FIXTURES.intersection(item.fixturenames)):
+        pytest.fail(f"it asks for {', '.join(asked)}: move it to a file test_..._slow.py", pytrace=False)
 
 
 def _leave_out_undrawn(items, config):

@@ -798,7 +798,7 @@ FAULTS = (
         "found[name].append(row)",
         "found[name] = [row]",
         "test_runs.py",
-        "extended or killed or finished",
+        "extended or finished",
         "test_report.py test_compare.py",
         also=(
             (
@@ -866,7 +866,7 @@ FAULTS = (
         "exit_code = 3",
         "exit_code = 2",
         "test_cli.py",
-        "missing or exits_3 or driver",
+        "exits_3 or driver",
     ),
     Fault(
         "run-fails-where-all-fail",

@@ -2,10 +2,10 @@
 
     python tests/faults.py [--tree DIR] [--blind] [--tier TIER] [--only NAME,...] [--results FILE] [--skip] [--check]
 
-No part of the tests: a run takes half an hour, and changes files of the tree while it lasts. Whatever ends it, the file
-is put back as it was. With --results a run that was ended goes on. In the end the tests that noticed are run without
-any fault: one that fails then has noticed nothing. Exit status: 0 where every fault was noticed, 1 where not, 2 where a
-fault has no place in the tree.
+No part of the tests: a run takes half an hour, and changes files of the tree while it lasts. Whatever ends it but
+`kill -9`, the file is put back as it was; after that `git diff` shows the fault. With --results a run that was ended
+goes on. In the end the tests that noticed are run without any fault: one that fails then has noticed nothing. Exit
+status: 0 where every fault was noticed, 1 where not, 2 where a fault has no place in the tree.
 """
 
 from __future__ import annotations
@@ -199,7 +199,7 @@ def results_of(tree: Tree, placed: Sequence[tuple[Fault, Place]], path: Path | N
 
 def line_of(result: Result) -> str:
     """A result as a line of the table."""
-    by = result.by or "NOTHING"
+    by = result.by or "NOTHING of this tier"
     return f"{result.fault:<32} {result.room:<10} {result.kind:<24} {result.seconds:>6.1f} s  {by}"
 
 
@@ -208,14 +208,19 @@ def chosen_faults(faults: Sequence[Fault], only: str) -> list[Fault]:
     names = [name for name in only.split(",") if name]
     unknown = set(names) - {fault.name for fault in faults}
     if unknown:
-        raise SystemExit(f"no fault {', '.join(sorted(unknown))}")
+        raise SystemExit(
+            f"no fault {', '.join(sorted(unknown))}; the names stand in {Path(__file__).parent}/fault_list*.py"
+        )
     return [fault for fault in faults if not names or fault.name in names]
 
 
 def arguments() -> argparse.Namespace:
     """What was typed."""
     here = Path(__file__).parents[1]
-    parser = argparse.ArgumentParser(description="Count the injected faults that the tests notice.")
+    parser = argparse.ArgumentParser(
+        description="Put faults into files of a checkout, one after the other, and count those that its tests notice. "
+        "All of them take half an hour."
+    )
     parser.add_argument("--tree", type=Path, default=here, help="The checkout. Default: this one.")
     parser.add_argument("--python", type=Path, help="Its Python. Default: the one of its .venv.")
     parser.add_argument("--blind", action="store_true", help="Those of fault_list_blind.py, with all tests.")
@@ -227,8 +232,8 @@ def arguments() -> argparse.Namespace:
     return parser.parse_args()
 
 
-def _terminated(*_: object) -> NoReturn:
-    raise SystemExit(143)
+def _terminated(number: int, _: object) -> NoReturn:
+    raise SystemExit(128 + number)
 
 
 def main() -> int:
@@ -242,10 +247,13 @@ def main() -> int:
     ]
     misplaced = [place for _, place in found if isinstance(place, str)]
     print("\n".join([*misplaced, f"{len(found) - len(misplaced)} of {len(found)} faults have their place."]))
+    if misplaced:
+        print("Is a fault of an earlier run in the tree? `git diff` shows it.")
     if asked.check or (misplaced and not asked.skip):
         return 2 if misplaced else 0
     # A terminated run puts the file back as an interrupted one does.
-    signal.signal(signal.SIGTERM, _terminated)
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, _terminated)
     results = []
     placed = [(fault, place) for fault, place in found if isinstance(place, Place)]
     for result in results_of(tree, placed, asked.results):

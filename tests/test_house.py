@@ -209,6 +209,16 @@ def test_names_of_shapes_are_imported_for_type_checkers_alone():
     assert not wrong, wrong
 
 
+def test_a_file_of_tests_says_its_tier_and_nothing_like_it():
+    """What is called otherwise would run by day, or not at all."""
+    stems = [path.stem for path in (ROOT / "tests").rglob("*.py") if re.search(r"def test_", path.read_text())]
+    plain = [stem.removesuffix("_slow").removesuffix("_nightly") for stem in stems]
+    odd = re.compile(r"^(?!test_)|_(slow\w*|night\w*|tests?)$", re.IGNORECASE)
+    assert [
+        stem for stem, name in zip(stems, plain, strict=True) if odd.search(name) or f"{name}_nightly_slow" == stem
+    ] == []
+
+
 def test_no_two_modules_of_tests_have_one_name():
     """pytest imports them by their names alone, and tells two apart only where it collects both."""
     names = [path.name for path in (ROOT / "tests").rglob("test_*.py")]
@@ -557,6 +567,10 @@ def test_a_tier_takes_no_more_than_its_budget(tier):
     names = [str(path.relative_to(ROOT)) for path in (ROOT / "tests").rglob("test_*.py") if tier_of(path) == tier]
     seconds = {name: measured[name][0] if name in measured else unmeasured for name in names}
     dearest = sorted(seconds.items(), key=lambda file: -file[1])[:10]
+    said = ", ".join(f"{name} {spent:g}" for name, spent in dearest)
+    new = ", ".join(sorted(set(names) - set(measured))) or "none"
     assert sum(seconds.values()) <= BUDGETS[tier], (
-        f"{sum(seconds.values()):.0f} s of {BUDGETS[tier]}; dearest: {dearest}"
+        f"{sum(seconds.values()):.0f} s of {BUDGETS[tier]}; the dearest: {said}; "
+        f"not measured yet, {unmeasured:g} s each: {new}"
+        "; `pytest FILE --seconds tests/seconds.json` measures one"
     )

@@ -1,4 +1,5 @@
-"""Seconds of each test file, as `pytest --seconds FILE` adds them up and writes them.
+"""Seconds of each test file, as `pytest --seconds FILE` adds them up and, where all pass, writes them. Those of files
+that did not run stay.
 
 A file's seconds are those between the end of the test before its own and the end of each of its own, in the process
 that ran it: of processor, with all processes that it started, and by the clock. Four processes on two cores wait for
@@ -59,10 +60,10 @@ class Seconds:
         return done
 
     @pytest.hookimpl(trylast=True)
-    def pytest_sessionfinish(self, session):
+    def pytest_sessionfinish(self, session, exitstatus):
         if hasattr(session.config, "workeroutput"):
             session.config.workeroutput["seconds"] = [dict(self._processor), dict(self._clock)]
-        else:
+        elif exitstatus == pytest.ExitCode.OK:
             self._write()
 
     @pytest.hookimpl(optionalhook=True)
@@ -81,4 +82,7 @@ class Seconds:
             "python": platform.python_version(),
             "columns": ["seconds of processor", "seconds by the clock"],
         }
+        kept = json.loads(self._path.read_text())["files"] if self._path.exists() else {}
+        kept = {name: seconds for name, seconds in kept.items() if (ROOT / name).exists()}
+        files = dict(sorted({**kept, **files}.items()))
         self._path.write_text(json.dumps(about | {"files": files}, indent=1) + "\n")
