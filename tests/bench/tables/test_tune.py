@@ -40,7 +40,7 @@ def one_direction(tmp_path):
     "arguments, said",
     [
         (["nope"], "unknown encoding 'nope'"),
-        (["stereographic,spherical"], "one encoding at a time"),
+        (["stereographic,spherical"], "unknown encoding 'stereographic,spherical'"),
         (["octahedral", "--storage", "rg8"], "nothing to tune: no parameter and no look-up"),
         (["xyz", "--storage", "rg8"], "3 components, but RG8 has 2 channels"),
         (["spherical", "--storage", "rg8,rg16"], "one storage at a time"),

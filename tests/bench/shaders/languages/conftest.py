@@ -9,6 +9,7 @@ import pytest
 
 from normalbench.bench.ground.user_files import UserFile
 from normalbench.bench.shaders.languages import child, translated
+from normalbench.encodings.kinds import BY_NAME
 
 
 @pytest.fixture
@@ -18,7 +19,8 @@ def in_this_process(monkeypatch):
 
     def finished(command, _):
         folder, word, by, kind = command
-        return CompletedProcess(command, 0, json.dumps(child.answer(UserFile(word), Path(folder), by, kind)), "")
+        facts = child.answer(UserFile(word), Path(folder), by, BY_NAME[kind])
+        return CompletedProcess(command, 0, json.dumps(facts), "")
 
     children = SimpleNamespace(python=lambda _, *words: words, finished=finished)
     monkeypatch.setattr(translated, "children", children)
