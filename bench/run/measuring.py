@@ -174,11 +174,14 @@ def with_parts(steps: Iterable[Step]) -> Iterator[Step]:
 
 
 def files_of(options: Any) -> Row:
-    """Return fingerprints of all files that options name, and of those read beside each: {"files": [...]}; {} for
-    none."""
+    """Return fingerprints of all files that options name, each with those read beside it, {"files": [...]}, and how
+    captures are read where that is said, {"read": {...}}; {} for no files."""
     words = {part for words in words_of(options).values() for word in words for part in parts_of(word)}
     digests = sorted(filter(None, map(_fingerprint, words)))
-    return {"files": digests} if digests else {}
+    reading = fields_of(Reading).values() if isinstance(options, Reading) else ()
+    values = {field: getattr(options, field.name) for field in reading if not field.option.files}
+    said = {field.name: value for field, value in values.items() if value != field.default}
+    return ({"files": digests} | ({"read": said} if said else {})) if digests else {}
 
 
 def words_of(options: Any) -> dict[str, list[str]]:
@@ -192,14 +195,17 @@ def words_of(options: Any) -> dict[str, list[str]]:
 
 
 def _fingerprint(word: str) -> str:
-    """Of a file and its companions. Empty for no file."""
-    path = file_of(word)
+    """Of a file and its companions, and of how it is read, wherever they lie. Empty for no file."""
+    path, shader = file_of(word), UserFile(word)
     try:
         if not path.is_file():
             return ""
         # In an order that does not depend on where they lie.
         digests = [file_digest(path), *sorted(map(file_digest, companions(word)))]
-        return hashlib.sha256(b"".join(digests)).hexdigest()[:16]
+        settings = shader.settings
+        roots = [name for name, _ in settings.roots]
+        how = (shader.functions, settings.defines, settings.language, settings.is_all, settings.format, roots)
+        return hashlib.sha256(b"".join(digests) + repr(how).encode()).hexdigest()[:16]
     except (OSError, ValueError):
         return ""
 

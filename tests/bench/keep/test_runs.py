@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from typed import word_with
 
 from normalbench.bench.door.cli import app as cli
 from normalbench.bench.ground.output.errors import UsageError
@@ -246,6 +247,28 @@ def test_files_within_a_name_are_known_and_travel(tmp_path, monkeypatch, word, n
     assert with_files(word, {"mine.glsl": "x/mine.glsl"}) == re.sub(r"^mine\.glsl", "x/mine.glsl", word)
     packing = Packing()
     assert packing.packed(word) == word and sorted(packing.files) == sorted(names)
+
+
+@pytest.mark.parametrize(
+    "name, ways",
+    [
+        ("mine.hlsl", [{"define": "A"}, {"define": "A=2"}, {"language": "slang"}, {}]),
+        ("mine.hlsl:E:D", [{"define": "A"}, {}]),
+        ("frame.png", [{"unpack": True}, {"unpack": False}, {"curve": "srgb"}, {}]),
+    ],
+)
+def test_a_file_that_is_read_otherwise_is_another_thing_to_measure(tmp_path, monkeypatch, name, ways):
+    """Wherever it lies: workers have it in a folder of their own."""
+    keys = []
+    for folder in ("here", "there"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / name.partition(":")[0]).write_text("text")
+        monkeypatch.chdir(tmp_path / folder)
+        for way in ways:
+            given = {"normals": name} if name.endswith("png") else {"encoding": word_with(name, **way)}
+            reading = way if name.endswith("png") else {}
+            keys.append(json.dumps(files_of(TABLES["quality"].options(**given, **reading))))
+    assert keys[: len(ways)] == keys[len(ways) :] and len(set(keys)) == len(ways), keys
 
 
 def test_sources_are_known_by_their_content():
