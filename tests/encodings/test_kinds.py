@@ -3,15 +3,18 @@
 import inspect
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
+from normalbench.encodings import catalogue
 from normalbench.encodings.catalogue import BY_KIND, LIGHT_BUFFERS, PRECISE
 from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.codecs.curve_codec import CurveCodec
 from normalbench.encodings.codecs.depth_codec import DepthCodec
+from normalbench.encodings.codecs.files import CatalogueError
 from normalbench.encodings.codecs.frame_codec import FrameCodec
 from normalbench.encodings.codecs.light_codec import LightCodec
 from normalbench.encodings.codecs.motion_codec import MotionCodec
@@ -116,6 +119,12 @@ def test_a_sign_is_a_bit_of_the_codec():
 def planes(made) -> list:
     """The arrays of a number, a vector or a tangent frame."""
     return [leaf for part in made for leaf in planes(part)] if isinstance(made, tuple) else [made]
+
+
+def test_an_encoding_of_another_name_than_its_file_is_refused(monkeypatch):
+    monkeypatch.setattr(catalogue, "import_module", lambda *_: SimpleNamespace(ENCODING=catalogue.ENCODINGS["xyz"]))
+    with pytest.raises(CatalogueError, match=r"encodings/normals/xy\.py: its ENCODING is named 'xyz', not 'xy'"):
+        catalogue._loaded_encoding(NORMAL, "xy")
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ import re
 from dataclasses import replace
 from html.parser import HTMLParser
 from importlib import import_module
+from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -123,6 +124,12 @@ def test_rows_of_one_set_with_several_counts_are_not_compared(run, tmp_path):
     assert "playground of 1000 normals, rgba8: dB by back end" in read.text
 
 
+def lines_without_room(text: str) -> list[str]:
+    """The lines of a page in Markdown that follow another one without an empty line between."""
+    lines = text.splitlines()
+    return [line for before, line in pairwise(lines) if before and line]
+
+
 def test_rows_without_figures_make_no_table_of_their_own(run, tmp_path):
     """They have no count of normals; the page says why among every row."""
     lost = {"psnr_db": None, "psnr_article_db": None, "angle_mean_deg": None, "count": None, "skipped": "no twin"}
@@ -134,6 +141,7 @@ def test_rows_without_figures_make_no_table_of_their_own(run, tmp_path):
     for said in (read.text, text):
         assert "playground, rgba8: dB by back end" in said and "None normals" not in said
         assert "playground, rg8" not in said and status == 0
+    assert all(line.startswith(("|", "-")) for line in lines_without_room(text)), text
     assert "no twin" in packed_text(text_of_page(folder), "data-quality")
 
 

@@ -13,8 +13,10 @@ from histories import DAY, FIRST, FOLD, LONGER, SHORTER, name_of
 from manual import PAGES, ROOT
 
 from normalbench.bench.keep.commit import commit_of
+from normalbench.bench.keep.history import Series
 from normalbench.bench.keep.runs import _begun_facts
 from normalbench.bench.keep.time_steps import time_steps
+from normalbench.bench.tables.registry import TABLES
 
 
 @pytest.fixture
@@ -93,6 +95,10 @@ def test_a_name_that_no_row_has_is_answered_with_those_there_are(run, thirty, tm
     assert status == 2 and "did you mean octahedral?" in err and "all, mine, octahedral" in err
     status, _, err = run("history", str(tmp_path / "nothing"))
     assert status == 2 and "holds no run" in err and err.count("\n") == 1
+
+
+def test_a_table_of_one_time_has_times():
+    assert Series(TABLES["maps"], "a").is_timed and not Series(TABLES["quality"], "a").is_timed
 
 
 def test_only_a_step_of_times_is_named(run, tmp_path):

@@ -129,6 +129,8 @@ MISUSE = {
     f"quality(**{SMALL}).assert_that(psnr_db=49.5)": 'psnr_db: 49.5 is not a limit; say "at least 47.5"',
     f"quality(**{SMALL}).assert_that(psnr_db='at least x')": "psnr_db: x is not a number",
     f"quality(**{SMALL}).assert_that(psnr='at least 5')": "quality: no column 'psnr'; figures are bits",
+    f"quality(**{SMALL}).assert_that(psnr_db='at least 5', mse='at least x')": "mse: x is not a number",
+    f"quality(**{SMALL}).assert_that(psnr_db='at least 5', device='at least 5')": "quality: device is not a figure",
     f"quality(**{SMALL}).assert_that(angle_sup_deg='at most 5')": "angle_sup_deg is measured only with worst_case=True",
     f"quality(**{SMALL}, storage='rgba8,rg16f')['psnr_db']": "there are 2 rows; take one of .rows",
     f"quality(**{SMALL}).matches_baseline()": "--normalbench-baseline FILE names one",

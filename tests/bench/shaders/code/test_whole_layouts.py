@@ -225,6 +225,12 @@ def test_the_table_says_where_each_field_lies(layouts):
     assert any("base_colour.x" in line and "sRGB, by the format" in line for line in lines)
 
 
+def test_negative_light_and_nan_are_kept_as_none():
+    """As the renderer does before it encodes light."""
+    text = gbuffer_code(LAYOUTS["bevy"], "glsl").body
+    assert "vec4 emission = gbuffer_rgb9e5_encode(gbuffer_light_or_none(vec4(s.emission, 0.0)));" in text
+
+
 def test_folded_lines_are_the_same_code():
     """Nothing but white space is added."""
     inside = " + ".join(f"f({at}, {at + 1})" for at in range(40))

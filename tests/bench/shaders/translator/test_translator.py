@@ -132,6 +132,8 @@ def test_names_that_a_language_reserves_get_an_underscore():
         ("float f(float x) { return " + "(" * 99 + "x" + ")" * 99 + "; }", r"nested more than 60 deep"),
         ("#define F(x) x\nfloat f() { return 1.0; }", r"^1:1: macros with arguments"),
         ("#if A\n", r"A is not a whole number"),
+        ("#define A\n#if A\n", r"A is not a whole number"),
+        ("#define A B\n#if A\n", r"A is not a whole number"),
         ("#ifdef A\n", r"without its #endif"),
         ("#define A B\n#define B A\nfloat f() { return A; }", r"A stands for itself|B stands for itself"),
         ("float f(float x) { return x $ 1; }", r"^1:29: '\$' begins nothing known here$"),
@@ -209,6 +211,17 @@ def test_what_wgsl_has_beyond_functions_is_refused_in_a_line(source, said):
     """Bindings and pointers are no part of an encoder."""
     with pytest.raises(TranslationError, match=re.escape(said)):
         reduced(read_wgsl(source), {"f": "encode"}, "p", "")
+
+
+def test_a_loop_of_wgsl_may_break_before_what_it_continues_with():
+    source = "fn f(x: f32) -> f32 { var i = x; loop { if i > 3 { break; } continuing { i += 1; } } return i; }"
+    assert "break;" in GlslWriter("p", {}).program(reduced(read_wgsl(source), {"f": "encode"}, "p", ""))
+
+
+def test_a_step_of_c_is_1_at_its_edge():
+    """As GLSL has it: 0 where x is less than the edge, else 1."""
+    source = "vec2 mine_encode(vec3 n) { return vec2(step(0.5, n.x), n.y); } vec3 mine_decode(vec2 e) { return e.xyx; }"
+    assert " < 0.5f ? 0.0f : 1.0f" in written(CWriter, source), written(CWriter, source)
 
 
 MODULE = """

@@ -82,6 +82,15 @@ def test_a_vertex_that_stands_twice_counts_once_and_one_without_a_triangle_not_a
     assert sorted_rows(found).tolist() == sorted_rows([(0, 0, 1), (0, 1, 0), (1, 0, 0), (0, 0, 1)]).tolist()
 
 
+def test_a_mesh_without_normals_leaves_the_others_of_its_file(tmp_path):
+    document = Document()
+    n = unit(np.array([(1, 2, 2), (0, 3, 4), (-2, 1, 2)], float))
+    document.node(mesh=document.mesh(TRIANGLE, None, [(0, 1, 2)]))
+    document.node(mesh=document.mesh(TRIANGLE, n, [(0, 1, 2)]))
+    _, found = vertices(document.write(tmp_path / "a.glb"))
+    assert sorted_rows(found) == pytest.approx(sorted_rows(n), abs=1e-6)
+
+
 def test_normals_of_no_length_and_nan_are_left_out_and_counted(tmp_path, run):
     document = Document()
     n = [(0, 0, 2), (0, 0, 0), (np.nan, 0, 1), (0, -1e30, 1), (0.1, 0, 0)]
