@@ -167,7 +167,6 @@ OWN_JSON = {
     "bench/keep/journal.py": "lines with infinite figures, which the schema judges",
     "bench/keep/plain.py": "rows on their way",
     "bench/measures/metrics/totals.py": "totals on their way",
-    "bench/door/run.py": "what a run was asked for, as its file has it",
     "bench/shaders/isa/child.py": "what a child is asked",
     "bench/shaders/isa/driver_files.py": "files of drivers that are installed",
     "bench/shaders/isa/nvidia/child.py": "what a child is asked",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import json
 import sys
 import time
 from collections import deque
@@ -23,6 +22,7 @@ from ..ground.output.progress import progress_of_all, spoken
 from ..ground.output.writing import say
 from ..ground.user_files import SETTINGS
 from ..keep.commit import commit_of
+from ..keep.plain import plain
 from ..keep.runs import Row, Run, facts_of, opened, read_run, unfinished
 from ..keep.table_files import write_tables
 from ..run.measuring import Asked, Place, asked_together, measured, with_parts
@@ -135,8 +135,8 @@ def run_command(request: Any, output: Path | None, on: str | None = None, commit
         from ..ground.machine.devices import require_jax
 
         require_jax()
-        asked = {"tables": request.tables, **given(request)}
-        facts: Row = {"request": json.loads(json.dumps(asked)), **facts_of(sys.argv[1:])}
+        (asked,) = plain([{"tables": request.tables, **given(request)}])
+        facts: Row = {"request": asked, **facts_of(sys.argv[1:])}
         facts |= {
             "time": time.strftime("%Y-%m-%dT%H:%M:%S%z"),
             "finished": False,

@@ -16,6 +16,7 @@ from ..ground.machine.lost import require_living_device
 from ..ground.machine.memory import require_memory
 from ..ground.machine.settings import settings
 from ..ground.options.option import Reading, fields_of
+from ..ground.options.words import words_in
 from ..ground.output.errors import UsageError
 from ..ground.output.progress import progress
 from ..ground.output.writing import is_special, target_of
@@ -188,10 +189,7 @@ def words_of(options: Any) -> dict[str, list[str]]:
     """Return by option the words that may name files."""
     known = fields_of(type(options))
     values = {name: getattr(options, name) or () for name, field in known.items() if field.option.files}
-    return {
-        name: [value] if isinstance(value, str) else [word for word in value if isinstance(word, str)]
-        for name, value in values.items()
-    }
+    return {name: [word for word in words_in(value) if isinstance(word, str)] for name, value in values.items()}
 
 
 def _fingerprint(word: str) -> str:

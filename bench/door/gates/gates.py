@@ -10,7 +10,7 @@ from typing import Any
 
 from ....encodings.codecs.files import file_toml
 from ...ground.options.option import fields_of
-from ...ground.options.words import Names, text_of
+from ...ground.options.words import Names, typed, words_in
 from ...ground.output.errors import UsageError
 from ...ground.user_files import files_in
 from ...keep.runs import Done, read_run
@@ -65,8 +65,8 @@ class Gate:
     def files(self) -> dict[str, Names]:
         """Return the options whose words may be files, as the file of gates has them."""
         known = fields_of(self.table.options)
-        may_be = {name: self.options[name] for name in self.options if name in known and known[name].option.files}
-        return {name: (value,) if isinstance(value, str) else value for name, value in may_be.items()}
+        may_be = (name for name in self.options if name in known and known[name].option.files)
+        return {name: words_in(self.options[name]) for name in may_be}
 
 
 def read_gates(path: Path) -> list[Gate]:
@@ -142,11 +142,11 @@ def _rows_of_run(run: Path) -> Measure:
                 raise UsageError(f"{gate.place}: rows of {name} have no {option!r}; they are named by {keys}")
             if not any(_is(row.get(option), gate.options[option]) for row in tables[name]):
                 there = ", ".join(dict.fromkeys(str(row.get(option)) for row in tables[name]))
-                wanted = f"{option} {_typed(gate.options[option])!r}"
+                wanted = f"{option} {typed(gate.options[option])!r}"
                 raise UsageError(f"{gate.place}: no row of {name} in {run} has {wanted}; there are {there}")
         rows = [row for row in _finished(done, gate, run) if all(_is(row.get(n), v) for n, v in gate.options.items())]
         if not rows:
-            asked = ", ".join(f"{option} {_typed(value)!r}" for option, value in gate.options.items())
+            asked = ", ".join(f"{option} {typed(value)!r}" for option, value in gate.options.items())
             raise UsageError(f"{gate.place}: {run} has rows with each of {asked}, but none with all of them")
         for limit in gate.limits:
             _check_was_measured(gate, limit, rows, run)
@@ -176,11 +176,6 @@ def _check_was_measured(gate: Gate, limit: Limit, rows: list[Row], run: Path) ->
 def _is(value: Any, asked: Any) -> bool:
     """Tell whether a row's value is what was asked for: one of the names, where those are several."""
     return value in asked if isinstance(asked, tuple) else value == asked
-
-
-def _typed(asked: Any) -> Any:
-    """Return what was asked for as the file has it."""
-    return text_of(asked) if isinstance(asked, tuple) else asked
 
 
 def checked(

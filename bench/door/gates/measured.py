@@ -12,7 +12,7 @@ from typing import Any
 from ...ground.choose import names_a_file, unknown_name
 from ...ground.options.option import checked_options, fields_of
 from ...ground.options.source_options import NAMED
-from ...ground.options.words import Names
+from ...ground.options.words import Names, words_in
 from ...ground.output.errors import UsageError, noting_what_is_left_out
 from ...ground.spelling import spelled
 from ...ground.user_files import INCLUDE, UserFile, file_of, files_in, names_an_encoder, with_files
@@ -119,9 +119,8 @@ def located(table: Table, options: Mapping[str, Any], folder: Path) -> dict[str,
     known = fields_of(table.options)
     placed: Mapping[str, Callable[[Path, str], str]] = {INCLUDE: _root_in}
     files = {name for name in options if name in known and known[name].option.files}
-    words = {name: (value,) if isinstance(value := options[name], str) else value for name in files}
     located = {
-        name: tuple(placed.get(name, path_in)(folder, str(word)) for word in words[name] or ()) for name in files
+        name: tuple(placed.get(name, path_in)(folder, str(word)) for word in words_in(options[name])) for name in files
     }
     return {**options, **{name: located[name] if known[name].has_names else "".join(located[name]) for name in files}}
 

@@ -17,7 +17,7 @@ from typing import Annotated, Any, get_args, get_type_hints
 from ..output.errors import UsageError
 from ..user_files import file_names
 from .counts import whole_number
-from .words import Names, names, text_of
+from .words import Names, names, typed
 
 
 @dataclass(frozen=True)
@@ -230,7 +230,7 @@ class Field:
     @property
     def typed(self) -> Any:
         """The default as it is typed."""
-        return text_of(self.default) if isinstance(self.default, tuple) else self.default
+        return typed(self.default)
 
     def read(self, value: Any, folder: Path = Path()) -> Any:
         """Return what an option holds for what was given: names in place of the text of several.

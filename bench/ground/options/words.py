@@ -43,3 +43,13 @@ def names(text: str, is_whole: Callable[[str], bool] = lambda _: False, repeats:
 def text_of(words: Iterable[Word]) -> str:
     """Return names as they are typed."""
     return ",".join(map(str, words))
+
+
+def typed(value: Any) -> Any:
+    """Return an option's value as it is typed: several names are one text."""
+    return text_of(value) if isinstance(value, tuple) else value
+
+
+def words_in(value: str | Names | None) -> Names:
+    """Return the words of an option's value: of one that is a text that text, of several names these."""
+    return (value,) if isinstance(value, str) else value or ()
