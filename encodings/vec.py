@@ -175,6 +175,9 @@ def select(condition, a: S, b: S) -> S:
     """GLSL's `condition ? a : b`, for arrays and vectors."""
     if isinstance(a, Vec2 | Vec3 | Vec4):
         chosen = type(a)(*(jnp.where(condition, p, q) for p, q in zip(a, b, strict=True)))  # type: ignore[arg-type]
+    elif isinstance(a, float) and isinstance(b, float):
+        # GLSL's literals; as Python's they would have 64 bits where JAX has them, and so would what comes of them.
+        chosen = jnp.where(condition, jnp.float32(a), jnp.float32(b))
     else:
         chosen = jnp.where(condition, a, b)  # type: ignore[arg-type]
     return cast("S", chosen)
@@ -207,7 +210,7 @@ def sign_not_zero(v: Any) -> Any:
     """1 or -1, and 1 for either zero, so that a fold has no seam of zeros. For arrays and vectors."""
     if isinstance(v, Vec2 | Vec3):
         return type(v)(*(sign_not_zero(c) for c in v))
-    return jnp.where(v < 0.0, -1.0, 1.0)
+    return jnp.where(v < 0.0, jnp.full_like(v, -1.0), jnp.ones_like(v))
 
 
 def number_of(index, levels: int):

@@ -37,7 +37,7 @@ CAPABILITIES: Mapping[str, Callable[[], object]] = MappingProxyType(
         "glTF files that Draco or meshoptimizer packed": _require_unpackers,
         "quality --arithmetic half by GLSL": half_device,
         "quality by WGSL (wgpu and a Vulkan driver)": wgsl.device,
-        "code in C, and fast rows of 2^26 normals and more (cc)": c.compiler,
+        "code in C, and fast rows of quality (cc)": c.compiler,
         "code in C of your files (Landlock)": walls.require,
         "code in Slang (slangc)": lambda: tools.path_of(tools.SLANG),
         "rays (method_rms of effects)": require_rays,

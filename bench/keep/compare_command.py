@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from ..ground.machine.settings import ROWS_BY
 from ..ground.output.errors import tell
 from ..ground.output.writing import without
 from .change_lines import in_short, total, what_matters
@@ -53,6 +54,6 @@ def compare_command(before: Path, after: Path, fail_on: str, format: str, output
 
 def _settings_apart(one: Mapping[str, Any], other: Mapping[str, Any]) -> list[str]:
     """The settings from outside that two runs had otherwise, in words."""
-    names = sorted(name for name in {*one, *other} if name.startswith(SETTING))
+    names = sorted(name for name in {*one, *other} if name.startswith(SETTING) or name == ROWS_BY)
     values = ((name.removeprefix(SETTING), one.get(name, "not set"), other.get(name, "not set")) for name in names)
     return [f"{name} was {before} and is {after}" for name, before, after in values if before != after]

@@ -31,7 +31,7 @@ SMALL, SMALL_OTHER = 0.1, 0.2
 LITTLE = f"{SMALL:g} dB, about {10 ** (SMALL / 20) - 1:.0%}".replace("%", " %")
 # What decides a figure beside the code that is measured: where two rows differ in one of them, so may their figures.
 ASKED = ("count", "seed", "size", "samples", "lights")
-CONDITIONS = (*ASKED, "device", "rounded_by", "compiled_by")
+CONDITIONS = (*ASKED, "device", "rounded_by")
 # What is said of a row that the later run does not have.
 GONE = "gone"
 ONLY = {True: "only before", False: "only after"}

@@ -12,8 +12,9 @@ from ...encodings.storages.storage import STORAGES
 from ...gbuffer.codecs.loops import MANY, loop_limit
 from ...gbuffer.gl.device import NoDeviceError, device
 from ..ground.compilers import tools
-from ..ground.machine.settings import settings
+from ..ground.machine.settings import ROWS_BY, settings
 from ..ground.machine.systems.system_files import processor_lines
+from ..ground.native import library
 from ..ground.options.gpu_families import ANV, HASVK, NVRTC, RADV
 from ..ground.output.errors import MissingError
 from ..shaders.isa import isa, spirv
@@ -39,6 +40,7 @@ def machine() -> dict[str, str]:
         "system": platform.platform(),
         "processor": f"{processor()}, {os.cpu_count()} cores",
         **{package: version(package) for package in PACKAGES},
+        ROWS_BY: "compiled C" if library.compiler() else "XLA",
         "jax devices": ", ".join(f"{d.platform} {d.device_kind}" for d in jax.devices()),
     }
     return facts | {f"setting {name}": value for name, value in settings().items()} | _gl_facts() | compilers()

@@ -11,8 +11,14 @@ from typing import Any
 def a_tenth(values: Iterable[Any]) -> list[Any]:
     """A tenth of some values, another one for each commit, in their order. The nightly has them all."""
     every = list(values)
-    drawn = set(random.Random(_commit()).sample(range(len(every)), -(-len(every) // 10)))
-    return [value for at, value in enumerate(every) if at in drawn]
+    return drawn_of(every, -(-len(every) // 10))
+
+
+def drawn_of(values: Iterable[Any], count: int) -> list[Any]:
+    """Return so many of some values, others for each commit, in their order."""
+    every = list(values)
+    drawn = set(random.Random(_commit()).sample(range(len(every)), count))
+    return [value for index, value in enumerate(every) if index in drawn]
 
 
 def is_drawn(test: str, of: int) -> bool:

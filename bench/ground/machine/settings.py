@@ -7,6 +7,8 @@ import os
 # Variables that change what JAX and Mesa compute, but for where they keep what they have compiled.
 SETTINGS = ("XLA_FLAGS", "JAX_", "MESA_", "GALLIUM_", "GALLIVM_", "LP_", "LIBGL_", "NIR_")
 KEEPS = "CACHE"
+# The fact of a run that says whose arithmetic its normals have.
+ROWS_BY = "normals by"
 
 
 def settings() -> dict[str, str]:

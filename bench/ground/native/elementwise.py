@@ -185,6 +185,8 @@ def _converted(equation: Any, value: str) -> str:
         (low, least), (high, most) = ((_literal(source.type(b)), _literal(target.type(b))) for b in bounds)
         within = f"{value} <= {low} ? {least} : {value} >= {high} ? {most} : ({c_type(target)}){value}"
         return f"{value} != {value} ? 0 : {within}"
+    if source.kind in "iu" and target.kind == "f" and not isinstance(value, _Constant):
+        return f"({c_type(target)})({value} | ({c_type(source)})NOTHING)"
     return f"({c_type(target)}){value}"
 
 

@@ -14,3 +14,24 @@
 // The bits of a number as a number of another type.
 #define VIEWED(source, target, value) \
     ({ source from_ = (value); target to_; memcpy(&to_, &from_, sizeof to_); to_; })
+
+// Numbers below the normal ones are 0, as for JAX and on GPUs; returns how the processor was set before.
+static unsigned flush(void) {
+#ifdef __SSE__
+    unsigned was = __builtin_ia32_stmxcsr();
+    __builtin_ia32_ldmxcsr(was | 0x8040);
+    return was;
+#else
+    return 0;
+#endif
+}
+
+static void set_back(unsigned was) {
+#ifdef __SSE__
+    __builtin_ia32_ldmxcsr(was);
+#endif
+}
+
+// 0, which the compiler does not know. GCC makes one rounding of a conversion to an integer and back, which keeps the
+// sign of -0.3 where the integer 0 has none.
+int32_t NOTHING;

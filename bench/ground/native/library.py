@@ -19,15 +19,12 @@ from ..machine.devices import processor_kind
 from ..output import cache as kept
 from ..output.errors import MissingError
 
-# Sums keep their order, and NaN and -0 are what they are. Integers wrap around, as JAX's do.
-FLAGS = ("-O3", "-march=native", "-funroll-loops", "-fno-math-errno", "-fno-trapping-math", "-fwrapv")
-FLAGS += ("-fPIC", "-shared", "-w")
+# Sums keep their order, products are rounded before they are added, and NaN and -0 are what they are. Integers wrap
+# around, as JAX's do.
+FLAGS = ("-O3", "-march=native", "-funroll-loops", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math")
+FLAGS += ("-fwrapv", "-fPIC", "-shared", "-w")
 HEAD = Path(__file__).with_suffix(".h")
 COMPILING_S = 30
-# From so many normals on the C compiler's code fills sets and measures them. It rounds a few products otherwise than
-# XLA, which shows in the printed digits of 32 of 430 codecs, so smaller sets, which take seconds by either, have one
-# arithmetic. What one compiler fills the other one reads more slowly, so both begin at the same size.
-LARGE = 2**26
 NONE = tools.MISSING[tools.C]
 DIGEST = hashlib.sha256().digest_size
 

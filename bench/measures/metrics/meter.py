@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import itertools
 import operator
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import reduce
 from threading import Lock
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
@@ -174,13 +174,17 @@ def _on_device(plane: Shaped[Array | np.ndarray, "*shape"]) -> Shaped[Array, "*s
 class Measures(Protocol):
     """What measures chunks of normals."""
 
-    @property
-    def compiler(self) -> str:
-        """What compiled it."""
+    def decoded(self, block: Any) -> Vec3:
+        """What a block is decoded as."""
         ...
 
-    def parts(self, loads: Sequence[Load], met_deg: float = 0.0, device: Any = None) -> list[ChunkTotal]:
-        """What they add up to, in one part or several; as for `Meter.one`."""
+    def one(self, load: Load, met_deg: float = 0.0, device: Any = None) -> ChunkTotal:
+        """Return the statistics of one chunk.
+
+        Args:
+            met_deg: an angle that another chunk has. The worst normal is left out if it turns by less.
+            device: the JAX device that computes them; None for any.
+        """
         ...
 
 
@@ -211,18 +215,12 @@ class Meter:
     def __init__(self, decode: Callable[..., Vec3], given: Sequence[Any] = ()):
         self._decode, self._given = decode, given
 
-    @property
-    def compiler(self) -> str:
-        """What compiled it."""
-        return "XLA"
-
     def decoded(self, block: Any) -> Vec3:
         """What a block is decoded as."""
         return self._decode(block, *self._given)
 
     def one(self, load: Load, met_deg: float = 0.0, device: Any = None) -> ChunkTotal:
-        """One chunk's part of the statistics, by one of JAX's devices. Its worst normal is not looked for where an
-        angle of `met_deg`, which another chunk has, is larger than all of its own."""
+        """Return the statistics of one chunk; as for `Measures.one`."""
         with jax.enable_x64(True), jax.default_device(device):
             chunk = jax.tree.map(_on_device, load())
             decoded = self.decoded(chunk)
@@ -231,10 +229,6 @@ class Meter:
         if is_smaller(figures.largest, met_deg):
             return figures, histogram, None
         return figures, histogram, _worst(bins, figures.largest, chunk.n, decoded)
-
-    def parts(self, loads: Sequence[Load], met_deg: float = 0.0, device: Any = None) -> list[ChunkTotal]:
-        """The parts of several chunks; as for `one`."""
-        return [self.one(load, met_deg, device) for load in loads]
 
     def total(self, loads: Iterable[Load], tick: Callable[[], None] = idle) -> ErrorTotal:
         """What the chunks of a set, shared among the cores, add up to.
@@ -255,32 +249,22 @@ def measure_together(
     meters: Sequence[Measures],
     loads: Iterable[Load],
     tick: Callable[[int], None],
-    at_once: int = 1,
 ) -> list[ErrorTotal]:
     """What each meter measures of one set, each chunk of which is made once; `tick` is told whose chunk is done.
 
-    Chunks are dealt to all devices that JAX has, so many at once. The rest is as for `Meter.total`.
+    Chunks are dealt to all devices that JAX has. The rest is as for `Meter.total`.
     """
     totals = [ErrorTotal() for _ in meters]
     whose = itertools.cycle(range(len(meters)))
-    dealt = zip(in_groups(map(Once, loads), at_once), itertools.cycle(jax.local_devices()), strict=False)
-    work = ((*each, *group) for group in dealt for each in zip(meters, totals, strict=True))
+    dealt = zip(map(Once, loads), itertools.cycle(jax.local_devices()), strict=False)
+    work = ((*each, *chunk) for chunk in dealt for each in zip(meters, totals, strict=True))
 
-    def measured(item: tuple[Measures, ErrorTotal, list[Load], Any]) -> tuple[int, list[ChunkTotal]]:
-        meter, total, chunks, device = item
-        return len(chunks), meter.parts(chunks, total.met_deg, device)
+    def measured(item: tuple[Measures, ErrorTotal, Load, Any]) -> ChunkTotal:
+        meter, total, load, device = item
+        return meter.one(load, total.met_deg, device)
 
-    for count, parts in on_all_cores(measured, work):
+    for part in on_all_cores(measured, work):
         index = next(whose)
-        for part in parts:
-            totals[index].add(part)
-        for _ in range(count):
-            tick(index)
+        totals[index].add(part)
+        tick(index)
     return totals
-
-
-def in_groups(loads: Iterable[Load], size: int) -> Iterator[list[Load]]:
-    """Loads, so many at a time."""
-    iterator = iter(loads)
-    while group := list(itertools.islice(iterator, size)):
-        yield group

@@ -1,4 +1,4 @@
-"""What `metrics/meter.py` measures, of large sets and faster: the same JAX functions, compiled by the C compiler."""
+"""What `metrics/meter.py` measures, faster: the same JAX functions, compiled by the C compiler."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import numpy as np
 
 from ....encodings.vec import Vec3
 from ...ground.native.elementwise import c_function, c_type
-from ...ground.native.library import address, compiler, library, source
+from ...ground.native.library import address, library, source
 from ..metrics.histogram import BINS, bin_of, bins_of, lower_edge
 from ..metrics.meter import Load, errors, is_smaller, worst_of
 from ..metrics.totals import ChunkTotal, Figures, Worst
@@ -42,21 +42,14 @@ class _Chunk(ctypes.Structure):
     )
 
 
-class _Chunks:
-    """Chunks for row.c, all in one call: between calls a thread waits for Python's lock.
+class _Held:
+    """A chunk for row.c, with the arrays that it points to."""
 
-    Attributes:
-        given: what its functions take of them.
-    """
-
-    def __init__(self, chunks: Sequence[Any]):
-        held = ([*map(np.asarray, (*chunk.n, *chunk.view, chunk.covered))] for chunk in chunks)
-        self._held = [(*arrays, np.empty(arrays[0].size // BLOCK, np.float32)) for arrays in held]
-        made = (_Chunk * len(chunks))()
-        for one, (*planes, covered, tops) in zip(made, self._held, strict=True):
-            one.planes[:] = [*map(address, planes)]
-            one.covered, one.tops, one.count = address(covered), address(tops), planes[0].size
-        self.given = made, ctypes.c_size_t(len(chunks))
+    def __init__(self, chunk: Any):
+        *planes, covered = self._arrays = [*map(np.asarray, (*chunk.n, *chunk.view, chunk.covered))]
+        self._tops = np.empty(covered.size // BLOCK, np.float32)
+        addresses = (ctypes.c_void_p * len(planes))(*map(address, planes))
+        self.chunk = ctypes.byref(_Chunk(addresses, address(covered), address(self._tops), covered.size))
 
 
 @cache
@@ -75,7 +68,7 @@ def _row_library() -> ctypes.CDLL:
 
 
 class NativeMeter:
-    """Measures what a round trip makes of chunks of normals. All chunks that it is given at once are one part.
+    """Measures what a round trip makes of chunks of normals.
 
     Args:
         round_trip: (normals, view positions, *given) -> decoded normals; elementwise.
@@ -90,28 +83,29 @@ class NativeMeter:
         self._given = np.array([number for one in given for number in one], np.float64)
         function = c_function("round_trip", round_trip, FLOATS, FLOATS, *types)
         text = source(HERE / "decode.c", function, [c_type(FLOAT)] * len(self._given), block=BLOCK)
-        self._library = library(text, "decode")
+        self._library = library(text, "decode", "decode_all")
         decode = ctypes.cast(self._library.decode, ctypes.c_void_p)
         self._codec, self._row_library = ctypes.byref(_Codec(decode, address(self._given))), _row_library()
 
-    @property
-    def compiler(self) -> str:
-        """What compiled it."""
-        return compiler()
+    def decoded(self, chunk: Any) -> Vec3:
+        """What the normals of a chunk, a multiple of BLOCK, are decoded as."""
+        planes = [*map(np.asarray, (*chunk.n, *chunk.view))]
+        decoded = Vec3(*(np.empty(planes[0].shape, np.float32) for _ in range(3)))
+        taken, given = ((ctypes.c_void_p * len(arrays))(*map(address, arrays)) for arrays in (planes, decoded))
+        self._library.decode_all(taken, address(self._given), ctypes.c_size_t(planes[0].size), given)
+        return decoded
 
-    def parts(self, loads: Sequence[Load], met_deg: float = 0.0, device: Any = None) -> list[ChunkTotal]:  # noqa: ARG002
-        """The statistics of chunks, as `Meter.parts` gives them; JAX's device is of no concern."""
-        figures, counts = np.zeros(len(Figures._fields)), np.zeros(BINS + 1, np.uint32)
-        chunks = _Chunks([load() for load in loads])
-        self._row_library.row(self._codec, *chunks.given, address(figures), address(counts))
-        found = Figures(*figures.tolist())
-        worst = None if is_smaller(found.largest, met_deg) else self._worst(chunks, found.largest, counts)
-        return [(found, counts.astype(np.int64), worst)]
+    def one(self, load: Load, met_deg: float = 0.0, device: Any = None) -> ChunkTotal:  # noqa: ARG002
+        """Return the statistics of one chunk, as `Measures.one` does; the device is always the processor."""
+        sums, counts, held = np.zeros(len(Figures._fields)), np.zeros(BINS + 1, np.uint32), _Held(load())
+        self._row_library.row(self._codec, held.chunk, address(sums), address(counts))
+        figures = Figures(*sums.tolist())
+        return figures, counts, None if is_smaller(figures.largest, met_deg) else self._worst(held, figures, counts)
 
-    def _worst(self, chunks: _Chunks, largest: float, counts: np.ndarray) -> Worst | None:
-        """The normal with the largest angle, among those of the highest bin; None where none counts."""
-        number = bin_of(largest)
-        found, least = np.empty((counts[number], 6), np.float32), ctypes.c_float(lower_edge(number))
-        room = ctypes.c_size_t(len(found))
-        have = self._row_library.in_bin(self._codec, *chunks.given, least, number, room, address(found))
-        return worst_of(found[:have, :3], found[:have, 3:])
+    def _worst(self, held: _Held, figures: Figures, counts: np.ndarray) -> Worst | None:
+        """Return the normal with the largest angle, among those of the highest bin; None if no normal counts."""
+        number = bin_of(figures.largest)
+        vectors, least = np.empty((counts[number], 6), np.float32), ctypes.c_float(lower_edge(number))
+        room = ctypes.c_size_t(len(vectors))
+        have = self._row_library.in_bin(self._codec, held.chunk, least, number, room, address(vectors))
+        return worst_of(vectors[:have, :3], vectors[:have, 3:])

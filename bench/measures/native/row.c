@@ -2,7 +2,6 @@
 // decode; BINS, of the histogram; BLOCK, how many normals are measured at once, so that what is computed of them stays in
 // the first-level cache.
 
-#define QUARTER (BLOCK / 4)
 // Lanes are summed apart, in registers.
 #define LANES 16
 
@@ -47,30 +46,19 @@ static void measure(const Codec *codec, const Chunk *chunk, size_t first, float 
         }
 }
 
-// Four numbers are added in float, which loses nothing that shows, and these sums in double. Numbers whose sum is too
-// large for a float are added one by one.
 static double summed(const float *a) {
     double lanes[LANES] = {0}, sum = 0;
-    for (size_t k = 0; k < QUARTER; k += LANES)
-        for (size_t l = 0; l < LANES; l++) {
-            const float *b = a + k + l;
-            lanes[l] += (b[0] + b[QUARTER]) + (b[2 * QUARTER] + b[3 * QUARTER]);
-        }
+    for (size_t k = 0; k < BLOCK; k += LANES)
+        for (size_t l = 0; l < LANES; l++) lanes[l] += a[k + l];
     for (size_t l = 0; l < LANES; l++) sum += lanes[l];
-    if (sum < INFINITY) return sum;
-    sum = 0;
-    for (size_t k = 0; k < BLOCK; k++) sum += a[k];
     return sum;
 }
 
+// The squares are rounded to float before they are added, as XLA's are.
 static double summed_squares(const float *a) {
     double lanes[LANES] = {0}, sum = 0;
-    for (size_t k = 0; k < QUARTER; k += LANES)
-        for (size_t l = 0; l < LANES; l++) {
-            const float *b = a + k + l;
-            lanes[l] += (b[0] * b[0] + b[QUARTER] * b[QUARTER]) +
-                (b[2 * QUARTER] * b[2 * QUARTER] + b[3 * QUARTER] * b[3 * QUARTER]);
-        }
+    for (size_t k = 0; k < BLOCK; k += LANES)
+        for (size_t l = 0; l < LANES; l++) lanes[l] += a[k + l] * a[k + l];
     for (size_t l = 0; l < LANES; l++) sum += lanes[l];
     return sum;
 }
@@ -85,23 +73,6 @@ static float largest(const float *a) {
     return VIEWED(uint32_t, float, top);
 }
 
-// Numbers below the normal ones are 0, as for JAX and on GPUs; returns how the processor was set before.
-static unsigned flush(void) {
-#ifdef __SSE__
-    unsigned was = __builtin_ia32_stmxcsr();
-    __builtin_ia32_ldmxcsr(was | 0x8040);
-    return was;
-#else
-    return 0;
-#endif
-}
-
-static void set_back(unsigned was) {
-#ifdef __SSE__
-    __builtin_ia32_ldmxcsr(was);
-#endif
-}
-
 // Has the memory fetch the normals of the next block while this one is computed: a line of the cache holds 16 numbers.
 static void fetch_next(const Chunk *chunk, size_t first) {
     if (first + BLOCK == chunk->count) return;
@@ -109,7 +80,9 @@ static void fetch_next(const Chunk *chunk, size_t first) {
         for (size_t k = first + BLOCK; k < first + 2 * BLOCK; k += 16) __builtin_prefetch(chunk->plane[c] + k);
 }
 
-static void add(const Codec *codec, const Chunk *chunk, double *figures, uint32_t *counts) {
+// Adds to `figures`, in the order of Python's `Figures`, and to `counts`, those of the bins.
+void row(const Codec *codec, const Chunk *chunk, double *figures, uint32_t *counts) {
+    unsigned was = flush();
     Block block;
     float decoded[3][BLOCK];
     for (size_t first = 0; first < chunk->count; first += BLOCK) {
@@ -130,38 +103,30 @@ static void add(const Codec *codec, const Chunk *chunk, double *figures, uint32_
         chunk->tops[first / BLOCK] = top;
         for (size_t k = 0; k < BLOCK; k++) counts[block.bin[k]]++;
     }
-}
-
-// Adds to `figures`, in the order of Python's `Figures`, and to `counts`, those of the bins: what is in memory at once is
-// fewer than 2^32 normals, and small counts stay in the first-level cache.
-void row(const Codec *codec, const Chunk *chunks, size_t number, double *figures, uint32_t *counts) {
-    unsigned was = flush();
-    for (size_t c = 0; c < number; c++) add(codec, chunks + c, figures, counts);
     set_back(was);
 }
 
 // The normals of a bin among blocks whose largest angle is `least` or more: six numbers each into `found`, the normal
 // and its decode, `room` at most. Of those that are decoded as they were only the first is there. Returns how many.
-size_t in_bin(const Codec *codec, const Chunk *chunks, size_t number, float least, int bin, size_t room, float *found) {
+size_t in_bin(const Codec *codec, const Chunk *chunk, float least, int bin, size_t room, float *found) {
     unsigned was = flush();
     Block block;
     float decoded[3][BLOCK];
     size_t have = 0;
     _Bool has_same = 0;
-    for (const Chunk *chunk = chunks; chunk < chunks + number; chunk++)
-        for (size_t first = 0; first < chunk->count; first += BLOCK) {
-            if (chunk->tops[first / BLOCK] < least) continue;
-            measure(codec, chunk, first, decoded, &block);
-            for (size_t k = 0; k < BLOCK; k++) {
-                if (block.bin[k] != bin || have == room) continue;
-                float *to = found + 6 * have;
-                for (int c = 0; c < 3; c++) to[c] = chunk->plane[c][first + k], to[3 + c] = decoded[c][k];
-                _Bool is_same = to[0] == to[3] && to[1] == to[4] && to[2] == to[5];
-                if (is_same && has_same) continue;
-                has_same |= is_same;
-                have++;
-            }
+    for (size_t first = 0; first < chunk->count; first += BLOCK) {
+        if (chunk->tops[first / BLOCK] < least) continue;
+        measure(codec, chunk, first, decoded, &block);
+        for (size_t k = 0; k < BLOCK; k++) {
+            if (block.bin[k] != bin || have == room) continue;
+            float *to = found + 6 * have;
+            for (int c = 0; c < 3; c++) to[c] = chunk->plane[c][first + k], to[3 + c] = decoded[c][k];
+            _Bool is_same = to[0] == to[3] && to[1] == to[4] && to[2] == to[5];
+            if (is_same && has_same) continue;
+            has_same |= is_same;
+            have++;
         }
+    }
     set_back(was);
     return have;
 }

@@ -18,7 +18,7 @@ from ....encodings.codecs.encoding import Encoding
 from ....encodings.elementary import sincos_pi
 from ....encodings.vec import Vec3, from_array, sqrt
 from ...ground.native.elementwise import NotElementwiseError
-from ...ground.native.library import LARGE, NoCompilerError
+from ...ground.native.library import NoCompilerError
 from ...ground.options.counts import DEFAULT_COUNT
 from .fill import Fill
 
@@ -140,7 +140,7 @@ def _uniform_chunk(start, count, *offsets, whole: bool) -> Chunk:
 
 @cache
 def _fill(whole: bool) -> Fill | None:
-    """What makes directions faster than XLA's code; None where nothing can be compiled."""
+    """Return what makes directions faster than XLA's code; None where nothing can be compiled."""
     try:
         return Fill(partial(_direction, whole=whole), [np.dtype(np.uint32)] * 3)
     except (NoCompilerError, NotElementwiseError):
@@ -159,7 +159,7 @@ def _make_uniform(name: str, title: str, whole: bool, count: int, seed: int) -> 
     def chunk(start: int) -> Chunk:
         turn, first = divmod(start, TURN)
         shifted = ((int(o) + turn * by) % TURN for o, by in zip(offsets, SHIFTS, strict=True))
-        if count >= LARGE and (fill := _fill(whole)):
+        if fill := _fill(whole):
             return Chunk(fill(CHUNK, first, *shifted), _ahead(), np.arange(CHUNK) < count - start)
         with jax.enable_x64(True):
             return _uniform_chunk(
@@ -210,9 +210,7 @@ def _chunks(n: np.ndarray, view: np.ndarray, covered: np.ndarray) -> list[Chunk]
     planes = Chunk(
         Vec3(*map(np.array, from_array(n))), Vec3(*np.ascontiguousarray(view.T)), np.pad(covered[:, 0], (0, missing))
     )
-    # NumPy has large arrays in large pages, which C reads faster; JAX would copy them.
-    kept = np.asarray if count >= LARGE else jnp.asarray
-    return [jax.tree.map(lambda a, at=at: kept(a[at : at + CHUNK]), planes) for at in range(0, count, CHUNK)]
+    return [jax.tree.map(lambda a, at=at: a[at : at + CHUNK], planes) for at in range(0, count, CHUNK)]
 
 
 def axes(count: int = 0, seed: int = 0) -> NormalSet:

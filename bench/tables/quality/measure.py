@@ -25,8 +25,8 @@ from ....gbuffer.codecs.codec_passes import CodecPasses
 from ....gbuffer.gl.device import device
 from ...ground.machine.cores import on_all_cores
 from ...ground.native.elementwise import NotElementwiseError
-from ...ground.native.library import LARGE, NoCompilerError
-from ...ground.output.errors import MissingError
+from ...ground.native.library import NoCompilerError, compiler
+from ...ground.output.errors import MissingError, tell
 from ...measures.metrics.code_limits import AREAS, effective_bits
 from ...measures.metrics.meter import Decoded, Load, Measures, Meter, idle, measure_together
 from ...measures.metrics.totals import ErrorTotal, Statistics, Worst, psnr_db, statistics, total_of
@@ -45,19 +45,12 @@ from .table import TABLE
 UNMEASURABLE = (*BY_BACKEND, MissingError)
 # How many cases share a set's chunks: each keeps its own histogram.
 TOGETHER = 16
-# How many chunks the C compiler's code measures in turn: with fewer, what Python does for each shows.
-AT_ONCE = 4
 # What the row of a part has in place of figures.
 TOTAL = "total"
 # What an unused channel is drawn as: -1 is black.
 UNUSED = -1.0
 
 Tick = Callable[[], None]
-
-
-def is_compiled(backend: str, count: int) -> bool:
-    """Whether rows of so many normals are measured by the C compiler's code, where there is a compiler and it can."""
-    return backend == "jax" and count >= LARGE
 
 
 @dataclass(frozen=True)
@@ -79,16 +72,6 @@ class QualityCase:
         return [replace(self, normal_set=part) for part in self.normal_set.parts]
 
     @property
-    def is_compiled(self) -> bool:
-        """As `is_compiled` says of it."""
-        return is_compiled(self.backend, self.normal_set.count)
-
-    @property
-    def at_once(self) -> int:
-        """How many chunks are measured without being asked for the next."""
-        return AT_ONCE if self.is_compiled else 1
-
-    @property
     def domain(self) -> str | None:
         """What limits and suprema are over: "sphere", or "hemisphere" where the set or the encoding is for z >= 0; None
         of a set that is not uniform."""
@@ -99,21 +82,21 @@ class QualityCase:
 
 
 @cache
-def meter_of(codec: Codec, is_compiled: bool) -> Measures:
-    """What measures a codec; compiled by the C compiler if asked for, where there is one that can."""
+def meter_of(codec: Codec) -> Measures:
+    """Return what measures a codec: compiled C, or XLA's program where there is no C compiler or no C for the codec."""
     # Noise is of pixels, and what the C compiler is given is of each normal by itself.
-    if is_compiled and not codec.is_dithered:
+    if not codec.is_dithered:
         like, scales = shared(codec.storage, codec.encoding.components)
         with suppress(NoCompilerError, NotElementwiseError):
             return NativeMeter(_trip(codec.encoding, like, codec.rounding), scales)
-    return Meter(*_decoder(codec))
+    return meter_by_xla(codec)
 
 
-def _decoder(codec: Codec) -> tuple[Callable[..., Vec3], tuple[Any, ...]]:
-    """The program that decodes chunks, and what it is given besides: the scales, after the noise where there is any."""
+def meter_by_xla(codec: Codec) -> Meter:
+    """Return what measures a codec by XLA's program."""
     like, scales = shared(codec.storage, codec.encoding.components)
-    program = _program(codec.encoding, like, codec.rounding)
-    return program, (_noise_of(codec, CHUNK_WIDTH, CHUNK), *scales) if codec.is_dithered else scales
+    noise = (_noise_of(codec, CHUNK_WIDTH, CHUNK),) if codec.is_dithered else ()
+    return Meter(_program(codec.encoding, like, codec.rounding), (*noise, *scales))
 
 
 def _noise_of(codec: Codec, width: int, count: int) -> tuple[np.ndarray, ...]:
@@ -147,16 +130,16 @@ def _noisy_trip(encoding: Encoding, like: Storage) -> Callable[..., Vec3]:
 
 
 def round_trip(codec: Codec, n: np.ndarray, view: np.ndarray) -> np.ndarray:
-    """What unit normals come back as by JAX, (count, 3) as they are, not renormalised; by the program that measures.
+    """Return what unit normals are decoded as, (count, 3), not renormalised, by the program that measures rows.
 
     Args:
         n, view: unit normals and view positions, float32 of shape (count, 3).
     """
-    (decode, given), found = _decoder(codec), []
+    meter, decoded = meter_of(codec), []
     with jax.enable_x64(True):
         for load in from_arrays("", "", n, view, np.ones(len(n), bool)).loads():
-            found.append(np.stack([np.asarray(plane).ravel() for plane in decode(load(), *given)], axis=1))
-    return np.concatenate(found)[: len(n)]
+            decoded.append(np.stack([np.asarray(plane).ravel() for plane in meter.decoded(load())], axis=1))
+    return np.concatenate(decoded)[: len(n)]
 
 
 @cache
@@ -179,21 +162,19 @@ class Decoding:
     meter: Measures
     loads: Iterable[Load]
     how: Mapping[str, str]
-    at_once: int = 1
 
     def total(self, tick: Tick = idle) -> ErrorTotal:
         """What its chunks add up to."""
-        return measure_together([self.meter], self.loads, lambda _: tick(), self.at_once)[0]
+        return measure_together([self.meter], self.loads, lambda _: tick())[0]
 
 
 @contextmanager
 def _decodings_by_jax(case: QualityCase) -> Iterator[Decoding]:
-    meter = meter_of(case.codec, case.is_compiled)
-    yield Decoding(meter, case.normal_set.loads(), _how_by_jax(meter), case.at_once)
+    yield Decoding(meter_of(case.codec), case.normal_set.loads(), _how_by_jax())
 
 
-def _how_by_jax(meter: Measures) -> dict[str, str]:
-    return {"device": jax.devices()[0].device_kind, "rounded_by": "emulation", "compiled_by": meter.compiler}
+def _how_by_jax() -> dict[str, str]:
+    return {"device": jax.devices()[0].device_kind, "rounded_by": "emulation"}
 
 
 @contextmanager
@@ -289,10 +270,7 @@ def merged(case: QualityCase, rows: Sequence[Row]) -> Row:
     total = ErrorTotal()
     for row in rows:
         total.add_total(total_of(row[TOTAL]))
-    how = {name: value for name, value in rows[0].items() if name != TOTAL}
-    # A command that goes on where there is another compiler, or none, mixes them.
-    compilers = dict.fromkeys(name for row in rows if (name := row.get("compiled_by")))
-    return _row(case, total, how | {"compiled_by": "; ".join(compilers) or None})
+    return _row(case, total, {name: value for name, value in rows[0].items() if name != TOTAL})
 
 
 def _case_columns(case: QualityCase) -> Row:
@@ -368,18 +346,25 @@ def rows(chosen: Iterable[QualityCase], tick: Callable[[QualityCase], None]) -> 
 def _rows_together(group: list[QualityCase], tick: Callable[[QualityCase], None]) -> Iterator[Row]:
     """A row for each case; cases that JAX can measure share the normals of their set."""
     shared = [case for case in group if case.backend == "jax" and has_twin(case.codec.encoding)]
-    measured: dict[int, tuple[ErrorTotal, Measures]] = {}
+    measured: dict[int, ErrorTotal] = {}
     if shared:
-        meters = [*on_all_cores(lambda case: meter_of(case.codec, case.is_compiled), shared)]
-        loads, at_once = shared[0].normal_set.loads(), shared[0].at_once
-        totals = measure_together(meters, loads, lambda index: tick(shared[index]), at_once)
-        measured = {id(case): (total, meter) for case, total, meter in zip(shared, totals, meters, strict=True)}
+        meters = [*on_all_cores(lambda case: meter_of(case.codec), shared)]
+        _tell_by_xla(case for case, meter in zip(shared, meters, strict=True) if isinstance(meter, Meter))
+        totals = measure_together(meters, shared[0].normal_set.loads(), lambda index: tick(shared[index]))
+        measured = {id(case): total for case, total in zip(shared, totals, strict=True)}
     for case in group:
         if id(case) in measured:
-            total, meter = measured[id(case)]
-            yield _row(case, total, _how_by_jax(meter))
+            yield _row(case, measured[id(case)], _how_by_jax())
         else:
             yield measure(case, lambda case=case: tick(case))
+
+
+def _tell_by_xla(chosen: Iterable[QualityCase]) -> None:
+    """Say of which encodings the rows are XLA's, whose roundings are others than those of compiled C."""
+    if not compiler():
+        tell("no C compiler found (cc): XLA computes the rows, which is slower, and the last digits may differ")
+    elif names := dict.fromkeys(case.codec.encoding.name for case in chosen if not case.codec.is_dithered):
+        tell(f"XLA computes {', '.join(names)}; compiled C, which computes the other rows, cannot")
 
 
 @dataclass(frozen=True)

@@ -205,12 +205,6 @@ COLUMNS = (
     shared.EXACT,
     shared.DEVICE,
     shared.ROUNDED_BY,
-    Column(
-        "compiled_by",
-        "What compiled the JAX functions: XLA or, of 67108864 pixels or normals and more, this machine's C compiler.",
-        HOW,
-        shown=False,
-    ),
     shared.SEED,
     shared.SKIPPED,
 )

@@ -264,9 +264,8 @@ def _worst(step: Step) -> Any:
 
 
 def _needs(step: Step) -> frozenset[str]:
-    backend, count = step.key["backend"], step.key.get("count", 0)
-    compiled = {C_COMPILER} if measure.is_compiled(backend, count) else set()
-    return BACKENDS_NEED[backend] | compiled
+    backend = step.key["backend"]
+    return BACKENDS_NEED[backend] | ({C_COMPILER} if backend == "jax" else set())
 
 
 WORK = Work(

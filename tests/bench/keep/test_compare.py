@@ -34,16 +34,16 @@ def test_figures_are_compared_exactly_and_nan_is_itself():
 
 
 def test_rows_that_were_measured_otherwise_are_said():
-    """By another compiler, or of another number of normals: no figure is set beside it without a word."""
-    row = {"encoding": "xyz", "storage": "rg8", "count": 2**20, "compiled_by": "XLA", "psnr_db": 50.0}
-    others = [row | {"count": 2**26, "compiled_by": "gcc 12"}, row | {"storage": "rg16", "count": 2**26}]
+    """Rounded by another, or of another number of normals: no figure is compared without a word."""
+    row = {"encoding": "xyz", "storage": "rg8", "count": 2**20, "rounded_by": "device", "psnr_db": 50.0}
+    others = [row | {"count": 2**26, "rounded_by": "shader"}, row | {"storage": "rg16", "count": 2**26}]
     runs = [
         Done(MACHINE, [{"table": "quality", "key": {}, "rows": [one]} for one in rows])
         for rows in ([row, row | {"storage": "rg16"}], others)
     ]
     assert measured_otherwise(*runs) == [
         "count was 1048576 and is 67108864 in 2 rows",
-        "compiled_by was XLA and is gcc 12 in 1 row",
+        "rounded_by was device and is shader in 1 row",
     ]
     assert measured_otherwise(runs[0], runs[0]) == []
 

@@ -9,6 +9,7 @@ import pytest
 
 from normalbench.bench.measures.metrics import meter as metrics
 from normalbench.bench.measures.metrics.code_limits import HEMISPHERE, SPHERE, code_limit
+from normalbench.bench.measures.native import meter as native
 from normalbench.bench.subjects.normals.normal_sets import sphere
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.encodings.catalogue import ENCODINGS
@@ -65,6 +66,8 @@ def broken(monkeypatch, angle_between) -> None:
     """Another angle in place of the measure's own, compiled anew."""
     monkeypatch.setattr(metrics, "angle_between", angle_between)
     monkeypatch.setattr(metrics, "_scan", jax.jit(lambda chunk: metrics._traced_scan(chunk)))
+    monkeypatch.setattr(native, "_row_library", native._row_library.__wrapped__)
+    monkeypatch.setattr(quality, "meter_of", quality.meter_of.__wrapped__)
 
 
 def test_an_arc_cosine_in_float32_is_caught(monkeypatch):

@@ -1,5 +1,6 @@
-"""Rows that the C compiler's code measures: those of XLA's code, whatever the set and the decodes are like."""
+"""Rows that compiled C measures: those of XLA, whatever the set and the decodes are like."""
 
+from contextlib import contextmanager
 from dataclasses import replace
 
 import jax
@@ -9,6 +10,7 @@ import pytest
 from directions import random_directions
 
 from normalbench.bench.ground.native import library
+from normalbench.bench.ground.output import errors
 from normalbench.bench.measures.metrics.meter import Meter, measure_together
 from normalbench.bench.measures.metrics.totals import statistics
 from normalbench.bench.measures.native.meter import NativeMeter
@@ -27,10 +29,6 @@ pytestmark = pytest.mark.skipif(not library.compiler(), reason="no C compiler")
 BY_XLA = {"best_fit", "best_fit_searched", "optimised_rings", "spherical_fibonacci", "spherical_lut"}
 
 
-# A root of what cancels next to -z: whether a product is rounded before it is added shows, by hundredths of a degree.
-CANCELS, CANCELLED_DEG = {"spheremap": 1e-3, "cryengine3": 1e-4}, 1e-2
-
-
 # A unit in the last place of a component, as an angle.
 UNIT_DEG = float(np.degrees(2.0**-23))
 
@@ -39,7 +37,7 @@ def both(function, normals: NormalSet, given=()):
     """The statistics of a decoder of (n, view), by C and by XLA."""
     native = NativeMeter(function, given)
     usual = Meter(jax.jit(lambda chunk: function(chunk.n, chunk.view, *given)))
-    totals = (measure_together([meter], normals.loads(), lambda _: None, 3)[0] for meter in (native, usual))
+    totals = (measure_together([meter], normals.loads(), lambda _: None)[0] for meter in (native, usual))
     return [statistics(normals.count, total) for total in totals]
 
 
@@ -56,36 +54,48 @@ def assert_same(found, expected, relative=2e-6, largest_deg=UNIT_DEG):
         assert here == pytest.approx(there, rel=max(relative, least), abs=apart), f"angle_{name}_deg"
 
 
-def codecs_of(name: str) -> list[Codec]:
-    """A codec in the first format of each kind that it fits."""
-    kinds: dict[tuple, Codec] = {}
-    for storage in STORAGES.values():
-        codec = Codec(ENCODINGS[name], storage)
-        if codec.fits and not storage.curved:
-            kinds.setdefault((storage.kind, storage.bits[0] if storage.kind == "float" else 0), codec)
-    return [*kinds.values()]
+def first_meter(name: str):
+    """What measures an encoding in its first storage."""
+    codecs = (Codec(ENCODINGS[name], storage) for storage in STORAGES.values())
+    return quality.meter_of(next(codec for codec in codecs if codec.fits))
 
 
-@pytest.mark.parametrize("name", sorted(set(ENCODINGS) - BY_XLA))
-def test_rows_are_those_of_xla(name, at=0):
-    """Every codec of the catalogue, in a format of each kind."""
-    normals = sphere(CHUNK)
-    for codec in codecs_of(name)[1:] if at else codecs_of(name)[:1]:
-        meters = [quality.meter_of(codec, is_compiled) for is_compiled in (True, False)]
-        assert [meter.compiler for meter in meters] == [library.compiler(), "XLA"]
-        found, expected = (statistics(CHUNK, t) for t in measure_together(meters, normals.loads(), lambda _: None))
-        assert_same(found, expected, *((CANCELS[name], CANCELLED_DEG) if name in CANCELS else ()))
-        if name not in CANCELS:
-            assert found.worst.angle_deg == pytest.approx(expected.worst.angle_deg, rel=2e-5, abs=2e-6), codec.name
+def test_encodings_without_c_are_measured_by_xla():
+    assert {name for name in ENCODINGS if isinstance(first_meter(name), Meter)} == BY_XLA
 
 
-def test_what_c_cannot_say_is_measured_by_xla():
-    found = {name for name in ENCODINGS if _first(name).compiler == "XLA"}
-    assert found == BY_XLA
+def test_encodings_without_c_are_named(capsys):
+    codecs = [Codec(ENCODINGS[name], STORAGES["rgba8"]) for name in ("octahedral", "best_fit")]
+    with told():
+        assert len([*quality.rows(quality.cases(codecs, [sphere(64)], ["jax"]), lambda _: None)]) == 2
+    assert capsys.readouterr().err == (
+        "normalbench: XLA computes best_fit; compiled C, which computes the other rows, cannot\n"
+    )
 
 
-def _first(name: str):
-    return quality.meter_of(codecs_of(name)[0], True)
+def test_without_a_c_compiler_xla_measures_and_a_line_says_so(monkeypatch, capsys):
+    codec = Codec(ENCODINGS["octahedral"], STORAGES["rg8"])
+    usual = quality.measure(*quality.cases([codec], [sphere(64)], ["jax"]))
+    monkeypatch.setattr(library, "compiler", lambda: "")
+    monkeypatch.setattr(quality, "compiler", lambda: "")
+    library._made.cache_clear(), quality.meter_of.cache_clear(), normal_sets._fill.cache_clear()
+    try:
+        with told():
+            (row,) = quality.rows(quality.cases([codec], [sphere(64)], ["jax"]), lambda _: None)
+        assert isinstance(quality.meter_of(codec), Meter) and normal_sets._fill(True) is None
+    finally:
+        library._made.cache_clear(), quality.meter_of.cache_clear(), normal_sets._fill.cache_clear()
+    assert "no C compiler found (cc): XLA computes the rows" in capsys.readouterr().err
+    assert row["angle_mean_deg"] == pytest.approx(usual["angle_mean_deg"], rel=1e-6)
+
+
+@contextmanager
+def told():
+    """Lines that were told before are told again."""
+    before = {*errors.told}
+    errors.told.clear()
+    yield
+    errors.told.update(before)
 
 
 def test_decodes_that_are_not_numbers_count_as_the_opposite_direction():
@@ -116,8 +126,9 @@ def test_the_background_does_not_count():
     assert_same(found, expected)
     assert found.worst.angle_deg < 2 and found.pixels == len(n) > found.count
     nothing = from_arrays("", "", n, view, np.zeros(len(n), bool))
-    ((figures, counts, worst),) = NativeMeter(lambda _, view: view).parts([*nothing.loads()])
-    assert not any(figures) and counts.sum() == counts[-1] == 2 * CHUNK and worst is None
+    for load in nothing.loads():
+        figures, counts, worst = NativeMeter(lambda _, view: view).one(load)
+        assert not any(figures) and counts.sum() == counts[-1] == CHUNK and worst is None
 
 
 def test_the_worst_normal_is_that_of_xla():
@@ -134,23 +145,22 @@ def test_the_worst_normal_is_that_of_xla():
 
 @pytest.mark.parametrize("at", [7, CHUNK + 7])
 def test_the_worst_normal_is_that_of_all_chunks(at):
-    """Whichever of two chunks of a part has it."""
+    """Whichever of two chunks has it."""
     n = random_directions(CHUNK + 99)
     turned = np.where(np.arange(len(n))[:, None] == at, n[:, [1, 2, 0]], n * np.float32([1, 1, 0.99]))
     normals = from_arrays("", "", n, turned.astype(np.float32), np.ones(len(n), bool))
-    ((figures, _, worst),) = NativeMeter(lambda _, view: view).parts([*normals.loads()])
-    np.testing.assert_array_equal(worst.normal, n[at])
-    assert figures.largest == pytest.approx(worst.angle_deg, rel=1e-5)
+    (total,) = measure_together([NativeMeter(lambda _, view: view)], normals.loads(), lambda _: None)
+    np.testing.assert_array_equal(total.worst.normal, n[at])
+    assert float(total.figures.largest) == pytest.approx(total.worst.angle_deg, rel=1e-5)
 
 
 @pytest.mark.parametrize("make", [sphere, hemisphere])
 @pytest.mark.parametrize("start", [0, 7 * CHUNK, TURN - CHUNK, TURN, 5 * TURN + CHUNK])
-def test_large_sets_are_filled_with_the_same_normals(make, start, monkeypatch):
+def test_compiled_sets_have_the_normals_of_xla(make, start, monkeypatch):
     """To the last bit, in the first turn of 2^32 and in later ones; what is beyond the set's end does not count."""
     count = start + CHUNK - 99
-    monkeypatch.setattr(normal_sets, "LARGE", 1)
     filled = make(count, seed=3).chunk(start)
-    monkeypatch.setattr(normal_sets, "LARGE", count + 1)
+    monkeypatch.setattr(normal_sets, "_fill", lambda _: None)
     expected = make(count, seed=3).chunk(start)
     assert isinstance(filled.n.x, np.ndarray) and not isinstance(expected.n.x, np.ndarray)
     for ours, theirs in zip(jax.tree.leaves(filled), jax.tree.leaves(expected), strict=True):
@@ -175,9 +185,9 @@ def test_decodes_become_numbers_of_one_type(kind):
         return Vec3(e.x, e.y, 1 if kind is None else (e.z * 0.0 + 1.0).astype(kind))
 
     codec = Codec(replace(ENCODINGS["xyz"], name="odd", decode=decode), STORAGES["rgba16"])
-    totals = measure_together(
-        [quality.meter_of(codec, c) for c in (True, False)], sphere(CHUNK).loads(), lambda _: None
-    )
+    meters = [quality.meter_of(codec), quality.meter_by_xla(codec)]
+    assert isinstance(meters[0], NativeMeter)
+    totals = measure_together(meters, sphere(CHUNK).loads(), lambda _: None)
     found, expected = (statistics(CHUNK, total) for total in totals)
     assert_same(found, expected)
     assert found.invalid == 0 and 30 < found.angle_mean_deg < 60
