@@ -16,9 +16,9 @@ from tiers import TIERS, tier_of
 
 from normalbench.bench.subjects.names import listing
 from normalbench.bench.subjects.normals import normal_sets
+from normalbench.bench.tables.frames import sets as frame_sets
 from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.registry import TABLES
-from normalbench.bench.tables.tangent_frames import sets as frame_sets
 from normalbench.encodings.catalogue import (
     CURVE_ENCODINGS,
     DEPTH_ENCODINGS,

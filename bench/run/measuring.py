@@ -23,7 +23,6 @@ from ..ground.output.writing import is_special, target_of
 from ..ground.user_files import UserFile, file_of, names_an_encoder, parts_of
 from ..keep.journal import Journal, journal
 from ..keep.plain import key_text, plain
-from ..shaders.languages.source import Source
 from ..tables.table import Measured, Role, Row, Step, Table, Tick
 
 # Beside a file of one of these, files that it refers to are read too.
@@ -258,6 +257,8 @@ def _files_of_layout(path: Path) -> list[Path]:
 def _included(word: str | Path) -> list[Path]:
     """The files that a user's encoder includes; none of one that cannot be read."""
     try:
+        from ..shaders.languages.source import Source
+
         return list(Source(UserFile(str(word))).files.values())
     except UsageError:
         return []

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from importlib import import_module
-from types import MappingProxyType
 
 from .table import Table
 
-FOLDERS = (
+NAMES = (
     "pick",
     "budget",
     "quality",
@@ -22,13 +21,31 @@ FOLDERS = (
     "roughness",
     "lights",
     "depth",
-    "tangent_frames",
+    "frames",
     "vectors",
     "curves",
     "sweep",
     "tune",
     "devices",
 )
-TABLES: Mapping[str, Table] = MappingProxyType(
-    {table.name: table for table in (import_module(f".{folder}.table", __package__).TABLE for folder in FOLDERS)}
-)
+
+
+class Tables(Mapping[str, Table]):
+    """The tables by name. Each is imported when it is asked for, so that a command imports its own alone."""
+
+    def __getitem__(self, name: str) -> Table:
+        if name not in NAMES:
+            raise KeyError(name)
+        return import_module(f".{name}.table", __package__).TABLE
+
+    def __contains__(self, name: object) -> bool:
+        return name in NAMES
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(NAMES)
+
+    def __len__(self) -> int:
+        return len(NAMES)
+
+
+TABLES = Tables()

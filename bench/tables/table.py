@@ -183,7 +183,6 @@ class Table:
     """A table.
 
     Attributes:
-        name: the command, the table of a run and the anchor on the page; one word.
         package: where its code is: `__package__` of the file that makes it.
         help: what the command's help says: a sentence, and a paragraph if need be.
         example: a command that answers a usual question.
@@ -208,7 +207,6 @@ class Table:
         compilers: columns that name the compilers of a row's figures; figures of two versions are not compared.
     """
 
-    name: str
     package: str
     help: str
     example: str
@@ -235,6 +233,11 @@ class Table:
         """Whether `run` with these options, by name, measures it where no table is named."""
         is_usual = self.in_all and said.get(self.not_with) is None
         return is_usual or said.get(self.asked_by) is not None
+
+    @property
+    def name(self) -> str:
+        """The command, the table of a run and the anchor on the page: the folder's name."""
+        return self.package.rpartition(".")[2]
 
     @property
     def work(self) -> Work:

@@ -9,8 +9,8 @@ from normalbench.bench.ground.options import counts
 from normalbench.bench.ground.user_files import UserFile, file_names, with_settings
 from normalbench.bench.shaders.languages import child, source
 from normalbench.bench.shaders.languages import translated as translating
+from normalbench.bench.subjects.codecs import encoding_names, layout_names, names, user_encodings
 from normalbench.bench.subjects.codecs import first_look as looking
-from normalbench.bench.subjects.codecs import layout_names, names, user_encodings
 from normalbench.bench.subjects.codecs.kinds import codecs as kinds
 from normalbench.bench.subjects.codecs.kinds import named
 from normalbench.bench.subjects.names import effects, light_buffers, listing, storages
@@ -59,7 +59,7 @@ checked_numbers = _typed(counts.checked_numbers, 1)
 codecs_of_kind = _typed(kinds.codecs_of_kind, 1, 2)
 codecs_named = _typed(names.codecs_named, several=4)
 effects_named = _typed(effects.effects_named)
-encodings_named = _typed(user_encodings.encodings_named)
+encodings_named = _typed(encoding_names.encodings_named)
 families_named = _typed(families.families_named)
 kinds_named = _typed(kinds.kinds_named)
 gpus_named = _typed(rates.gpus_named)

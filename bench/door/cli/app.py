@@ -12,14 +12,16 @@ import os
 import re
 import signal
 import sys
+from collections.abc import Callable
 from enum import StrEnum
+from functools import partial
 from pathlib import Path
 from types import FrameType
 from typing import IO, Annotated, Any, NoReturn
 
 import typer
-from typer.core import TyperGroup
 from typer.exceptions import Abort, TyperException
+from typer.models import CommandInfo
 
 from ....encodings.codecs.files import CatalogueError
 from ....reports.charts.plots import PlotError
@@ -36,8 +38,7 @@ from ...keep.row_files import write
 from ...run.workers.words import check_place
 from ...tables.registry import TABLES
 from ...tables.table import Group
-from ..run_options import RunOptions
-from .commands import OnOption, add_tables, command_with, with_options
+from .commands import Commands, Grouped, OnOption, command_with, table_info, with_options
 from .device_commands import add_devices
 from .formats import Format, FormatOption, format_of
 from .history_commands import add_history
@@ -45,20 +46,14 @@ from .inputs import keep_inputs
 from .renderdoc_commands import add_renderdoc
 from .typed import added_up, check_begins_with_command
 
-
-class Grouped(TyperGroup):
-    """The commands, by what they are for."""
-
-    def list_commands(self, ctx: Any) -> list[str]:
-        panels = {name: getattr(command, "rich_help_panel", None) for name, command in self.commands.items()}
-        return sorted(super().list_commands(ctx), key=lambda name: [*Group].index(Group(panels[name])))
-
-
-app = typer.Typer(
+# The program itself, and the commands whose functions are here.
+program_alone = typer.Typer(
     cls=Grouped,
-    context_settings={"help_option_names": ["-h", "--help"]},
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 120},
     pretty_exceptions_enable=False,
+    rich_markup_mode=None,
 )
+app = typer.Typer()
 
 # What `list` leaves out where the terminal is narrow.
 SPARED = (
@@ -88,7 +83,7 @@ def _version(is_asked: bool) -> None:
         raise typer.Exit
 
 
-@app.callback()
+@program_alone.callback()
 def every_command(
     _is_asked: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="The version.")
@@ -164,7 +159,6 @@ def doctor(
 
 
 app.command(rich_help_panel=Group.OWN)(with_options(Sources, doctor))
-add_tables(app, TABLES.values())
 
 
 def _run(options: Any, output: Path | None, on: str | None, commit: str | None) -> int:
@@ -187,12 +181,22 @@ CommitOption = Annotated[
         metavar="NAME",
     ),
 ]
-app.command(
-    "run",
-    rich_help_panel=Group.ANSWER,
-    help="Many tables into a results folder with its page: by default what people ship, in every table.\n\n"
-    "A run that was stopped goes on when the same command is run again. With -o a finished run is extended.",
-)(command_with(RunOptions, _run, output=RunOutput, on=OnOption, commit=CommitOption))
+
+
+def _run_info() -> CommandInfo:
+    """Return the command `run`, without its options: they are those of all tables."""
+    return CommandInfo(
+        rich_help_panel=Group.ANSWER,
+        help="Many tables into a results folder with its page: by default what people ship, in every table.\n\n"
+        "A run that was stopped goes on when the same command is run again. With -o a finished run is extended.",
+        callback=_run_with_options,
+    )
+
+
+def _run_with_options() -> Callable[..., int]:
+    from ..run_options import RunOptions
+
+    return command_with(RunOptions, _run, output=RunOutput, on=OnOption, commit=CommitOption)
 
 
 @app.command(rich_help_panel=Group.MACHINE)
@@ -238,7 +242,7 @@ def columns_command(
 
 @app.command(rich_help_panel=Group.KEEP)
 def check(
-    gates: Annotated[Path, typer.Argument(help=r"A TOML file of \[\[gate]] tables.")],
+    gates: Annotated[Path, typer.Argument(help="A TOML file of [[gate]] tables.")],
     files: Annotated[
         list[Path] | None,
         typer.Argument(help="Hold only gates that read one of these files, includes too.", metavar="FILE..."),
@@ -317,6 +321,14 @@ def report(
 add_history(app)
 add_renderdoc(app)
 add_devices(app)
+COMMANDS = Commands(app, {name: partial(table_info, name) for name in TABLES} | {"run": _run_info})
+
+
+def command_line() -> Grouped:
+    """Return the program with its commands, which are built as they are asked for."""
+    group: Any = typer.main.get_command(program_alone)
+    group.commands = COMMANDS
+    return group
 
 
 def _say(message: str) -> None:
@@ -370,7 +382,7 @@ def main() -> int:
         if sys.stdout is None:
             _without_output(sys.argv)
         # Alone, the command shows its help; that is no error.
-        command: Any = typer.main.get_command(app)
+        command: Any = command_line()
         status = command(_words(sys.argv[1:], command) or ["--help"], standalone_mode=False) or 0
         if status == INTERRUPTED:
             _say("interrupted")
@@ -412,10 +424,9 @@ def _plainly(said: str) -> str:
 
 def _hint(said: str) -> str:
     """What would be right, after what the parser says."""
-    commands = ", ".join(c.name or c.callback.__name__ for c in app.registered_commands if c.callback)
     if "extra argument" in said:
         return "; give one, or names separated by commas"
-    return f" Commands: {commands}." if "command" in said else ""
+    return f" Commands: {', '.join(COMMANDS)}." if "command" in said else ""
 
 
 def _words(words: list[str], group: Any) -> list[str]:

@@ -1,19 +1,25 @@
-"""The commands of the tables, made from the registry."""
+"""The commands, each of which is built when it is asked for; those of tables are made from the registry."""
 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
+from itertools import groupby
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from typer.core import TyperCommand, TyperGroup
+from typer.main import get_command_from_info, get_command_name
+from typer.models import CommandInfo
 
 from ...ground.options.counts import whole_number
 from ...ground.options.option import Field, Reading, fields_of
 from ...ground.output.writing import check_is_folder, check_page
 from ...run.workers.words import HELP, check_place
-from ...tables.table import Table
+from ...tables.registry import TABLES
+from ...tables.table import Group, Table
 from .formats import WRITTEN, Format, FormatOption, OutputOption, format_of
 from .names import NAMES, completion_of
 
@@ -32,11 +38,83 @@ ReportOption = Annotated[
 OnOption = Annotated[str | None, typer.Option("--on", help=HELP, metavar="WORKERS")]
 
 
-def add_tables(app: typer.Typer, tables: Iterable[Table]) -> None:
-    """A command for each table."""
-    for table in tables:
-        more = {"epilog": f"Example: {table.example}", "rich_help_panel": table.group}
-        app.command(table.name, help=table.help.replace("[", r"\["), **more)(command_of(table))
+class Command(TyperCommand):
+    """A command whose help has its options in groups."""
+
+    def format_options(self, ctx: Any, formatter: Any) -> None:
+        """Write each group of options under its title."""
+        groups: dict[str, list[tuple[str, str]]] = {}
+        for param in self.get_params(ctx):
+            title = getattr(param, "rich_help_panel", None) or f"{param.param_type_name.capitalize()}s"
+            if record := param.get_help_record(ctx):
+                groups.setdefault(title, []).append(record)
+        for title, records in groups.items():
+            with formatter.section(title):
+                formatter.write_dl(records)
+
+
+class Commands(Mapping[str, Any]):
+    """The commands by name. One is built when it is asked for: the options of all take longer than most commands.
+
+    Args:
+        ready: commands whose functions are there.
+        late: of further ones the information, whose callback makes the function.
+    """
+
+    def __init__(self, ready: typer.Typer, late: Mapping[str, Callable[[], CommandInfo]]):
+        infos = [info for info in ready.registered_commands if info.callback]
+        self._ready = {info.name or get_command_name(info.callback.__name__): info for info in infos}  # pyright: ignore
+        self._late = late
+
+    def info(self, name: str) -> CommandInfo:
+        """Return what is known of a command without its options."""
+        return self._ready.get(name) or self._late[name]()
+
+    def __getitem__(self, name: str) -> Any:
+        info = self.info(name)
+        if name in self._late and info.callback:
+            info.callback = info.callback()
+        info.name, info.cls = name, Command
+        return get_command_from_info(info, pretty_exceptions_short=False, rich_markup_mode=None)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._ready or name in self._late
+
+    def __iter__(self) -> Iterator[str]:
+        return iter([*self._ready, *self._late])
+
+    def __len__(self) -> int:
+        return len(self._ready) + len(self._late)
+
+
+class Grouped(TyperGroup):
+    """The program, whose help has the commands by what they are for."""
+
+    commands: Commands  # pyright: ignore[reportIncompatibleVariableOverride]
+
+    def list_commands(self, ctx: Any) -> list[str]:  # noqa: ARG002
+        """Return the names of the commands, those for one purpose together."""
+        return sorted(self.commands, key=lambda name: [*Group].index(self._group(name)))
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """Write the first paragraph of each command's help under the title of its group."""
+        for group, names in groupby(self.list_commands(ctx), key=self._group):
+            with formatter.section(group):
+                formatter.write_dl([(name, self._lead(name)) for name in names])
+
+    def _group(self, name: str) -> Group:
+        return Group(self.commands.info(name).rich_help_panel)
+
+    def _lead(self, name: str) -> str:
+        info = self.commands.info(name)
+        return (info.help or inspect.getdoc(info.callback) or "").partition("\n\n")[0]
+
+
+def table_info(name: str) -> CommandInfo:
+    """Return a table's command, without its options."""
+    table = TABLES[name]
+    more = {"epilog": f"Example: {table.example}", "rich_help_panel": table.group}
+    return CommandInfo(name, help=table.help, callback=partial(command_of, table), **more)
 
 
 def command_of(table: Table) -> Callable[..., int]:

@@ -14,8 +14,6 @@ from ...ground.output.errors import UsageError
 from ...shaders.code.twin import has_twin
 from ..metrics.code_limits import AREAS, broken, code_limit, is_measurable
 from ..metrics.totals import Statistics
-from .odd_codes import odd_codes
-from .search import worst_case
 
 T = TypeVar("T")
 
@@ -35,6 +33,8 @@ def supremum(codec: Codec, domain: str | None, area: float, s: Statistics) -> Ro
         }
     if AREAS[domain] < area:
         return {"sup_found_by": f"nothing: the limit and codes are of the {domain}, the set is larger"}
+    from .search import worst_case
+
     worst = _exactly(worst_case, codec, domain)
     x, y, z = worst.normal
     row = {"angle_sup_deg": worst.angle_deg, "sup_x": x, "sup_y": y, "sup_z": z}
@@ -46,6 +46,8 @@ def odd(codec: Codec, domain: str | None) -> Row:
 
     Raises UsageError as `_exactly` does.
     """
+    from .odd_codes import odd_codes
+
     found = _exactly(odd_codes, codec, domain or codec.encoding.domain) if _has_exact_map(codec.encoding) else None
     if not found:
         return {}

@@ -24,8 +24,8 @@ from ...ground.user_files import (
     names_an_encoder,
     with_files,
 )
+from .encoding_names import encodings_named
 from .names import check_twin
-from .user_encodings import encodings_named
 
 # The file of a look-up table: scales.npy of best_fit:table=scales.npy.
 _TABLE_FILE = re.compile(rf"(?<={MARK}{TABLE}=)(?:[^{MARK}]|{MARK}(?=[\\/]))+")

@@ -20,8 +20,7 @@ from ...ground.output.errors import MissingError, UsageError, by_reason, tell
 from ...ground.user_files import CHAIN, file_of
 from ...shaders.code.twin import NoTwinError, has_twin
 from ..names.storages import roundings_named, storages_named
-from .half.compute import half_device
-from .user_encodings import encodings_named
+from .encoding_names import encodings_named
 
 NEAREST = "nearest"
 
@@ -95,6 +94,8 @@ def with_arithmetics(encodings: Sequence[Encoding], names: Iterable[Word]) -> li
 def _computes_halves(encodings: Iterable[Encoding]) -> bool:
     """Whether this machine computes in 16 bits what declares them; a line says so where it does not."""
     if any(one.is_also_half and not has_twin(one) for one in encodings):
+        from .half.compute import half_device
+
         try:
             half_device()
         except MissingError as error:

@@ -24,7 +24,6 @@ from ....gbuffer.gl.shader import Source as Shader
 from ...ground.compilers.lines import bare
 from ...ground.machine import children
 from ...ground.machine.systems import forks
-from ...ground.options.words import Names
 from ...ground.output.errors import NO_TWIN, MissingError, UsageError
 from ...ground.spelling import spelled
 from ...ground.user_files import ENDINGS, UserFile, check_word, names_an_encoder
@@ -33,10 +32,9 @@ from ...shaders.languages.pairs import NORMAL, Function
 from ...shaders.languages.programs import has_halves, pair
 from ...shaders.languages.source import Source
 from ...shaders.languages.translated import Translated, glsl_file, translated
-from . import tuned_names
 from .doctor.domains import SPHERE, Domain
 from .doctor.nearly import Lattice
-from .looked_at import TAKEN, Looked, choose_or_look
+from .looked_at import TAKEN, Looked
 from .signatures import check_given, encode_of
 
 # A first look takes a second or two of processor time, which is limited too; one that sleeps takes for ever.
@@ -52,37 +50,13 @@ IN_32_BITS = "it declares numbers of 16 bits, but its code is an integer: it is 
 UNIT = "{} are in [0, 1]; every storage holds them as they are, signed and float ones as well"
 
 
-def encodings_named(names: Names) -> list[Encoding]:
-    """Return the encodings that names stand for: the catalogue's, tuned ones, or files that end in one of ENDINGS.
-
-    A file's encoding is looked at first, in a process of its own: what does not compile, does not end or is not finite
-    is named on standard error and left out.
-
-    Raises:
-        UsageError: an unknown name, or nothing left.
-        MissingError: nothing left, because a compiler is missing.
-    """
-    for word in names:
-        if isinstance(word, str):
-            check_word(word, ENCODINGS)
-    pairs = [_pairs_meant(word) if isinstance(word, str) else [word] for word in names]
-    words = tuple(word for several in pairs for word in several)
-    settings = [word for word in words if isinstance(word, str) and tuned_names.MARK in word]
-    tuned = {word: tuned_names.tuned(word) for word in settings if not names_an_encoder(word)}
-    return choose_or_look("encoding", words, {**ENCODINGS, **tuned}, _looked_at, _what_names)
+def pairs_of(file: UserFile) -> list[str]:
+    """Return the encoder-decoder pairs of a file that round-trip, ENCODE:DECODE each."""
+    facts = _look(file).glsl
+    return facts.get("pairs") or ([facts["pair"]] if "pair" in facts else [])
 
 
-def _pairs_meant(word: str) -> list[str]:
-    """A word, or in its place one for each pair of its file that undoes itself, where all are meant."""
-    file = UserFile(word)
-    if not (names_an_encoder(word) and file.settings.is_all) or file.functions:
-        return [word]
-    found = _look(file).glsl
-    pairs = found.get("pairs") or ([found["pair"]] if "pair" in found else [])
-    return [file.with_pair(pair).word for pair in pairs] or [word]
-
-
-def _looked_at(file: UserFile) -> Looked[Encoding]:
+def looked_at(file: UserFile) -> Looked[Encoding]:
     """Return a file's encoding after the first look, and what is to be said of it. Raises UsageError and MissingError
     where there is none."""
     found = _look(file)
@@ -147,7 +121,7 @@ def examined(file: UserFile, domain: str = ANY) -> Examined:
     of_twin = [f"its Python twin: {found.twin['apart']}"] if "apart" in found.twin else []
     of_twin += [found.fault] if found.fault else []
     encoding = found.encoding()
-    taken = [TAKEN.format(encoding.name, _what_names(encoding))] if encoding.name in ENCODINGS else []
+    taken = [TAKEN.format(encoding.name, what_names(encoding))] if encoding.name in ENCODINGS else []
     notes = [*found.notes, *found.glsl.get("spared", []), *taken]
     wrong = [*broken, *found.wrong, *of_twin]
     lattice = Lattice(*found.glsl["lattice"]) if "lattice" in found.glsl else None
@@ -164,7 +138,7 @@ def _functions_in(file: UserFile, by: str) -> str:
     return f"{name}_encode:{name}_decode"
 
 
-def _what_names(encoding: Encoding) -> str:
+def what_names(encoding: Encoding) -> str:
     """The words for what gives an encoding its name: its file, or its two functions."""
     return "the file" if encoding.source and encoding.name.startswith(encoding.source.name) else "its two functions"
 

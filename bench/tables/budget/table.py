@@ -214,7 +214,6 @@ COLUMNS = (
 )
 
 TABLE = Table(
-    name="budget",
     package=__package__ or "",
     help="How few bytes a pixel does the whole G-buffer need, and which layout does it?\n\nEach code of each attribute "
     "is measured by itself, by what it does to the displayed image of mirrors, glossy and rough surfaces. An integer "

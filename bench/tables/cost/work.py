@@ -22,7 +22,7 @@ from ...ground.options.words import Names
 from ...ground.output.errors import MissingError, UsageError
 from ...ground.output.writing import check_folder, whole_file
 from ...shaders.isa import isa, spirv
-from ...subjects.codecs.user_encodings import encodings_named
+from ...subjects.codecs.encoding_names import encodings_named
 from ...subjects.names.storages import storages_said
 from ..families_named import families_named
 from ..table import Measured, Row, Sheet, Step, Tick, Work, each

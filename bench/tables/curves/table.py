@@ -60,7 +60,6 @@ COLUMNS = (
 )
 
 TABLE = Table(
-    name="curves",
     package=__package__ or "",
     help="How exact roughness, metalness, occlusion and channels of colours are in few bits: on a curve, over a range, "
     "rounded, cut off or dithered.\n\nA curve lies in the first channel of a storage. `unorm:5` is five bits.",

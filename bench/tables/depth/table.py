@@ -127,7 +127,6 @@ ALSO = (
 )
 
 TABLE = Table(
-    name="depth",
     package=__package__ or "",
     help="How far off a position is that was rebuilt from a stored depth, at distances and over the whole range.\n\n"
     "Errors are distances in the unit of --near and --far, of points anywhere on the screen; a distance stands for "

@@ -76,7 +76,6 @@ COLUMNS = (
 )
 
 TABLE = Table(
-    name="devices",
     package=__package__ or "",
     group=Group.KEEP,
     help="What readers' devices make of each codec: codes that differ from the run's, angles and times. With --facts, "

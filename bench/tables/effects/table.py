@@ -140,7 +140,6 @@ COLUMNS = (
 )
 
 TABLE = Table(
-    name="effects",
     package=__package__ or "",
     help="How much of a code's error arrives in effects that read the G-buffer: ambient occlusion and others.\n\n"
     "Every normal code lies in an otherwise exact layout, and every depth code in one with exact normals. A layout "

@@ -82,7 +82,6 @@ COLUMNS = (
 ALSO = (Column("*_lights", "What is left of the sum of that many lights."),)
 
 TABLE = Table(
-    name="lights",
     package=__package__ or "",
     help="What light buffers lose: adding lights up, banding and rebuilt colour.\n\n"
     "The model, in JAX, stands next to what the GL device does. Without a GL device the model is measured alone.",

@@ -125,7 +125,6 @@ COLUMNS = (
 )
 
 TABLE = Table(
-    name="maps",
     package=__package__ or "",
     help="What block compression loses of a normal map: BC5, BC7, EAC RG11 and ASTC 4x4.\n\n"
     "A normal map is an image file (PNG, EXR, TIFF, DDS, HDR, WebP, NPY). The encoders are packages: "

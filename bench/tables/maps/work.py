@@ -14,8 +14,8 @@ from ...ground.options.words import Given, Names
 from ...ground.output.errors import MissingError, UsageError, leave_out
 from ...ground.output.writing import check_folder
 from ...measures.metrics import published
+from ...subjects.codecs.encoding_names import encodings_named
 from ...subjects.codecs.names import check_twin
-from ...subjects.codecs.user_encodings import encodings_named
 from ...subjects.normals.normal_names import normal_sets_named
 from ...subjects.normals.normal_sets import NormalSet
 from ..table import Measured, Row, Sheet, Step, Work, each

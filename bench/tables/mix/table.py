@@ -222,7 +222,6 @@ COLUMNS = (
 )
 
 TABLE = Table(
-    name="mix",
     package=__package__ or "",
     help="What happens to a code when texels meet: filtering, mip levels, multisample resolve and blending.\n\n"
     "The verdict of each codec: filterable, blendable, resolvable, or why not. `pick --needs filter,blend,resolve` "

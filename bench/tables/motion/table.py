@@ -164,7 +164,6 @@ ALSO = (
 )
 
 TABLE = Table(
-    name="motion",
     package=__package__ or "",
     help="How much a code's error changes from frame to frame while the camera or an object turns.\n\n"
     "A code in view space is another one in each frame of a turning camera, so highlights wobble; a code in world "

@@ -263,7 +263,6 @@ ALSO = (
 )
 
 TABLE = Table(
-    name="pick",
     package=__package__ or "",
     group=Group.ANSWER,
     help="Which code to take for each storage, at what price, and what to take instead.\n\n"

@@ -21,7 +21,6 @@ from ....encodings.storages.dither import laid_out
 from ....encodings.storages.rounding import Scale, fixed, shared
 from ....encodings.storages.storage import DITHERED, Storage
 from ....encodings.vec import Vec3
-from ....gbuffer.codecs.codec_passes import CodecPasses
 from ....gbuffer.gl.device import device
 from ...ground.machine.cores import on_all_cores
 from ...ground.native.elementwise import NotElementwiseError
@@ -32,10 +31,7 @@ from ...measures.metrics.meter import Decoded, Load, Measures, Meter, idle, meas
 from ...measures.metrics.totals import ErrorTotal, Statistics, Worst, psnr_db, statistics, total_of
 from ...measures.native.meter import NativeMeter
 from ...measures.worst_case import exact_figures
-from ...shaders.code import trip as wgsl_trip
 from ...shaders.code.twin import has_twin
-from ...subjects.codecs.half import compute as half_compute
-from ...subjects.codecs.half.round_trip import HalfPasses
 from ...subjects.normals.normal_sets import CHUNK, CHUNK_WIDTH, Chunk, NormalSet, from_arrays
 from ..table import Row
 from ..unmeasurable import UNMEASURABLE as BY_BACKEND
@@ -182,6 +178,8 @@ def _decodings_by_glsl(case: QualityCase) -> Iterator[Decoding]:
     if case.codec.encoding.is_half:
         yield _by_half_device(case)
         return
+    from ....gbuffer.codecs.codec_passes import CodecPasses
+
     gl = device()
     with CodecPasses(gl, case.codec) as passes:
 
@@ -195,6 +193,9 @@ def _decodings_by_glsl(case: QualityCase) -> Iterator[Decoding]:
 
 
 def _by_half_device(case: QualityCase) -> Decoding:
+    from ...subjects.codecs.half import compute as half_compute
+    from ...subjects.codecs.half.round_trip import HalfPasses
+
     passes = HalfPasses(case.codec)
     how = {"device": half_compute.name(), "rounded_by": "emulation"}
 
@@ -209,6 +210,8 @@ def _by_half_device(case: QualityCase) -> Decoding:
 
 @contextmanager
 def _decodings_by_wgsl(case: QualityCase) -> Iterator[Decoding]:
+    from ...shaders.code import trip as wgsl_trip
+
     with wgsl_trip.by_wgsl(case.codec) as trip:
 
         def decoded(chunk: Chunk) -> Decoded:
@@ -408,10 +411,14 @@ def image_round_trip(case: QualityCase) -> RoundTrip:
         return np.stack([np.asarray(p) for p in planes], axis=-1).reshape(height, width, -1)
 
     if case.backend == "glsl":
+        from ....gbuffer.codecs.codec_passes import CodecPasses
+
         with CodecPasses(device(), case.codec) as passes:
             result = passes.round_trip(rgba(n, height, width), rgba(view, height, width))
         encoded, decoded = result.codes[..., :3].copy(), result.normals
     elif case.backend == "wgsl":
+        from ...shaders.code import trip as wgsl_trip
+
         with wgsl_trip.by_wgsl(case.codec) as trip:
             ran = trip(*(np.stack([np.ravel(plane) for plane in planes], axis=1) for planes in (n, view)))
         decoded, code = ran.decoded.reshape(height, width, 3), ran.unpacked.T

@@ -8,7 +8,6 @@ from ....encodings.catalogue import ENCODINGS
 from ....encodings.codecs.codec import Codec
 from ....encodings.storages.storage import STORAGES
 from ...subjects.normals.normal_sets import NORMAL_SETS
-from ..pick import measure as pick
 from ..table import Row
 
 # Normals that a best code is found on.
@@ -29,6 +28,9 @@ def _best_columns(bits: int, domain: str) -> Row:
     chosen = _codecs(bits, domain)
     if not chosen:
         return {}
+    # It imports what pick needs, which few codes do.
+    from ..pick import measure as pick
+
     normals = NORMAL_SETS["hemisphere" if domain == "hemisphere" else "sphere"](COUNT, 0)
     means = pick.mean_angles(chosen, normals)
     name = min(means, key=lambda one: means[one])

@@ -238,7 +238,6 @@ SETS = "playground,hemisphere"
 SETS_OF_NAMED = f"{SETS},domain"
 
 TABLE = Table(
-    name="quality",
     is_usual=True,
     package=__package__ or "",
     help="What each codec loses of the normals of a set: MSE, PSNR, angles, effective bits.\n\n"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
 from typing import Any
 
 from ....encodings.codecs.codec import Codec
@@ -22,7 +23,7 @@ from ...subjects.names.backends import backends_named
 from ...subjects.normals.normal_names import lacking_rays, normal_sets_named
 from ..charts import backends_of, one_backend
 from ..table import BACKENDS_NEED, C_COMPILER, PART, Measured, Row, Sheet, Step, Tick, Work
-from . import measure, pictures
+from . import measure
 from .charts import charts
 from .extras import extras
 from .half import survivors, with_half_loss
@@ -247,16 +248,25 @@ def _psnr_order(column: str) -> tuple[bool, bool]:
 
 
 def _write(done: Measured, _: Tick) -> None:
+    # Pictures, and what writes GLSL ES, are imported where they are asked for.
     if done.outputs.images:
+        from . import pictures
+
         pictures.write([step.case for step in done.steps], done.outputs.images)
     if done.outputs.maps:
         write_maps((step.case.codec for step in done.steps), done.outputs.maps)
     if done.outputs.live:
-        # It imports what writes GLSL ES, which rows alone do not need.
         from ...measures.live.kept import write_live
+        from . import pictures
 
         write_live((step.case.codec for step in done.steps), done.outputs.live)
         pictures.write_scenes([step.case for step in done.steps], done.outputs.live)
+
+
+def _subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Any]:
+    from . import pictures
+
+    return pictures.subjects(folder, rows)
 
 
 def _worst(step: Step) -> Any:
@@ -281,7 +291,7 @@ WORK = Work(
     failures=_failures,
     charts=charts,
     write=_write,
-    subjects=pictures.subjects,
+    subjects=_subjects,
     worst=_worst,
     needs=_needs,
 )

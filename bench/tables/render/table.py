@@ -210,7 +210,6 @@ COLUMNS = (
 )
 
 TABLE = Table(
-    name="render",
     package=__package__ or "",
     help="What codecs, layouts and light buffers do to the final image, against the same pipeline in fp32.\n\n"
     "Without --layout every encoding lies in rgba8 in an otherwise exact G-buffer. With --layout and none of "

@@ -90,7 +90,6 @@ ALSO = (
 )
 
 TABLE = Table(
-    name="roofline",
     package=__package__ or "",
     help="Bytes saved against instructions spent: which code is faster on which GPU, by a model.\n\n"
     "A code's bytes take memory bandwidth. Its instructions, as `cost --isa` counts them, take arithmetic. The longer "

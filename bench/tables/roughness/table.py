@@ -106,7 +106,6 @@ COLUMNS = (
 )
 
 TABLE = Table(
-    name="roughness",
     package=__package__ or "",
     help="From which roughness on a normal code carries reflections: a mirror shows each step of a code, a dull "
     "surface none.\n\nA sphere and two panels of a metal that reflects all light fill the picture one by one, under "

@@ -91,7 +91,6 @@ COLUMNS = (
 )
 
 TABLE = Table(
-    name="sweep",
     package=__package__ or "",
     help="How each pipeline's passes grow with the number of objects: light pre-pass against hybrid and the others.",
     example="normalbench sweep --objects 100,200 --size 320x240 --repeats 1 -o sweep.csv",

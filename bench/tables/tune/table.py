@@ -56,7 +56,6 @@ COLUMNS = (
 )
 
 TABLE = Table(
-    name="tune",
     package=__package__ or "",
     group=Group.OWN,
     help="Fit an encoding's parameters to normals; what that gains on a half that was held out."

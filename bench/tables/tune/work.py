@@ -20,10 +20,10 @@ from ...ground.options.words import Names, text_of
 from ...ground.output.errors import UsageError, tell
 from ...ground.output.replacing import ARRAY
 from ...ground.output.writing import check_writable, whole_file
+from ...subjects.codecs.encoding_names import encodings_named
 from ...subjects.codecs.names import check_twin
 from ...subjects.codecs.tuned_names import MARK
 from ...subjects.codecs.tuned_names import TABLE as LOOK_UP
-from ...subjects.codecs.user_encodings import encodings_named
 from ...subjects.names.storages import storages_named
 from ...subjects.normals.normal_names import check_rays, normal_sets_named
 from ...subjects.normals.normal_sets import NormalSet

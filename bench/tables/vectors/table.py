@@ -105,7 +105,6 @@ COLUMNS = (
 )
 
 TABLE = Table(
-    name="vectors",
     package=__package__ or "",
     help="How exact motion vectors are in compact targets: errors in pixels over the speed, what slow motion is lost, "
     "and how far reprojected points drift.\n\nA motion is in screens a frame. Fixed-point storages keep motions up to "

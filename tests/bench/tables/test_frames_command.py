@@ -11,9 +11,9 @@ from typed import storages_named
 
 from normalbench.bench.ground.machine import devices
 from normalbench.bench.measures.metrics.code_limits import SCATTER
-from normalbench.bench.tables.tangent_frames import measure as frames
-from normalbench.bench.tables.tangent_frames.limits import ball_moment, frame_effective_bits, frame_limit, frames_broken
-from normalbench.bench.tables.tangent_frames.sets import Frames, frames_from, rotations
+from normalbench.bench.tables.frames import measure as frames
+from normalbench.bench.tables.frames.limits import ball_moment, frame_effective_bits, frame_limit, frames_broken
+from normalbench.bench.tables.frames.sets import Frames, frames_from, rotations
 from normalbench.encodings.catalogue import FRAME_ENCODINGS
 from normalbench.encodings.codecs.frame_codec import FrameCodec
 from normalbench.encodings.storages.storage import FRAME_STORAGES

@@ -8,9 +8,9 @@ from test_frames_command import QUICK
 from typed import storages_named
 from written import as_document
 
+from normalbench.bench.tables.frames import measure as frames
+from normalbench.bench.tables.frames.sets import CHUNK, Frames, rotations
 from normalbench.bench.tables.registry import TABLES
-from normalbench.bench.tables.tangent_frames import measure as frames
-from normalbench.bench.tables.tangent_frames.sets import CHUNK, Frames, rotations
 from normalbench.encodings.catalogue import FRAME_ENCODINGS
 from normalbench.encodings.codecs.frame_codec import FrameCodec
 from normalbench.encodings.storages.storage import FRAME_STORAGES

@@ -100,7 +100,7 @@ def _kind_of_word(word: str) -> Kind:
 
 def _kind_of_file(file: UserFile) -> Kind:
     """What a user's file is of: what its functions' names say, or else of normals where it can be."""
-    from ..user_encodings import encodings_named
+    from ..encoding_names import encodings_named
 
     if (spoken := kind_by_names(file)) and spoken in MADE:
         return spoken

@@ -5,10 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import typer
 from PIL import Image
 
-from normalbench.bench.door.cli.app import app
+from normalbench.bench.door.cli.app import command_line
 from normalbench.bench.door.cli.inputs import keep_inputs
 from normalbench.bench.door.cli.typed import _takes
 from normalbench.bench.ground.output.errors import UsageError
@@ -124,7 +123,7 @@ def test_an_input_in_a_folder_is_not_replaced(folder, is_run):
     """In the folder of a run everything else may be."""
     if is_run:
         (folder / "run.json").write_text("{}")
-    keep_inputs(["--encoding", "other.glsl,mine.glsl"], typer.main.get_command(app).commands["quality"].params)
+    keep_inputs(["--encoding", "other.glsl,mine.glsl"], command_line().commands["quality"].params)
     with (
         pytest.raises(UsageError, match="this is an input of the command"),
         whole_file(folder / "mine.glsl") as partial,
@@ -202,6 +201,6 @@ WRITTEN = {
 
 def test_options_that_take_a_path_are_written():
     """What is read is an argument or a text: the gate takes every other value for an input."""
-    commands = typer.main.get_command(app).commands.values()
+    commands = command_line().commands.values()
     options = [option for command in commands for option in command.params if option.param_type_name == "option"]
     assert {max(option.opts, key=len) for option in options if _takes(option, Path)} == WRITTEN

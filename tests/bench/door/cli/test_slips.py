@@ -8,9 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import typer
 
-from normalbench.bench.door.cli.app import _is_delicate, app
+from normalbench.bench.door.cli.app import _is_delicate, command_line
 from normalbench.bench.door.table_command import _why_nothing
 from normalbench.bench.ground.options.counts import whole_number
 from normalbench.bench.tables.registry import TABLES
@@ -338,7 +337,7 @@ def test_help_fits_80_columns_and_groups_its_options(run, monkeypatch, name):
 def test_the_example_of_a_command_is_one_that_it_takes(name):
     """Its options, and the names in them, but for files."""
     table, words = TABLES[name], TABLES[name].example.split()
-    command = typer.main.get_command(app).commands[name]
+    command = command_line().commands[name]
     assert words[:2] == ["normalbench", name]
     made = command.make_context(name, words[2:])
     asked = {field.name: made.params[field.name] for field in fields(table.options) if field.name in made.params}

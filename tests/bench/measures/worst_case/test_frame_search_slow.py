@@ -10,8 +10,8 @@ import pytest
 
 from normalbench.bench.measures.worst_case import frame_search
 from normalbench.bench.measures.worst_case.frame_search import worst_frame
-from normalbench.bench.tables.tangent_frames import measure
-from normalbench.bench.tables.tangent_frames.sets import rotations
+from normalbench.bench.tables.frames import measure
+from normalbench.bench.tables.frames.sets import rotations
 from normalbench.encodings.catalogue import FRAME_ENCODINGS
 from normalbench.encodings.codecs.frame_codec import FrameCodec
 from normalbench.encodings.storages.storage import FRAME_STORAGES

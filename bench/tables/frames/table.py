@@ -96,7 +96,6 @@ COLUMNS = (
 )
 
 TABLE = Table(
-    name="frames",
     package=__package__ or "",
     help="What tangent frame codes lose: the angles of normals, of tangents and of the whole rotation, and lost "
     "handedness.\n\nA set may be a mesh (glTF, GLB, OBJ, PLY): the tangent frames of its vertices, authored or along "

@@ -1,0 +1,52 @@
+"""Encodings by name: the catalogue's, those with settings, and users' files, whose readers are imported late."""
+
+from __future__ import annotations
+
+from ....encodings.catalogue import ENCODINGS
+from ....encodings.codecs.encoding import Encoding
+from ...ground.options.words import Names
+from ...ground.user_files import UserFile, check_word, names_an_encoder
+from . import tuned_names
+from .looked_at import Looked, choose_or_look
+
+
+def encodings_named(names: Names) -> list[Encoding]:
+    """Return the encodings that names stand for: the catalogue's, tuned ones, or files that end in one of ENDINGS.
+
+    A file's encoding is looked at first, in a process of its own: what does not compile, does not end or is not finite
+    is named on standard error and left out.
+
+    Raises:
+        UsageError: an unknown name, or nothing left.
+        MissingError: nothing left, because a compiler is missing.
+    """
+    for word in names:
+        if isinstance(word, str):
+            check_word(word, ENCODINGS)
+    pairs = [_pairs_meant(word) if isinstance(word, str) else [word] for word in names]
+    words = tuple(word for several in pairs for word in several)
+    settings = [word for word in words if isinstance(word, str) and tuned_names.MARK in word]
+    tuned = {word: tuned_names.tuned(word) for word in settings if not names_an_encoder(word)}
+    return choose_or_look("encoding", words, {**ENCODINGS, **tuned}, _looked_at, _what_names)
+
+
+def _pairs_meant(word: str) -> list[str]:
+    """Return a word, or in its place one for each pair of its file that round-trips, if all are meant."""
+    file = UserFile(word)
+    if not (names_an_encoder(word) and file.settings.is_all) or file.functions:
+        return [word]
+    from .user_encodings import pairs_of
+
+    return [file.with_pair(pair).word for pair in pairs_of(file)] or [word]
+
+
+def _looked_at(file: UserFile) -> Looked[Encoding]:
+    from .user_encodings import looked_at
+
+    return looked_at(file)
+
+
+def _what_names(encoding: Encoding) -> str:
+    from .user_encodings import what_names
+
+    return what_names(encoding)
