@@ -7,7 +7,6 @@ import re
 import shutil
 import subprocess
 import sys
-from functools import cache
 from pathlib import Path
 
 from compiled import COMPILED
@@ -28,7 +27,6 @@ import kept_runs
 import pytest
 import seconds
 import shared_rows
-import typer.main
 from languages import SHORT
 from slowly import is_drawn
 from tiers import TIERS, is_in, tier_of
@@ -44,6 +42,7 @@ from normalbench.bench.ground.machine.memory import (
     look_for_garbage_seldom,
 )
 from normalbench.bench.ground.options.gpu_families import ANV, HASVK, RADV
+from normalbench.bench.keep import answers
 from normalbench.bench.measures.metrics import published
 from normalbench.bench.run import measuring
 from normalbench.bench.shaders.isa import driver_files, isa, null_device, spirv
@@ -166,15 +165,12 @@ def rows_are_shared(monkeypatch, shared_folder):
     monkeypatch.setattr(measuring.Here, "measure", shared_rows.shared(measuring.Here.measure, shared_folder / "rows"))
 
 
-# Typer makes all commands anew at each call, which takes longer than most refusals; a process of its own does it once.
-parser_of = cache(typer.main.get_command)
-
-
 @pytest.fixture
 def run(monkeypatch, capsys):
     """The command line in this process: arguments to its status, output and errors."""
-    monkeypatch.setattr(typer.main, "get_command", parser_of)
     monkeypatch.setattr(run_code, "LANGUAGES", SHORT)
+    # What one test changes in this process decides no answer of another.
+    monkeypatch.setattr(answers, "is_anew", [True])
 
     def command(*arguments: str) -> tuple[int, str, str]:
         monkeypatch.setattr(sys, "argv", ["normalbench", *arguments])

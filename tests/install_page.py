@@ -23,7 +23,6 @@ ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "install.md"
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 EXTRAS: Mapping[str, str] = {
-    "flip": "the perceptual difference of images that `render` and `roughness` print",
     "rays": "exact ambient occlusion, by Intel's ray caster",
     "maps": "BC5, BC7, EAC and ASTC textures",
     "compressed": "glTF meshes packed by Draco and meshopt; the latter is compiled",

@@ -7,7 +7,6 @@ import shutil
 import sys
 import tomllib
 from contextlib import nullcontext, suppress
-from functools import cache
 from pathlib import Path
 from typing import NoReturn
 
@@ -16,14 +15,14 @@ import devices
 import gpu_page
 import numpy as np
 import pytest
-import typer
 from manual import NAMED, PAGES, README, ROOT
 from written import as_document, packed, planes_of, png_bytes, some_normals, write_exr
 
-from normalbench.bench.door import code_command, examine, gbuffer_command, run, table_command
+from normalbench.bench.door import code_command, examine, gbuffer_command, run
 from normalbench.bench.door.cli import app as cli
-from normalbench.bench.keep import history_command, machine
+from normalbench.bench.keep import answers, history_command, machine
 from normalbench.bench.run import measuring
+from normalbench.bench.run.workers import places
 from normalbench.bench.show import report, site_command
 from normalbench.gbuffer.scenes.mesh import sphere
 
@@ -142,10 +141,6 @@ BEGINNINGS = (
 )
 
 
-# Made once for all commands.
-parser_of = cache(typer.main.get_command)
-
-
 @pytest.fixture
 def readers_folder(tmp_path, monkeypatch):
     """The working folder, with the files that the commands name."""
@@ -164,10 +159,10 @@ def test_every_long_command_is_taken_as_written(command, monkeypatch):
     for place, name in BEGINNINGS:
         monkeypatch.setattr(place, name, begin)
     # These take time, and check nothing.
-    monkeypatch.setattr(typer.main, "get_command", parser_of)
+    monkeypatch.setattr(answers, "is_anew", [True])
     monkeypatch.setattr(run, "facts_of", lambda _: {})
     monkeypatch.setattr(run, "second_process", nullcontext)
-    for module in (run, table_command):
+    for module in (run, places):
         monkeypatch.setattr(module, "place", lambda _: nullcontext(measuring.HERE))
     words = shlex.split(command)
     monkeypatch.setattr(sys, "argv", words)

@@ -11,20 +11,19 @@ from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import fields, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..ground.machine.memory import keep_what_is_freed
 from ..ground.output.errors import MissingError, UsageError, tell
 from ..ground.output.replacing import PAGE
 from ..ground.output.sources import sources
 from ..ground.output.writing import check_plot, check_writable, say, whole_file
-from ..keep.plain import plain
+from ..keep.answers import answered, key_of_answer
 from ..keep.row_files import check_rows
-from ..keep.runs import Done, facts_of
-from ..run.measuring import Asked, Beside, Nothing, Place, asked, beside, measured, with_parts
-from ..run.workers.places import place
-from ..show.showing import say_lines, say_skipped, show
 from ..tables.table import Measured, Row, Table
+
+if TYPE_CHECKING:
+    from ..run.measuring import Asked, Beside, Place
 
 
 def table_command(
@@ -38,6 +37,8 @@ def table_command(
 ) -> int:
     """Measure a table and write it. With -o a command that was stopped goes on where it was.
 
+    A table whose answer is kept gives it again, if nothing else is written.
+
     Args:
         on: where it is measured; None for this process.
 
@@ -47,6 +48,18 @@ def table_command(
     Raises:
         UsageError, MissingError: see measuring.asked; MissingError also in the end, where a part could not be measured.
     """
+    is_alone = not (output or report or on) and outputs == table.outputs()
+    key = key_of_answer(table, options, format) if table.is_kept and is_alone else ""
+    return answered(key, lambda: _command(table, options, outputs, format, output, report, on))
+
+
+def _command(
+    table: Table, options: Any, outputs: Any, format: str, output: Path | None, report: Path | None, on: str | None
+) -> int:
+    # What is imported late here is what measures, which an answer that is kept does without.
+    from ..run.measuring import asked, beside
+    from ..run.workers.places import place
+
     keep_what_is_freed()
     check_rows(output)
     if report:
@@ -81,6 +94,8 @@ def _work(table: Table) -> Row:
 
 
 def _measured(ask: Asked, kept: Beside | None, where: Place) -> Measured:
+    from ..run.measuring import Nothing, measured, with_parts
+
     total = sum(1 for _ in with_parts(ask.steps))
     if kept:
         found = sum(kept.find(ask.table.name, step) is not None for step in with_parts(ask.steps))
@@ -104,6 +119,8 @@ def _say_how_to_go_on(kept: Beside | None, total: int) -> None:
 
 def _show(table: Table, done: Measured, format: str, output: Path | None) -> bool:
     """Write the rows and what goes with them; whether a row fails."""
+    from ..show.showing import say_lines, say_skipped, show
+
     work = table.work
     say_skipped(table, done.rows, table.lacking(done))
     say_lines(table.warnings(done.rows))
@@ -145,6 +162,8 @@ def _bring(table: Table, outputs: Any, folder: Path) -> None:
 
 
 def _write_page(table: Table, done: Measured, folder: Path, target: Path) -> None:
+    from ..keep.plain import plain
+    from ..keep.runs import Done, facts_of
     from ..show.report import write_report
 
     rows = plain(list(done.rows))

@@ -11,7 +11,6 @@ from ..ground.machine.devices import require_device, require_jax
 from ..ground.machine.systems import walls
 from ..ground.output import cache
 from ..ground.output.errors import MissingError
-from ..measures.metrics.images import require_flip
 from ..measures.metrics.visibility import require_rays
 from ..shaders.code.run import c, wgsl
 from ..shaders.languages.language import require_language
@@ -33,7 +32,6 @@ CAPABILITIES: Mapping[str, Callable[[], object]] = MappingProxyType(
         "instructions on Radeons (cost --isa, pick)": require_radeons,
         "instructions on Intel (cost --isa --family intel)": require_intel,
         "instructions on NVIDIA (cost --isa --family nvidia)": require_nvidia,
-        "render --flip, roughness": require_flip,
         "glTF files that Draco or meshoptimizer packed": _require_unpackers,
         "quality --arithmetic half by GLSL": half_device,
         "quality by WGSL (wgpu and a Vulkan driver)": wgsl.device,

@@ -27,7 +27,8 @@ from ..ground.machine.memory import give_back_what_is_freed
 from ..ground.options.counts import MAX_REPEATS, in_range
 from ..ground.output.errors import UsageError
 from ..ground.output.writing import check_folder
-from ..measures.metrics.images import flip, require_flip, squared_error
+from ..measures.metrics.flip import Flip
+from ..measures.metrics.images import squared_error
 from ..measures.metrics.totals import psnr_db
 from ..subjects.normals.normal_names import SEES_NOTHING
 from .table import Row, Step, Tick
@@ -59,6 +60,11 @@ class Frame:
     def shown(self) -> np.ndarray:
         """The image as a display shows it, in [0, 1]."""
         return self.display.image(self.linear)
+
+    @cached_property
+    def compared(self) -> Flip:
+        """What compares other frames with it."""
+        return Flip(self.shown)
 
 
 class Measurable(Protocol):
@@ -133,7 +139,7 @@ class Bench(ABC, Generic[CaseT, FrameT]):
             return row, None
         row |= frames[-1].times
         if self._with_flip:
-            maps = [flip(frame.shown, other.shown) for frame, other in zip(frames, exact, strict=True)]
+            maps = [other.compared.of(frame.shown) for frame, other in zip(frames, exact, strict=True)]
             row["flip"] = float(np.mean([np.mean(pixels) for pixels in maps]))
             return row, replace(frames[0], flip=maps[0])
         return row, frames[0]
@@ -192,18 +198,16 @@ def says_little(scene: str, covered: float) -> Iterator[str]:
         yield f"{what}; a camera in the file that comes nearer gives more pixels to judge by"
 
 
-def checked_device(repeats: int, *, is_flip_wanted: bool = False, least: int = 0) -> Device:
+def checked_device(repeats: int, least: int = 0) -> Device:
     """Return the device that frames are rendered on.
 
     Raises:
         UsageError: repeats beyond what is possible.
-        MissingError: there is no device, no JAX, or no FLIP.
+        MissingError: there is no device, or no JAX.
     """
     require_jax()
     device = require_device()
     in_range("--repeats", repeats, least, MAX_REPEATS)
-    if is_flip_wanted:
-        require_flip()
     return device
 
 

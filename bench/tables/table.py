@@ -204,6 +204,7 @@ class Table:
         is_measured_beside: whether `run` measures it in its second process: what takes longer in JAX or compilers than
             on the GL device.
         is_usual: whether a gate or a test that names no table means this one.
+        is_kept: whether the command gives its answer again while nothing has changed that decides it.
         compilers: columns that name the compilers of a row's figures; figures of two versions are not compared.
     """
 
@@ -227,6 +228,7 @@ class Table:
     not_with: str = ""
     is_measured_beside: bool = False
     is_usual: bool = False
+    is_kept: bool = False
     compilers: tuple[str, ...] = ()
 
     def is_in_all(self, said: Mapping[str, Any]) -> bool:

@@ -42,7 +42,7 @@ def encode(n: Vec3, view: Vec3) -> Vec2:
     f, t = (Vec2(*(jnp.asarray(table, n.x.dtype)[k + step] for step in (0, 1))) for table in (NUMBERS, TURNS))
     # c0 T_k + c1 T_k+1 = phi / (2 pi), c0 F_k + c1 F_k+1 = (N (1 - n.z) - 1) / 2, of determinant 1 or -1
     turn, place = 0.5 * atan2_pi(n.y, n.x), 0.5 * (COUNT * (1.0 - n.z) - 1.0)
-    side = select((k & 1) == 1, 1.0, -1.0)
+    side = select((k & 1) == 1, jnp.ones_like(n.x), jnp.full_like(n.x, -1.0))
     c = Vec2(floor(side * (turn * f.y - place * t.y)), floor(side * (place * t.x - turn * f.x)))
     best, least = jnp.zeros_like(n.x), jnp.full_like(n.x, 8.0)
     for corner in ((0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0)):

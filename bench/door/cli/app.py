@@ -61,7 +61,7 @@ SPARED = (
     *("domain", "engine"),
 )
 INTERRUPTED, TERMINATED = 130, 143
-NO_CACHE = "--no-cache"
+NO_CACHE, ANEW = "--no-cache", "--anew"
 # What the library that reads values says, and what is said for it.
 PARSERS_WORDS = {
     "Value error, ": "",
@@ -91,12 +91,19 @@ def every_command(
     no_cache: Annotated[
         bool, typer.Option(NO_CACHE, help="Neither read nor keep instruction counts and compiled programs.")
     ] = False,
+    anew: Annotated[
+        bool, typer.Option(ANEW, help="Measure again what pick, budget and cost have kept of an earlier command.")
+    ] = False,
 ) -> None:
     """Measures what compact normals and thin G-buffers cost: encodings in JAX and GLSL, stored as hardware does."""
     if no_cache:
         from ...ground.output import cache
 
         cache.switch_off()
+    if anew:
+        from ...keep.answers import is_anew
+
+        is_anew.append(True)
 
 
 PlainOutput = Annotated[Path | None, typer.Option("-o", "--output", help="Write the rows to this file.")]
@@ -426,21 +433,22 @@ def _hint(said: str) -> str:
     """What would be right, after what the parser says."""
     if "extra argument" in said:
         return "; give one, or names separated by commas"
-    return f" Commands: {', '.join(COMMANDS)}." if "command" in said else ""
+    return f" Commands: {', '.join(command_line().list_commands())}." if "command" in said else ""
 
 
 def _words(words: list[str], group: Any) -> list[str]:
     """What was typed, with each option once. Raises UsageError."""
     own = ["-h", "--help", *(flag for option in group.params for flag in option.opts)]
     # It may stand anywhere.
-    no_cache, words = [NO_CACHE] * (NO_CACHE in words), [word for word in words if word != NO_CACHE]
-    check_begins_with_command(words, group.commands, own)
+    anywhere = [flag for flag in (NO_CACHE, ANEW) if flag in words]
+    words = [word for word in words if word not in anywhere]
+    check_begins_with_command(words, group.list_commands(), own)
     if not (words and words[0] in group.commands):
-        return no_cache + words
+        return anywhere + words
     options = group.commands[words[0]].params
     typed = added_up(words[1:], options)
     keep_inputs(typed, options)
-    return [*no_cache, words[0], *typed]
+    return [*anywhere, words[0], *typed]
 
 
 def _without_output(words: list[str]) -> None:

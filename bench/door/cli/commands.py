@@ -92,7 +92,7 @@ class Grouped(TyperGroup):
 
     commands: Commands  # pyright: ignore[reportIncompatibleVariableOverride]
 
-    def list_commands(self, ctx: Any) -> list[str]:  # noqa: ARG002
+    def list_commands(self, ctx: Any = None) -> list[str]:  # noqa: ARG002
         """Return the names of the commands, those for one purpose together."""
         return sorted(self.commands, key=lambda name: [*Group].index(self._group(name)))
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import platform
 import warnings
 from pathlib import Path
 from typing import Any
@@ -15,7 +14,7 @@ from ..output import cache
 from ..output.errors import MissingError
 from ..output.kept_arrays import kept_arrays
 from .memory import require_memory
-from .systems.system_files import processor_lines
+from .systems.system_files import processor_kind
 
 
 def require_jax() -> None:
@@ -53,12 +52,6 @@ def keep_programs() -> None:
 def programs_folder() -> Path:
     """Where compiled programs lie: a folder for each version of JAX and kind of processor, which they are made for."""
     return cache.folder() / "programs" / cache.key_of(jax.__version__, *processor_kind())[:16]
-
-
-def processor_kind() -> list[str]:
-    """What tells a kind of processor from others that need other programs."""
-    facts = {line for line in processor_lines() if line.startswith(("model name", "flags", "Features"))}
-    return [platform.machine(), platform.processor(), *sorted(facts)]
 
 
 def found_device() -> tuple[Device | None, str]:

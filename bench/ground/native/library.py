@@ -15,7 +15,7 @@ import numpy as np
 
 from ..compilers import tools
 from ..compilers.text import Text, judged, own
-from ..machine.devices import processor_kind
+from ..machine.systems.system_files import processor_kind
 from ..output import cache as kept
 from ..output.errors import MissingError
 

@@ -73,6 +73,24 @@ class MissingError(Exception):
 
 # What this command has told already.
 told: set[str] = set()
+# Where somebody listens, what is said to standard output and, marked True, to standard error.
+_heard: list[list[tuple[bool, str]]] = []
+
+
+@contextmanager
+def hearing() -> Iterator[list[tuple[bool, str]]]:
+    """Give what is said meanwhile, in its order: whether it went to standard error, and the text."""
+    _heard.append([])
+    try:
+        yield _heard[-1]
+    finally:
+        _heard.pop()
+
+
+def hear(is_error: bool, text: str) -> None:
+    """Note what is said, where somebody listens."""
+    for said in _heard:
+        said.append((is_error, text))
 
 
 def tell(line: str) -> None:
@@ -87,6 +105,7 @@ def tell(line: str) -> None:
     shown = text if len(text) <= LONGEST else f"{text[: LONGEST // 2]} ... {text[-LONGEST // 2 :]}"
     if shown not in told:
         told.add(shown)
+        hear(True, shown)
         print(f"normalbench: {shown}", file=sys.stderr)
 
 

@@ -16,7 +16,7 @@ from ....reports import tables
 from ....reports.charts import plots
 from ..machine.systems.files import is_closed_pipe, moved_over
 from ..machine.systems.processes import is_running
-from .errors import UsageError
+from .errors import UsageError, hear
 from .replacing import PLOTS, check_alike, check_replaceable
 
 # Of a run's rows, facts and tables.
@@ -163,6 +163,7 @@ def say(text: str) -> None:
 
     A reader that has seen enough and gone is no error.
     """
+    hear(False, text)
     try:
         sys.stdout.write(tables.visible(text))
         sys.stdout.flush()

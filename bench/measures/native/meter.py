@@ -87,9 +87,9 @@ class NativeMeter:
         decode = ctypes.cast(self._library.decode, ctypes.c_void_p)
         self._codec, self._row_library = ctypes.byref(_Codec(decode, address(self._given))), _row_library()
 
-    def decoded(self, chunk: Any) -> Vec3:
+    def decoded(self, block: Any) -> Vec3:
         """What the normals of a chunk, a multiple of BLOCK, are decoded as."""
-        planes = [*map(np.asarray, (*chunk.n, *chunk.view))]
+        planes = [*map(np.asarray, (*block.n, *block.view))]
         decoded = Vec3(*(np.empty(planes[0].shape, np.float32) for _ in range(3)))
         taken, given = ((ctypes.c_void_p * len(arrays))(*map(address, arrays)) for arrays in (planes, decoded))
         self._library.decode_all(taken, address(self._given), ctypes.c_size_t(planes[0].size), given)

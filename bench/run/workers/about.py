@@ -19,7 +19,7 @@ from ...tables.table import C_COMPILER, COMPILERS, GL, VULKAN
 # What every step needs, whatever else it does.
 BASE = "version, sources, settings and processor"
 # What figures depend on: workers have the versions of the process that asks.
-PACKAGES = ("normalbench", "numpy", "jax", "jaxlib", "moderngl", "scipy", "wgpu", "embreex", "flip-evaluator")
+PACKAGES = ("normalbench", "numpy", "jax", "jaxlib", "moderngl", "scipy", "wgpu", "embreex")
 
 
 @cache

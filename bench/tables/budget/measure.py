@@ -149,10 +149,11 @@ class Judged:
         for found in self._finalists(asked, FINALISTS):
             layout = _with_depth(layout_of(name, found), depth)
             row = self.row_of(PROPOSAL, layout)
-            if best is None or (row["flip_p99"] or math.inf) < best[2]["flip_p99"] - EQUAL_FLIP:
+            flip_p99 = math.inf if row["flip_p99"] is None else row["flip_p99"]
+            if best is None or flip_p99 < best[2]["flip_p99"] - EQUAL_FLIP:
                 best = found, layout, row
             # What nobody sees, or nobody can tell, is not compared.
-            if (row["flip_p99"] or 0.0) <= INVISIBLE:
+            if flip_p99 <= INVISIBLE:
                 break
         return best
 
@@ -194,7 +195,7 @@ class Judged:
         if found is None or threshold is None:
             return False
         flips = [judge.of_layout(layout_of(f"budget_{rules.bytes}", found)).flip for judge in self._judges]
-        return all(one is not None and one <= threshold for one in flips)
+        return all(flip <= threshold for flip in flips)
 
     def proposals(self, rules: Rules) -> Iterator[Row]:
         """The row of a limit; one without figures where nothing keeps to the rules."""
@@ -311,12 +312,11 @@ class Judged:
         errors = {_class_of(judge, n): e for judge, one in found for n, e in one.errors.items()}
         worst = max((n for n in errors if n.rpartition(" ")[2] in self._question.judging), key=lambda n: errors[n])
         frame = max(e for n, e in errors.items() if n.endswith(f" {FRAME}"))
-        flips = [one.flip for _, one in found if one.flip is not None]
         return row | {
             "psnr_db": psnr_db(frame),
             "worst_db": psnr_db(errors[worst]),
             "worst_class": worst,
-            "flip_p99": max(flips, default=None),
+            "flip_p99": max(errors_of_scene.flip for _, errors_of_scene in found),
         }
 
     def _beside(self, layout: Layout) -> float:

@@ -15,7 +15,6 @@ from ...ground.options.targets import checked_target
 from ...ground.options.words import Names, text_of
 from ...ground.output.errors import UsageError
 from ...ground.spelling import spelled
-from ...measures.metrics.images import require_flip
 from ...subjects.codecs.layout_names import layouts_named
 from ...subjects.environments.scenes_under import scenes_under
 from ...subjects.scenes.scene_names import scene_makers_named
@@ -119,7 +118,6 @@ def question(options: BudgetOptions) -> Question:
         check_compilers(families)
     if options.threshold is not None:
         in_range("--threshold", options.threshold, 0.001, 1.0)
-        require_flip("--threshold")
     return Question(
         stages=_stages(options, size),
         attributes=held,

@@ -8,7 +8,6 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import cached_property
-from importlib.util import find_spec
 
 import jax
 import numpy as np
@@ -25,7 +24,7 @@ from ....gbuffer.scenes.catalogue import SceneMaker
 from ....gbuffer.scenes.setting import Setting
 from ...ground.output import cache
 from ...ground.output.sources import sources
-from ...measures.metrics.images import flip
+from ...measures.metrics.flip import Flip
 from .attributes import Code, Surfaces
 
 PIPELINE = "deferred"
@@ -85,6 +84,7 @@ class Exact:
             measured_exposure(linear[self.covered]) if exposure is None else exposure, stage.maker.tone_mapping
         )
         self.shown = self.display.image(linear)
+        self._flip = Flip(self.shown)
         metalness, specular, roughness, occlusion = (material[..., i] for i in range(4))
         self.surfaces = Surfaces(
             normal[..., :3], colour[..., :3], roughness, metalness, specular, occlusion, light[..., :3]
@@ -121,7 +121,7 @@ class Exact:
     def of_layout(self, layout: Layout) -> ImageErrors:
         """What a layout makes of the image, drawn by it. Raises ShaderError, FormatError and LayoutError."""
         is_known = is_in_catalogue(layout.encoding)
-        key = cache.key_of("budget layout", self.key, layout.summary, str(_has_flip())) if is_known else ""
+        key = cache.key_of("budget layout", self.key, layout.summary) if is_known else ""
         found = cache.kept(key, lambda: self._drawn(layout))
         return ImageErrors(found["errors"], found["flip"])
 
@@ -130,13 +130,10 @@ class Exact:
         with rendering(self._device, PIPELINES[PIPELINE], stage.scene, stage.plan(layout)) as made:
             made.draw()
             shown = self.display.image(made.image())
-        return {"errors": self.errors(shown), "flip": self._flip(shown)}
+        return {"errors": self.errors(shown), "flip": self._flip_p99(shown)}
 
-    def _flip(self, shown: np.ndarray) -> float | None:
-        if not _has_flip():
-            return None
-        apart = flip(shown, self.shown)
-        return float(np.percentile(apart[self.covered], PERCENTILE))
+    def _flip_p99(self, shown: np.ndarray) -> float:
+        return float(np.percentile(self._flip.of(shown)[self.covered], PERCENTILE))
 
     def _texels(self, given: Surfaces) -> Sequence[np.ndarray]:
         normal, colour, material, light = (one.copy() for one in self._textures)
@@ -151,14 +148,10 @@ class Exact:
 @dataclass(frozen=True)
 class ImageErrors:
     """What an image of a layout is off by: the mean squared error of each class, and FLIP's 99th percentile over what
-    is covered; None where FLIP is not installed."""
+    is covered."""
 
     errors: Mapping[str, float]
-    flip: float | None
-
-
-def _has_flip() -> bool:
-    return find_spec("flip_evaluator") is not None
+    flip: float
 
 
 def rates_of_pair(exact: Exact, first: Code, second: Code) -> Mapping[str, float]:

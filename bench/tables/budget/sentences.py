@@ -42,9 +42,7 @@ def _answer(row: Row) -> str:
     return f"take {formats}{fewer}. {_seen(row['flip_p99'])}the worst surfaces have {row['worst_db']:.1f} dB."
 
 
-def _seen(flip: float | None) -> str:
-    if flip is None:
-        return "Of its errors, "
+def _seen(flip: float) -> str:
     if flip <= INVISIBLE:
         return "Its errors are not seen in a still picture; "
     return f"Its errors are seen{' side by side' if flip <= ACCEPTABLE else ''}; "
@@ -64,8 +62,7 @@ def _code(text: str) -> str:
 def _errors(row: Row) -> str:
     scene, _, name = row["worst_class"].rpartition(" ")
     said = [f"Worst are {name} surfaces of {scene}, {row['worst_db']:.1f} dB; the frame has {row['psnr_db']:.1f} dB."]
-    if row["flip_p99"] is not None:
-        said.append(f"FLIP's 99th percentile is {row['flip_p99']:.3f}; up to {INVISIBLE:g} we call invisible.")
+    said.append(f"FLIP's 99th percentile is {row['flip_p99']:.3f}; up to {INVISIBLE:g} we call invisible.")
     if row["error_from"]:
         parts = [_code(one) for one in row["error_from"].split(", ")[:NAMED]]
         said.append(f"The error of the worst is of {', '.join(parts)}.")

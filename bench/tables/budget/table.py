@@ -219,6 +219,7 @@ TABLE = Table(
     "is measured by itself, by what it does to the displayed image of mirrors, glossy and rough surfaces. An integer "
     "program then finds the codes and targets whose worst class is best, and the layout is drawn whole.",
     example="normalbench budget --bytes 12,16 --read-alone normal,roughness",
+    is_kept=True,
     options=BudgetOptions,
     outputs=BudgetOutputs,
     columns=COLUMNS,

@@ -231,6 +231,7 @@ TABLE = Table(
     "Counts are by Mesa's compilers, and by NVIDIA's of CUDA, for GPUs that need not be there, less an empty kernel "
     "that moves the same numbers.",
     example="normalbench cost --isa --family navi31 --encoding octahedral,spheremap",
+    is_kept=True,
     options=CostOptions,
     outputs=CostOutputs,
     columns=COLUMNS,

@@ -132,7 +132,7 @@ def _is_possible(device: Device, case: EffectsCase, is_metal_rough: bool, compla
 
 
 def _steps(options: EffectsOptions, outputs: EffectsOutputs) -> list[Step]:
-    device = checked_device(options.repeats, is_flip_wanted=options.flip)
+    device = checked_device(options.repeats)
     in_range("--rays", options.rays, 0, MAX_RAYS)
     bench = EffectsBench(device, options.repeats, options.rays, options.flip)
     return shot_steps(bench, cases(options, device), outputs.images, lambda case: _key(case, options))

@@ -269,6 +269,7 @@ TABLE = Table(
     "Codes that do not meet the constraints are left out, with the reason. Of the others a code may cost twice as much "
     "if it is --worth decibels better. The exit status is 1 where no code meets the constraints.",
     example="normalbench pick --storage rg8 --most-instructions 40 --scene room --power 256",
+    is_kept=True,
     options=PickOptions,
     outputs=PickOutputs,
     columns=COLUMNS,

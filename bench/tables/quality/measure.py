@@ -348,11 +348,10 @@ def rows(chosen: Iterable[QualityCase], tick: Callable[[QualityCase], None]) -> 
 
 def _rows_together(group: list[QualityCase], tick: Callable[[QualityCase], None]) -> Iterator[Row]:
     """A row for each case; cases that JAX can measure share the normals of their set."""
-    shared = [case for case in group if case.backend == "jax" and has_twin(case.codec.encoding)]
+    shared = [case for case in group if _is_shared(case)]
     measured: dict[int, ErrorTotal] = {}
     if shared:
         meters = [*on_all_cores(lambda case: meter_of(case.codec), shared)]
-        _tell_by_xla(case for case, meter in zip(shared, meters, strict=True) if isinstance(meter, Meter))
         totals = measure_together(meters, shared[0].normal_set.loads(), lambda index: tick(shared[index]))
         measured = {id(case): total for case, total in zip(shared, totals, strict=True)}
     for case in group:
@@ -362,12 +361,17 @@ def _rows_together(group: list[QualityCase], tick: Callable[[QualityCase], None]
             yield measure(case, lambda case=case: tick(case))
 
 
-def _tell_by_xla(chosen: Iterable[QualityCase]) -> None:
-    """Say of which encodings the rows are XLA's, whose roundings are others than those of compiled C."""
+def _is_shared(case: QualityCase) -> bool:
+    return case.backend == "jax" and has_twin(case.codec.encoding)
+
+
+def tell_by_xla(chosen: Iterable[QualityCase]) -> None:
+    """Say which encodings' rows by JAX are computed by XLA, which rounds otherwise than compiled C."""
+    shared = (case.codec for case in chosen if _is_shared(case) and not case.codec.is_dithered)
     if not compiler():
         tell("no C compiler found (cc): XLA computes the rows, which is slower, and the last digits may differ")
-    elif names := dict.fromkeys(case.codec.encoding.name for case in chosen if not case.codec.is_dithered):
-        tell(f"XLA computes {', '.join(names)}; compiled C, which computes the other rows, cannot")
+    elif names := dict.fromkeys(codec.encoding.name for codec in shared if isinstance(meter_of(codec), Meter)):
+        tell(f"computed by XLA, not by compiled C like the other rows: {', '.join(names)}")
 
 
 @dataclass(frozen=True)

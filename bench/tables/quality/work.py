@@ -144,6 +144,7 @@ def _measure(chosen: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
     cases_chosen = [step.case for step in chosen]
     for case, row in zip(cases_chosen, measure.rows(cases_chosen, lambda case: tick(case.name)), strict=True):
         yield [row | best_columns(case.codec)]
+    measure.tell_by_xla(cases_chosen)
 
 
 def _finished(rows: Sequence[Row]) -> list[Row]:

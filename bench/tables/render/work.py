@@ -145,7 +145,7 @@ def _exposure(asked: str | None, maker: SceneMaker) -> float | None:
 
 
 def _steps(options: RenderOptions, outputs: RenderOutputs) -> list[Step]:
-    device = checked_device(options.repeats, is_flip_wanted=options.flip)
+    device = checked_device(options.repeats)
     bench = RenderBench(device, options.repeats, options.flip)
     return shot_steps(bench, cases(options, device), outputs.images, lambda case: _key(case, options))
 

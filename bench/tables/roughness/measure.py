@@ -16,7 +16,7 @@ from ....gbuffer.environment.environment import Environment
 from ....gbuffer.gl.device import Device, FormatError
 from ....gbuffer.gl.shader import ShaderError
 from ....gbuffer.layouts.words import LayoutError
-from ...measures.metrics.images import flip
+from ...measures.metrics.flip import Flip
 from ...measures.metrics.totals import psnr_db
 from ..table import Row
 from .frames import DITHERS, NONE, Accumulation, Frames
@@ -58,7 +58,7 @@ class Pictures:
     def __init__(self, device: Device, stack: ExitStack, case: RoughnessCase):
         self._device, self._stack, self._case = device, stack, case
         self.what = shown(case.object, case.environment)
-        self._exact, self._right = dict[int, Frames](), dict[tuple[int, float], np.ndarray]()
+        self._exact, self._right = dict[int, Frames](), dict[tuple[int, float], Flip]()
         exact = self.exact(1)
         self.display = Display(measured_exposure(exact.light(EXPOSED_AT)[exact.covered]), TONE_MAPPING)
 
@@ -76,21 +76,21 @@ class Pictures:
         """A picture in [0, 1], float32 of shape (height, width, 3); black around the object."""
         return self.display.image(made.light(roughness)).astype(np.float32)
 
-    def right(self, frames: int, roughness: float) -> np.ndarray:
-        """The picture by exact normals."""
+    def right(self, frames: int, roughness: float) -> Flip:
+        """Return the picture by exact normals, for others to be compared with."""
         if (frames, roughness) not in self._right:
-            self._right[frames, roughness] = self.image(self.exact(frames), roughness)
+            self._right[frames, roughness] = Flip(self.image(self.exact(frames), roughness))
         return self._right[frames, roughness]
 
     def figures(self, made: Frames, roughness: float, with_flip: bool) -> Row:
         """What a row says of one picture."""
         image, exact = self.image(made, roughness), self.right(len(made.made), roughness)
-        pixels, right = (one[made.covered].astype(np.float64) for one in (image, exact))
+        pixels, right = (one[made.covered].astype(np.float64) for one in (image, exact.reference))
         bytes_off = np.abs(np.round(255 * pixels) - np.round(255 * right)).max(axis=-1)
         found: Row = {"roughness": roughness, "psnr_db": psnr_db(float(np.mean((pixels - right) ** 2)))}
         found |= {"off_percent": 100 * float(np.mean(bytes_off > 1)), "largest": float(bytes_off.max())}
         if with_flip:
-            apart = flip(image, exact)[made.covered]
+            apart = exact.of(image)[made.covered]
             found |= {"flip": float(apart.mean()), "flip_p99": float(np.percentile(apart, PERCENTILE))}
         return found
 

@@ -12,7 +12,6 @@ from ...ground.options.counts import checked_numbers
 from ...ground.options.targets import checked_target
 from ...ground.options.words import Names
 from ...ground.output.errors import UsageError
-from ...measures.metrics.images import require_flip
 from ...subjects.codecs.names import codecs_named, fitting
 from ...subjects.environments.environment_names import environment_named
 from ..table import Measured, Row, Sheet, Step, Work, each
@@ -31,7 +30,6 @@ def _steps(options: RoughnessOptions, _: RoughnessOutputs) -> list[Step]:
     """A step for each code. Raises UsageError and MissingError."""
     require_jax()
     device = require_device()
-    require_flip("roughness")
     seen = _seen(options)
     # The frames of a code and those of exact normals are held at once.
     size, _samples = checked_target(options.size, 1, 2 * max(one.frames for one in seen), device)

@@ -14,7 +14,7 @@ from .table import TABLE, SweepOptions, SweepOutputs
 
 
 def _steps(options: SweepOptions, _: SweepOutputs) -> list[Step]:
-    device = checked_device(options.repeats, least=1)
+    device = checked_device(options.repeats, 1)
     made = points(options, device)
     return [Step(point.key(device), (device, point), point.name) for point in made]
 

@@ -2,7 +2,6 @@
 
 import json
 import re
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +10,7 @@ from PIL import Image
 from written import as_document
 
 from normalbench.bench.measures.metrics import images as image_metrics
+from normalbench.bench.measures.metrics.flip import Flip
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.render.measure import SAME, RenderBench, ranked
 from normalbench.bench.tables.render.table import RenderOptions
@@ -165,16 +165,9 @@ def test_a_measured_exposure_does_not_depend_on_the_rows_before(gl):
 
 
 def test_flip_is_measured_where_it_is_asked_for(run):
-    pytest.importorskip("flip_evaluator")
     status, out, _ = run(*QUICK, "--pipeline", "deferred", "--flip")
     octahedral, xy = json.loads(out)
     assert status == 0 and 1 > xy["flip"] > octahedral["flip"] > 0
-
-
-def test_flip_that_is_not_installed_is_one_line(run, monkeypatch):
-    monkeypatch.setitem(sys.modules, "flip_evaluator", None)
-    status, out, err = run(*QUICK, "--flip")
-    assert (status, out) == (3, "") and err.count("\n") == 1 and "pip install flip-evaluator" in err
 
 
 def test_layouts_are_measured_as_they_are(run):
@@ -248,8 +241,7 @@ def test_a_pixel_that_is_no_number_counts_in_full():
     broken = image.copy()
     broken[1, 2, 0] = np.nan
     assert image_metrics.squared_error(broken, image) == (1 / 16, 1)
-    pytest.importorskip("flip_evaluator")
-    assert image_metrics.flip(broken, image).mean() > 0
+    assert Flip(image).of(broken).mean() > 0
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import platform
 from pathlib import Path
 
 PROCESSOR = Path("/proc/cpuinfo")
@@ -11,6 +12,12 @@ LOADED = Path("/proc/self/maps")
 def processor_lines() -> list[str]:
     """What is said of each core, as `name : value`."""
     return _lines(PROCESSOR)
+
+
+def processor_kind() -> list[str]:
+    """What tells a kind of processor from others that need other programs."""
+    facts = {line for line in processor_lines() if line.startswith(("model name", "flags", "Features"))}
+    return [platform.machine(), platform.processor(), *sorted(facts)]
 
 
 def loaded() -> set[str]:

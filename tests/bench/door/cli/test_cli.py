@@ -10,7 +10,7 @@ from pathlib import Path
 import jax.numpy as jnp
 import pytest
 
-from normalbench.bench.subjects.codecs import user_encodings
+from normalbench.bench.subjects.codecs import encoding_names
 from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.catalogue import ENCODINGS, NAMES
 from normalbench.encodings.codecs.encoding import Encoding
@@ -112,7 +112,7 @@ def test_no_command_is_help_and_no_error(run):
 
 def measured_instead(monkeypatch, encoding: Encoding) -> None:
     """From here on the encoding's name stands for it on the command line."""
-    monkeypatch.setattr(user_encodings, "ENCODINGS", {**ENCODINGS, encoding.name: encoding})
+    monkeypatch.setattr(encoding_names, "ENCODINGS", {**ENCODINGS, encoding.name: encoding})
 
 
 def test_a_users_broken_encoding_is_one_line_with_its_file(run, monkeypatch):

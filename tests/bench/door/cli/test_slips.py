@@ -45,7 +45,10 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
         ("--encoding", "xy", "quality", "--count", "9"),
         "the command comes first: normalbench quality --encoding xy --count 9",
     ),
-    "options without a command": (("--encoding", "xy"), "--encoding: begin with a command: list, doctor, pick,"),
+    "options without a command": (
+        ("--encoding", "xy"),
+        "--encoding: begin with a command: pick, budget, run,",
+    ),
     "no name at all": ((*ROW, "--encoding", ""), "no encoding named"),
     "a number twice": ((*ONE, "--count", "2000"), "--count is given twice, 1000 and 2000; give it once"),
     "a file twice": ((*ONE, "-o", "a.csv", "-o", "b.csv"), "-o is given twice, a.csv and b.csv"),

@@ -17,7 +17,7 @@ from normalbench.bench.run.workers.chunks import MOST_TOGETHER, chunk_size, task
 from normalbench.bench.run.workers.local import MOST_LOST, LocalWorkers
 from normalbench.bench.run.workers.orders import order_of, step_name
 from normalbench.bench.tables.registry import TABLES
-from normalbench.bench.tables.table import GL, VULKAN, Role, Step
+from normalbench.bench.tables.table import C_COMPILER, GL, VULKAN, Role, Step
 
 
 def asked(table: str, keys: list[dict]) -> Asked:
@@ -184,8 +184,9 @@ def test_a_worker_measures_only_what_it_would_measure_as_this_process(monkeypatc
     """Of other versions, sources, settings or processors nothing; of steps by GLSL nothing with another device."""
     ask = asked("quality", [{"backend": name} for name in ("glsl", "jax")])
     by_glsl, by_jax = tasks_of(ask, ask.steps, 1)
-    assert named(by_glsl.needs) == f"{GL}, {VULKAN}, {BASE}" and named(by_jax.needs) == BASE
-    for other, refused in ((BASE, {BASE}), (GL, {GL, ""}), (VULKAN, {VULKAN, ""})):
+    assert named(by_glsl.needs) == f"{GL}, {VULKAN}, {BASE}" and named(by_jax.needs) == f"{C_COMPILER}, {BASE}"
+    for other in (BASE, GL, VULKAN, C_COMPILER):
+        refused = {other} if other == BASE else {other, ""}
         own = dict(marks()) | {other: f"{other} of another machine"}
         monkeypatch.setattr(tasks, "marks", lambda own=own: own)
         answers = [tasks.measure(*task.arguments()).refused for task in (by_glsl, by_jax)]
@@ -225,7 +226,7 @@ def test_without_a_worker_for_long_this_process_measures(monkeypatch, capsys):
     _, found = measured(Nobody(), asked("quality", JAX))
     assert len(found) == len(JAX)
     assert (
-        f"quality: {len(JAX)} steps are measured by this process: no worker has all of this: {BASE}"
+        f"quality: {len(JAX)} steps are measured by this process: no worker has all of this: {C_COMPILER}, {BASE}"
         in capsys.readouterr().err
     )
 

@@ -1,0 +1,100 @@
+"""Answers of commands, kept in the user's cache folder and given again until what decides them changes."""
+
+from __future__ import annotations
+
+import platform
+import re
+import shutil
+import sysconfig
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+from ..ground.choose import names_a_file
+from ..ground.compilers.tools import MISSING
+from ..ground.machine.settings import settings
+from ..ground.machine.systems.system_files import loaded, processor_kind
+from ..ground.output import cache, errors
+from ..ground.output.sources import sources
+from ..ground.output.writing import say
+from ..tables.table import Table
+
+ANEW = "--anew"
+# Set where commands measure again what is kept.
+is_anew: list[bool] = []
+# What a name of a file has, and names of the catalogue have not.
+FILE_LIKE = re.compile(r"/|\\|\.[A-Za-z]")
+Value = str | int | float | bool | None
+
+
+def answered(key: str, command: Callable[[], int]) -> int:
+    """Give the answer that is kept by a key, or run a command and keep its answer; with an empty key nothing is kept.
+
+    Returns:
+        the command's exit status.
+    """
+    if not key:
+        return command()
+    kept = None if is_anew else cache.read(key)
+    if kept and all(_state(Path(path)) == state for path, state in kept["files"].items()):
+        for is_error, text in kept["said"]:
+            (errors.tell if is_error else say)(text)
+        errors.tell(f"kept from {kept['date']}; {ANEW} measures again")
+        return kept["status"]
+    with errors.hearing() as said:
+        status = command()
+    cache.write(key, {"date": time.strftime("%Y-%m-%d %H:%M"), "status": status, "said": said, "files": _libraries()})
+    return status
+
+
+def key_of_answer(table: Table, options: Any, format: str) -> str:
+    """Return the key of an answer: what is asked, the program, and what computes. Empty if the question names files,
+    which change."""
+    asked = [(field.name, getattr(options, field.name)) for field in fields(options)]
+    values = [value for _, given in asked for value in _flat(given)]
+    if not all(isinstance(value, Value) for value in values) or any(map(_may_be_a_file, values)):
+        return ""
+    width = shutil.get_terminal_size((120, 40)).columns
+    machine = [platform.platform(), *processor_kind(), *map(str, settings().items()), *_packages(), *_tools()]
+    return cache.key_of("answer", table.name, repr(asked), format, str(width), sources(), *machine)
+
+
+def _flat(value: Any) -> Iterator[Any]:
+    if isinstance(value, tuple):
+        for each in value:
+            yield from _flat(each)
+    else:
+        yield value
+
+
+def _may_be_a_file(value: Value) -> bool:
+    return isinstance(value, str) and (bool(FILE_LIKE.search(value)) or names_a_file(value))
+
+
+def _packages() -> list[str]:
+    """Return the names and versions of what is installed, as its folders say them."""
+    folders = {Path(sysconfig.get_path(name)) for name in ("purelib", "platlib")}
+    return sorted(path.name for folder in folders for path in folder.glob("*.dist-info"))
+
+
+def _tools() -> list[str]:
+    paths = (shutil.which(tool) for tool in MISSING)
+    return [f"{path} {_state(Path(path))}" if path else "" for path in paths]
+
+
+def _libraries() -> dict[str, list[int] | None]:
+    """Return the state of each library that this process has loaded, drivers among them, and of the folders that they
+    are in, which a newer one would be put into."""
+    paths = {Path(path) for path in loaded() if ".so" in path and not Path(path).is_relative_to(cache.folder())}
+    return {str(path): _state(path) for path in sorted(paths | {path.parent for path in paths})}
+
+
+def _state(path: Path) -> list[int] | None:
+    """Return the size and the time of a file; None if it is gone."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return [found.st_size, found.st_mtime_ns]
