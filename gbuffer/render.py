@@ -96,7 +96,11 @@ class Rendering:
 
     def _exchange(self, keeps: Keeps) -> None:
         texture = self.frame.textures(GBUFFER)[0]
-        texels = read_pixels(texture).copy()
+        texture.write(self._exchanged(read_pixels(texture), keeps).tobytes())
+
+    def _exchanged(self, texels: np.ndarray, keeps: Keeps) -> np.ndarray:
+        """Return the texels of layout fp32's first target, row 0 at the bottom, with other normals."""
+        texels = texels.copy()
         height, width, _ = texels.shape
         rays, depth = self.frame.scene.view.rays((width, height)), texels[..., 3]
         # (x + 1/2) 2 / width - 1 at the middle of pixel x
@@ -105,7 +109,7 @@ class Rendering:
         position = np.stack(planes, axis=-1).astype(np.float32)
         covered = depth > 0
         texels[covered, :3] = keeps(position[covered], texels[covered, :3])
-        texture.write(texels.tobytes())
+        return texels
 
     def surfaces(self) -> list[np.ndarray]:
         """What the passes up to the geometry's leave, those passes run: the textures of the G-buffer, then those of the
@@ -119,6 +123,11 @@ class Rendering:
             if name == GEOMETRY:
                 break
         return [read_pixels(texture)[::-1].copy() for texture in self._textures_of_surfaces()]
+
+    def with_normals(self, surfaces: Sequence[np.ndarray], keeps: Keeps) -> list[np.ndarray]:
+        """Return surfaces, as `surfaces` gives them of layout fp32, with other normals."""
+        first, *others = surfaces
+        return [self._exchanged(first[::-1], keeps)[::-1], *others]
 
     def lit(self, surfaces: Sequence[np.ndarray]) -> np.ndarray:
         """The image that the passes after the geometry's make of other surfaces, as `surfaces` gives them."""

@@ -6,6 +6,7 @@ import json
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from contextlib import ExitStack, nullcontext
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
@@ -21,8 +22,9 @@ from ....gbuffer.layouts.layout import Layout, engines_space
 from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.layouts.words import LayoutError
 from ....gbuffer.pipelines import PIPELINES, Pipeline
-from ....gbuffer.render import Keeps, rendering
+from ....gbuffer.render import Keeps, Rendering, rendering
 from ....gbuffer.scenes.catalogue import SCENES, SceneMaker
+from ....gbuffer.scenes.scene import Scene
 from ....gbuffer.scenes.setting import Setting
 from ...ground.options.gpu_families import CHOICES
 from ...ground.output import cache as kept
@@ -43,8 +45,7 @@ from .answer import AFFORDABLE, IMAGE, answered, floor, image_name, price, why_l
 from .prices import Costs
 from .table import TABLE
 
-# Half a decibel from what 640 x 480 and three moments say, in a sixth of the time.
-SIZE = (320, 240)
+SIZE = (640, 480)
 SUPREMUM, AXES = "angle_sup_deg", "angle_axes_deg"
 # The GPU families that a survey counts for: Mesa has their compilers, which take a second for each.
 SURVEYED = (*CHOICES["radeon"], "tgl", "dg2")
@@ -107,7 +108,6 @@ def rows(
     codecs = [case.codec for chosen in asked for case in chosen]
     costs = Costs(codecs, said["family"].split(","), said["readers"])
     others = Costs(codecs, SURVEYED, said["readers"]) if asked[0][0].is_surveyed else None
-    pictures = Pictures(device) if device else None
     # JAX compiles in a thread of its own while the device draws in this one.
     pool = ThreadPoolExecutor(1)
     try:
@@ -115,9 +115,10 @@ def rows(
         # While a device draws in this thread, little Python runs in the other: what JAX traces comes first.
         for question in questions:
             question.measure(tick)
-        for question in questions:
-            question.draw(pictures)
-            yield question.rows()
+        with Pictures(device) if device else nullcontext() as pictures:
+            for question in questions:
+                question.draw(pictures)
+                yield question.rows()
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
 
@@ -383,12 +384,54 @@ def _figures_key(what: str, codec: Codec, *parts: Any) -> str:
     return kept.key_of("pick", what, sources(), jax.__version__, codec.name, *map(repr, parts))
 
 
+@dataclass(frozen=True)
+class LitScene:
+    """A scene whose surfaces are drawn once, at each specular power, and lit by the normals of any code.
+
+    Attributes:
+        made: draws it, by exact normals in one of the spaces that layouts keep them in.
+        surfaces: the scene at each power, and its surfaces as `Rendering.surfaces` gives them.
+    """
+
+    made: Rendering
+    surfaces: Sequence[tuple[Scene, Sequence[np.ndarray]]]
+
+    @classmethod
+    def drawn(cls, made: Rendering, scenes: Iterable[Scene]) -> LitScene:
+        """Draw the surfaces of a scene at each power."""
+        surfaces = []
+        for scene in scenes:
+            made.frame.show(scene)
+            surfaces.append((scene, made.surfaces()))
+        return cls(made, surfaces)
+
+    def images(self, keeps: Keeps) -> list[np.ndarray]:
+        """Return the image at each power, linear light, float32 of shape (height, width, 3).
+
+        Args:
+            keeps: the code, from view positions and unit normals, (pixels, 3), to its normals.
+        """
+        found = []
+        for scene, surfaces in self.surfaces:
+            self.made.frame.show(scene)
+            found.append(self.made.lit(self.made.with_normals(surfaces, keeps)))
+        return found
+
+
 class Pictures:
-    """The error of the image that is lit by a code's normals, each scene's reference drawn once."""
+    """The error of the image that is lit by a code's normals. Each scene's reference and its surfaces are drawn once; a
+    context manager that lets go of them."""
 
     def __init__(self, device: Device):
-        self._device = device
-        self._references: dict[tuple[SceneMaker, Setting, tuple[float, ...], Pipeline], Reference] = {}
+        self._device, self._stack = device, ExitStack()
+        self._references: dict[tuple[Any, ...], Reference] = {}
+        self._lit: dict[tuple[Any, ...], LitScene] = {}
+
+    def __enter__(self) -> Pictures:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stack.close()
 
     def of(self, case: PickCase) -> Row:
         """The PSNR of the displayed images over covered pixels, at each power in each scene; none where the device or a
@@ -458,22 +501,36 @@ class Pictures:
             shots.require_surface(maker, len(n) > 0)
             return quality.round_trip(case.codec, n, position)
 
-        return self._drawn(case, maker, LAYOUTS["fp32"], keeps)[0]
+        space = engines_space(case.codec.encoding) if maker.is_metal_rough else ""
+        question = (maker, case.setting, case.powers, case.pipeline, space)
+        if question not in self._lit:
+            scene, made = self._opened(self._stack, case, maker, LAYOUTS["fp32"])
+            self._lit[question] = LitScene.drawn(made, _at_powers(case, maker, scene))
+        return self._lit[question].images(keeps)
 
-    def _drawn(
-        self, case: PickCase, maker: SceneMaker, layout: Layout, keeps: Keeps | None = None
-    ) -> tuple[list[np.ndarray], np.ndarray, np.ndarray]:
-        """The image at each power, and the positions and normals of its pixels."""
-        scene, shown = maker.make(case.setting), []
+    def _opened(self, stack: ExitStack, case: PickCase, maker: SceneMaker, layout: Layout) -> tuple[Scene, Rendering]:
+        scene = maker.make(case.setting)
         if scene.is_metal_rough:
             layout = replace(layout, space=engines_space(case.codec.encoding))
         plan = Plan(maker.within(SIZE), 1, layout, LIGHT_BUFFERS["rgba32f"], 2, True, 1.0)
-        with rendering(self._device, case.pipeline, scene, plan) as made:
-            for power in case.powers_of(maker):
-                made.draw(scene if power is None else scene.with_power(power), keeps)
+        return scene, stack.enter_context(rendering(self._device, case.pipeline, scene, plan))
+
+    def _drawn(
+        self, case: PickCase, maker: SceneMaker, layout: Layout
+    ) -> tuple[list[np.ndarray], np.ndarray, np.ndarray]:
+        """The image at each power, and the positions and normals of its pixels."""
+        shown = []
+        with ExitStack() as stack:
+            scene, made = self._opened(stack, case, maker, layout)
+            for at_power in _at_powers(case, maker, scene):
+                made.draw(at_power)
                 shown.append(made.image())
             position, direction, *_ = made.gbuffer()
         return shown, position[..., :3], direction[..., :3]
+
+
+def _at_powers(case: PickCase, maker: SceneMaker, scene: Scene) -> list[Scene]:
+    return [scene if power is None else scene.with_power(power) for power in case.powers_of(maker)]
 
 
 @dataclass(frozen=True)

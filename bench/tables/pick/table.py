@@ -289,7 +289,7 @@ TABLE = Table(
         "those that cost little the cheapest is taken. Of others a code may cost twice as much if it is 3 dB better, "
         "half a bit of each component. The price is in issue slots as they are executed, to encode once and to decode "
         "for four readers; 80 of these take no longer than the target's memory traffic. Angles are over the named "
-        "normals, the largest is a supremum found in float64. Images are frames of 320 x 240 of the hybrid pipeline, "
+        "normals, the largest is a supremum found in float64. Images are frames of 640 x 480 of the hybrid pipeline, "
         "all else in 32-bit floats, lit by the normals that the emulated code gives back, and compared over covered "
         "pixels; `render` writes codes in shaders, and agrees to 0.02 dB. Slots are counted in shaders as the vendors' "
         "compilers make them, without the conversion that the render target does.",

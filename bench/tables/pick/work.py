@@ -274,9 +274,9 @@ def _write(done: Measured, _: Tick) -> None:
         write_live((case.codec for case in placed), done.outputs.live)
     if not done.outputs.images or not done.steps or not (device := done.steps[0].case.device):
         return
-    drawing = measure.Pictures(device)
-    for step in done.steps:
-        pictures.write(done.outputs.images, step.case.cases, done.rows, drawing)
+    with measure.Pictures(device) as drawing:
+        for step in done.steps:
+            pictures.write(done.outputs.images, step.case.cases, done.rows, drawing)
 
 
 WORK = Work(
