@@ -67,24 +67,37 @@ def _row_library() -> ctypes.CDLL:
     return made
 
 
-class NativeMeter:
-    """Measures what a round trip makes of chunks of normals.
+def decoder(round_trip: Callable[..., Vec3], given: Sequence[Any] = ()) -> ctypes.CDLL:
+    """Return a compiled round trip, for a `NativeMeter`.
 
     Args:
         round_trip: (normals, view positions, *given) -> decoded normals; elementwise.
-        given: what it is called with besides: named tuples of float32.
+        given: like what it is called with besides, named tuples of float32; their values do not matter.
 
     Raises:
         NotElementwiseError, NoCompilerError: it cannot be compiled here.
     """
+    types = [type(numbers)(*[FLOAT] * len(numbers)) for numbers in given]
+    function = c_function("round_trip", round_trip, FLOATS, FLOATS, *types)
+    text = source(HERE / "decode.c", function, [c_type(FLOAT)] * sum(map(len, types)), block=BLOCK)
+    return library(text, "decode", "decode_all")
 
-    def __init__(self, round_trip: Callable[..., Vec3], given: Sequence[Any] = ()):
-        types = [type(one)(*[FLOAT] * len(one)) for one in given]
-        self._given = np.array([number for one in given for number in one], np.float64)
-        function = c_function("round_trip", round_trip, FLOATS, FLOATS, *types)
-        text = source(HERE / "decode.c", function, [c_type(FLOAT)] * len(self._given), block=BLOCK)
-        self._library = library(text, "decode", "decode_all")
-        decode = ctypes.cast(self._library.decode, ctypes.c_void_p)
+
+class NativeMeter:
+    """Measures what a round trip makes of chunks of normals.
+
+    Args:
+        compiled: the round trip, by `decoder`.
+        given: what it is called with besides.
+
+    Raises:
+        NoCompilerError: the statistics cannot be compiled here.
+    """
+
+    def __init__(self, compiled: ctypes.CDLL, given: Sequence[Any] = ()):
+        self._given = np.array([number for numbers in given for number in numbers], np.float64)
+        self._library = compiled
+        decode = ctypes.cast(compiled.decode, ctypes.c_void_p)
         self._codec, self._row_library = ctypes.byref(_Codec(decode, address(self._given))), _row_library()
 
     def decoded(self, block: Any) -> Vec3:

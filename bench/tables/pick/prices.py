@@ -25,7 +25,7 @@ class Costs:
         encodings = list(dict.fromkeys(codec.encoding for codec in chosen))
         packings = {packing_of(codec).name: packing_of(codec) for codec in chosen if codec.storage.is_packed}
         cases = cost.cases(encodings, packings.values(), cost.OPERATIONS)
-        self._rows = {family: cost.counted(cases, family, usual_stage(family)) for family in families}
+        self._rows = {family: cost.known_counts(cases, family, usual_stage(family)) for family in families}
 
     def of(self, codec: Codec) -> Row:
         """The columns of costs on the family where the code is dearest; none where nothing is known."""

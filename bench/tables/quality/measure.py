@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import itertools
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -29,7 +30,7 @@ from ...ground.output.errors import MissingError, tell
 from ...measures.metrics.code_limits import AREAS, effective_bits
 from ...measures.metrics.meter import Decoded, Load, Measures, Meter, idle, measure_together
 from ...measures.metrics.totals import ErrorTotal, Statistics, Worst, psnr_db, statistics, total_of
-from ...measures.native.meter import NativeMeter
+from ...measures.native.meter import NativeMeter, decoder
 from ...measures.worst_case import exact_figures
 from ...shaders.code.twin import has_twin
 from ...subjects.normals.normal_sets import CHUNK, CHUNK_WIDTH, Chunk, NormalSet, from_arrays
@@ -84,8 +85,15 @@ def meter_of(codec: Codec) -> Measures:
     if not codec.is_dithered:
         like, scales = shared(codec.storage, codec.encoding.components)
         with suppress(NoCompilerError, NotElementwiseError):
-            return NativeMeter(_trip(codec.encoding, like, codec.rounding), scales)
+            return NativeMeter(_compiled(codec.encoding, like, codec.rounding), scales)
     return meter_by_xla(codec)
+
+
+@cache
+def _compiled(encoding: Encoding, like: Storage, rounding: str) -> ctypes.CDLL:
+    # Tracing takes longer than all else, and formats that share a program are many.
+    _, scales = shared(like, encoding.components)
+    return decoder(_trip(encoding, like, rounding), scales)
 
 
 def meter_by_xla(codec: Codec) -> Meter:

@@ -13,7 +13,7 @@ from normalbench.bench.ground.native import library
 from normalbench.bench.ground.output import errors
 from normalbench.bench.measures.metrics.meter import Meter, measure_together
 from normalbench.bench.measures.metrics.totals import statistics
-from normalbench.bench.measures.native.meter import NativeMeter
+from normalbench.bench.measures.native.meter import NativeMeter, decoder
 from normalbench.bench.subjects.normals import normal_sets
 from normalbench.bench.subjects.normals.normal_sets import CHUNK, TURN, NormalSet, from_arrays, hemisphere, sphere
 from normalbench.bench.tables.quality import measure as quality
@@ -35,7 +35,7 @@ UNIT_DEG = float(np.degrees(2.0**-23))
 
 def both(function, normals: NormalSet, given=()):
     """The statistics of a decoder of (n, view), by C and by XLA."""
-    native = NativeMeter(function, given)
+    native = NativeMeter(decoder(function, given), given)
     usual = Meter(jax.jit(lambda chunk: function(chunk.n, chunk.view, *given)))
     totals = (measure_together([meter], normals.loads(), lambda _: None)[0] for meter in (native, usual))
     return [statistics(normals.count, total) for total in totals]
@@ -128,7 +128,7 @@ def test_the_background_does_not_count():
     assert found.worst.angle_deg < 2 and found.pixels == len(n) > found.count
     nothing = from_arrays("", "", n, view, np.zeros(len(n), bool))
     for load in nothing.loads():
-        figures, counts, worst = NativeMeter(lambda _, view: view).one(load)
+        figures, counts, worst = NativeMeter(decoder(lambda _, view: view)).one(load)
         assert not any(figures) and counts.sum() == counts[-1] == CHUNK and worst is None
 
 
@@ -150,7 +150,7 @@ def test_the_worst_normal_is_that_of_all_chunks(at):
     n = random_directions(CHUNK + 99)
     turned = np.where(np.arange(len(n))[:, None] == at, n[:, [1, 2, 0]], n * np.float32([1, 1, 0.99]))
     normals = from_arrays("", "", n, turned.astype(np.float32), np.ones(len(n), bool))
-    (total,) = measure_together([NativeMeter(lambda _, view: view)], normals.loads(), lambda _: None)
+    (total,) = measure_together([NativeMeter(decoder(lambda _, view: view))], normals.loads(), lambda _: None)
     np.testing.assert_array_equal(total.worst.normal, n[at])
     assert float(total.figures.largest) == pytest.approx(total.worst.angle_deg, rel=1e-5)
 
