@@ -36,22 +36,22 @@ def write_program(path, text):
 
 def test_the_set_up_names_each_step_and_is_never_silent(setting_up):
     done = setting_up("echo Downloading jax; sleep 2.5; echo 'normalbench: no compiler' >&2")
-    assert done.returncode == 0 and done.stderr == "normalbench: no compiler\n" * 2
+    assert done.returncode == 0 and done.stderr == "normalbench: no compiler\n" * 3
     first, *lines, last = done.stdout.splitlines()
-    assert re.fullmatch(r"normalbench: sets up .venv in 5 steps, .* MB to download, .* on disk", first), first
-    assert [line[:8] for line in lines if " of " in line] == [f"  {at} of 5" for at in range(1, 6)]
-    assert lines.count("    1 s  Downloading jax") == lines.count("    2 s  Downloading jax") == 2
+    assert re.fullmatch(r"normalbench: sets up .venv in 6 steps, .* MB to download, .* on disk", first), first
+    assert [line[:8] for line in lines if " of " in line] == [f"  {at} of 6" for at in range(1, 7)]
+    assert lines.count("    1 s  Downloading jax") == lines.count("    2 s  Downloading jax") == 3
     assert re.fullmatch(r"normalbench: set up in \d+ s; .venv takes \d+ MiB", last), last
 
 
 def test_a_step_that_fails_ends_the_set_up_with_what_it_said(setting_up):
     """With its status; one that can be done without is left out."""
     done = setting_up("echo 'ERROR: no such package'; exit 3")
-    assert done.returncode == 3 and "3 of 5" not in done.stdout
+    assert done.returncode == 3 and "3 of 6" not in done.stdout
     assert done.stderr.splitlines()[0] == "ERROR: no such package"
     assert "normalbench: step 2 failed, with status 3" in done.stderr
     done = setting_up('case "$*" in *slangtorch*) exit 1; esac')
-    assert done.returncode == 0 and done.stderr.count("left out") == 1 and "5 of 5" in done.stdout
+    assert done.returncode == 0 and done.stderr.count("left out") == 1 and "6 of 6" in done.stdout
 
 
 def test_the_page_has_the_sizes_that_the_set_up_says():
