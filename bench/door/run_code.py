@@ -6,10 +6,14 @@ from collections.abc import Iterable, Iterator
 from itertools import islice
 from pathlib import Path
 
+from ...encodings.catalogue import is_in_catalogue
 from ...encodings.codecs.codec import Codec
 from ...gbuffer.gl.shader import ShaderError
 from ...reports.page.codec_key import CodecKey
+from ..ground.compilers.tools import states
+from ..ground.output import cache
 from ..ground.output.errors import MissingError, UsageError
+from ..ground.output.sources import sources
 from ..keep.runs import Done
 from ..shaders.code.emit import LANGUAGES
 from ..shaders.code.files import code_of
@@ -52,13 +56,19 @@ def _best(name: str, rows: list[Row]) -> Iterator[Row]:
 
 
 def _written(codec: Codec, is_proven: bool) -> Written:
-    """A codec in the languages that it can be written in."""
+    """Return a codec in the languages that it can be written in; what was written and run before is kept."""
+    facts = (sources(), codec.name, str(is_proven), *LANGUAGES, *states())
+    key = cache.key_of("code", *facts) if is_in_catalogue(codec.encoding) else ""
+    return Written(**cache.kept(key, lambda: _written_now(codec, is_proven)._asdict()))
+
+
+def _written_now(codec: Codec, is_proven: bool) -> Written:
     try:
         if is_proven:
             made = [(one.code, one.head()) for one in proven(codec, list(LANGUAGES)) if not one.why_not]
         else:
             made = [(code, unproven_head(code)) for code in (code_of(codec, name) for name in LANGUAGES)]
     except (UsageError, MissingError, ShaderError, *UNEXPECTED):
-        return Written()
+        return Written({})
     texts = {code.language: code.text(head) for code, head in made}
     return Written(texts, is_proven, any(code.interface.tables for code, _ in made))

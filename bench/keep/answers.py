@@ -13,8 +13,9 @@ from pathlib import Path
 from typing import Any
 
 from ..ground.choose import names_a_file
-from ..ground.compilers.tools import MISSING
+from ..ground.compilers.tools import states
 from ..ground.machine.settings import settings
+from ..ground.machine.systems.files import state_of
 from ..ground.machine.systems.system_files import loaded, processor_kind
 from ..ground.output import cache, errors
 from ..ground.output.sources import sources
@@ -38,7 +39,7 @@ def answered(key: str, command: Callable[[], int]) -> int:
     if not key:
         return command()
     kept = None if is_anew else cache.read(key)
-    if kept and all(_state(Path(path)) == state for path, state in kept["files"].items()):
+    if kept and all(state_of(Path(path)) == state for path, state in kept["files"].items()):
         for is_error, text in kept["said"]:
             (errors.tell if is_error else say)(text)
         errors.tell(f"kept from {kept['date']}; {ANEW} measures again")
@@ -57,7 +58,7 @@ def key_of_answer(table: Table, options: Any, format: str) -> str:
     if not all(isinstance(value, Value) for value in values) or any(map(_may_be_a_file, values)):
         return ""
     width = shutil.get_terminal_size((120, 40)).columns
-    machine = [platform.platform(), *processor_kind(), *map(str, settings().items()), *_packages(), *_tools()]
+    machine = [platform.platform(), *processor_kind(), *map(str, settings().items()), *_packages(), *states()]
     return cache.key_of("answer", table.name, repr(asked), format, str(width), sources(), *machine)
 
 
@@ -79,22 +80,8 @@ def _packages() -> list[str]:
     return sorted(path.name for folder in folders for path in folder.glob("*.dist-info"))
 
 
-def _tools() -> list[str]:
-    paths = (shutil.which(tool) for tool in MISSING)
-    return [f"{path} {_state(Path(path))}" if path else "" for path in paths]
-
-
 def _libraries() -> dict[str, list[int] | None]:
     """Return the state of each library that this process has loaded, drivers among them, and of the folders that they
     are in, which a newer one would be put into."""
     paths = {Path(path) for path in loaded() if ".so" in path and not Path(path).is_relative_to(cache.folder())}
-    return {str(path): _state(path) for path in sorted(paths | {path.parent for path in paths})}
-
-
-def _state(path: Path) -> list[int] | None:
-    """Return the size and the time of a file; None if it is gone."""
-    try:
-        found = path.stat()
-    except OSError:
-        return None
-    return [found.st_size, found.st_mtime_ns]
+    return {str(path): state_of(path) for path in sorted(paths | {path.parent for path in paths})}

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 from ..machine import children
 from ..machine.systems import landlock, walls
+from ..machine.systems.files import state_of
 from ..machine.systems.people import how_to_install
 from ..machine.systems.processes import file_of_child, signal_name
 from ..machine.systems.walls import Wall
@@ -58,6 +59,12 @@ def path_of(tool: str) -> Path:
     if not path:
         raise MissingError(MISSING.get(tool, f"{tool} is not on the path"))
     return Path(path)
+
+
+def states() -> list[str]:
+    """Return where each compiler is, and the state of its file; what compilers made holds while this is the same."""
+    paths = (shutil.which(tool) for tool in MISSING)
+    return [f"{path} {state_of(Path(path))}" if path else "" for path in paths]
 
 
 def _in_a_wheel(tool: str) -> str | None:

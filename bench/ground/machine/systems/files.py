@@ -128,3 +128,12 @@ def c_function(name: str) -> Callable[..., Any] | None:
     """A function of the C library that this process has loaded; None where it has none of this name."""
     library = "ucrtbase" if sys.platform == "win32" else None
     return getattr(ctypes.CDLL(library), name, None)
+
+
+def state_of(path: Path) -> list[int] | None:
+    """Return the size and the time of a file or folder; None if it is gone."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return [found.st_size, found.st_mtime_ns]
