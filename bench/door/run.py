@@ -18,13 +18,14 @@ from ..ground.options.option import fields_of
 from ..ground.options.source_options import in_names, names_files
 from ..ground.options.words import Names
 from ..ground.output.errors import MissingError, UsageError, leave_out, noting_what_is_left_out, tell, told
-from ..ground.output.progress import progress_of_all, spoken
+from ..ground.output.progress import PAGE, progress, progress_of_all, spoken
 from ..ground.output.writing import say
 from ..ground.user_files import SETTINGS
 from ..keep.commit import commit_of
 from ..keep.plain import plain
 from ..keep.runs import Row, Run, facts_of, opened, read_run, unfinished
 from ..keep.table_files import write_tables
+from ..run.durations import expected
 from ..run.measuring import Asked, Place, asked_together, measured, with_parts
 from ..run.second import Second, is_worth_it, second_process
 from ..run.workers.places import place
@@ -35,7 +36,7 @@ from . import beside
 from .table_command import in_folder
 
 RESULTS = Path("results")
-PAGE = "report.html"
+REPORT = "report.html"
 
 
 def chosen_tables(names: Names, said: Mapping[str, Any]) -> list[Table]:
@@ -165,12 +166,14 @@ def _measured_and_shown(
     if run.kept:
         tell(f"{run.folder} goes on: {_there(run, asks)} of {total} steps are there")
     try:
-        # The second process ends while its rows are still kept, and before it is said how many are.
-        with progress_of_all(sum(step.ticks for ask in asks for step in ask.steps), len(asks)), ending.pop_all():
-            shown = _measure_all(run, asks, where, second)
-        shown.written |= second.written if second else set()
-        run.arrange((ask.table.name, step) for ask in asks for step in ask.steps)
-        _complete(run, shown)
+        with progress_of_all(expected(asks, _beside(asks) if second else ())):
+            # The second process ends while its rows are still kept, and before it is said how many are.
+            with ending.pop_all():
+                shown = _measure_all(run, asks, where, second)
+            shown.written |= second.written if second else set()
+            run.arrange((ask.table.name, step) for ask in asks for step in ask.steps)
+            with progress(1, PAGE):
+                _complete(run, shown)
     except (KeyboardInterrupt, SystemExit):
         tell(f"{run.kept} of {total} steps are kept; the same command goes on")
         raise
@@ -192,7 +195,7 @@ def _measure_all(run: Run, asks: Sequence[Asked], where: Place, second: Second |
     # The answer first: this process measures nothing else while people wait for it.
     first, rest = ([ask for ask in asks if ask.table.section.leads is leads] for leads in (True, False))
     shown = Shown([*first, *rest])
-    others = [ask for ask in rest if ask.table.is_measured_beside]
+    others = _beside(rest)
     helping = second if is_worth_it(ask.table for ask in rest) else None
     if helping:
         own, firsts = ([beside.Asking.of(ask) for ask in asks] for asks in (others, first))
@@ -206,6 +209,10 @@ def _measure_all(run: Run, asks: Sequence[Asked], where: Place, second: Second |
         if ask.table.name not in shown.done:
             shown.add(ask, measured(ask, run, where))
     return shown
+
+
+def _beside(asks: Iterable[Asked]) -> list[Asked]:
+    return [ask for ask in asks if ask.table.is_measured_beside and not ask.table.section.leads]
 
 
 def _measure_others(run: Run, asks: Iterable[Asked], others: Sequence[Asked], shown: Shown, second: Second) -> None:
@@ -278,7 +285,7 @@ def _complete(run: Run, shown: Shown) -> None:
             ask.table.work.write(shown.done[ask.table.name], lambda _: None)
     keep_code(run.folder, done)
     say(f"\nEvery figure, the pictures and the machine they come from: {run.folder}\n")
-    page = write_report(run.folder, done, run.folder / PAGE, CHARTS, most_charts=CHARTS_OF_A_RUN)
+    page = write_report(run.folder, done, run.folder / REPORT, CHARTS, most_charts=CHARTS_OF_A_RUN)
     run.finish()
     answers = (line for ask in shown.asks if ask.table.section.leads for line in in_short(ask.table, shown.done))
     say("".join(f"{line}\n" for line in answers) + f"All of it on one page: {page}\n")

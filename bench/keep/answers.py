@@ -22,7 +22,6 @@ from ..ground.output.sources import sources
 from ..ground.output.writing import say
 from ..tables.table import Table
 
-ANEW = "--anew"
 # Set where commands measure again what is kept.
 is_anew: list[bool] = []
 # What a name of a file has, and names of the catalogue have not.
@@ -42,7 +41,7 @@ def answered(key: str, command: Callable[[], int]) -> int:
     if kept and all(state_of(Path(path)) == state for path, state in kept["files"].items()):
         for is_error, text in kept["said"]:
             (errors.tell if is_error else say)(text)
-        errors.tell(f"kept from {kept['date']}; {ANEW} measures again")
+        errors.tell(f"kept from {kept['date']}; --anew measures again")
         return kept["status"]
     with errors.hearing() as said:
         status = command()

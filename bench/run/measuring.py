@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import time
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -24,6 +25,7 @@ from ..ground.user_files import UserFile, file_of, names_an_encoder, parts_of
 from ..keep.journal import Journal, journal
 from ..keep.plain import key_text, plain
 from ..tables.table import Measured, Role, Row, Step, Table, Tick
+from . import durations
 
 # Beside a file of one of these, files that it refers to are read too.
 COMPANIONS = {".gltf": ("*.bin",), ".obj": ("*.mtl",)}
@@ -149,9 +151,11 @@ def _measured_steps(ask: Asked, kept: Kept, place: Place) -> list[list[Row]]:
     found |= {id(part): kept.find(name, part) for step in absent for part in step.parts}
     missing = [one for one in _in_parts(absent) if found.get(id(one)) is None]
     there = sum(step.ticks for step in ask.steps if found[id(step)] is not None)
-    with progress(sum(step.ticks for step in missing), name, there) as tick:
+    ticks, begun = sum(step.ticks for step in missing), time.monotonic()
+    with progress(ticks, name, there) as tick:
         for step, rows in place.measure(ask, missing, tick):
             found[id(step)] = kept.keep(name, step, rows)
+    durations.keep(ask, ticks, time.monotonic() - begun)
     for step in absent:
         if step.parts:
             rows = [row for part in step.parts for row in found[id(part)] or []]

@@ -205,6 +205,7 @@ class Table:
             on the GL device.
         is_usual: whether a gate or a test that names no table means this one.
         is_kept: whether the command gives its answer again while nothing has changed that decides it.
+        step_s: seconds of a step in the default run, on two cores: what a run expects until it has measured its own.
         compilers: columns that name the compilers of a row's figures; figures of two versions are not compared.
     """
 
@@ -229,6 +230,7 @@ class Table:
     is_measured_beside: bool = False
     is_usual: bool = False
     is_kept: bool = False
+    step_s: float = 0.3
     compilers: tuple[str, ...] = ()
 
     def is_in_all(self, said: Mapping[str, Any]) -> bool:

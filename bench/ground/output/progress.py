@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterator
+import time
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from threading import Event, Thread
 from typing import Any
@@ -16,6 +17,10 @@ from ....reports.tables import visible
 from .errors import tell_together
 
 EVERY = 8  # seconds between two lines where there is no bar
+# What comes after all tables of a run.
+PAGE = "writing the page"
+# The expected time counts as much as this share of it that was measured.
+TRUST = 0.1
 # Set where a log is to have none of these lines.
 OFF = "NORMALBENCH_NO_PROGRESS"
 # What a signal raised to end the program. It may be raised where a library swallows it, as in a callback of the garbage
@@ -24,38 +29,50 @@ ending: list[BaseException] = []
 
 
 class Bar:
-    """A bar on standard error; none where that is no terminal.
+    """A bar of time on standard error; none where that is no terminal.
 
     Args:
-        steps: how many steps there are.
-        tables: how many tables, where the bar is of several.
+        expected: by table its steps and how many seconds each is expected to take.
     """
 
-    def __init__(self, bar: Any, steps: int, tables: int = 0):
-        self._bar, self._tables, self._begun = bar, tables, dict[str, None]()
-        self._task = bar.add_task("", total=steps)
-        self._steps, self._done = steps, 0
+    def __init__(self, bar: Any, expected: Mapping[str, tuple[int, float]]):
+        self._bar, self._expected, self._begun = bar, expected, dict[str, None]()
+        self._all = sum(count * seconds for count, seconds in expected.values())
+        self._task = bar.add_task("", total=self._all, left="")
+        self._done, self._since, self._step = 0.0, time.monotonic(), next(iter(expected.values()))[1]
         self._of = self._under_way = ""
 
     def advance(self, description: str) -> None:
-        """One step further; what is under way now."""
+        """Move one step further; say what is under way now."""
         if ending:
             raise ending[0]
-        self._move(1, f"{self._of}{description}")
+        self._move(self._step, f"{self._of}{description}")
 
     def begin(self, table: str, there: int) -> None:
-        """A table of several, some of whose steps are there already."""
+        """Begin a table, some of whose steps are there already: they take no time."""
         self._begun[table] = None
-        self._of = f"table {len(self._begun)} of {self._tables}, {table}: "
-        self._move(there, self._of)
+        self._step = self._expected.get(table, (0, 0.0))[1]
+        tables = len(self._expected) - (PAGE in self._expected)
+        self._of = PAGE if table == PAGE else f"table {len(self._begun)} of {tables}, {table}: "
+        self._all -= there * self._step
+        self._move(0.0, self._of)
 
-    def _move(self, steps: int, under_way: str) -> None:
-        self._done, self._under_way = self._done + steps, under_way
-        self._bar.update(self._task, advance=steps, description=visible(under_way))
+    def _move(self, seconds: float, under_way: str) -> None:
+        self._done, self._under_way = self._done + seconds, under_way
+        left = self._left_text()
+        self._bar.update(self._task, completed=self._done, total=self._all, description=visible(under_way), left=left)
+
+    def _left_text(self) -> str:
+        """The time that is left, by how long what was done took."""
+        trusted = TRUST * self._all
+        slower = (time.monotonic() - self._since + trusted) / (self._done + trusted) if self._all else 1.0
+        minutes, seconds = divmod(round(max(0.0, self._all - self._done) * slower), 60)
+        return f"about {minutes}:{seconds:02} left"
 
     def says(self) -> str:
-        """How far it is."""
-        return f"{self._done} of {self._steps} steps, {self._under_way}"
+        """Say how far it is."""
+        share = self._done / self._all if self._all else 1.0
+        return f"{100 * min(share, 1.0):.0f}%, {self._left_text()}, {self._under_way}"
 
 
 # The bar of a whole run, while there is one.
@@ -63,16 +80,17 @@ _whole: list[Bar] = []
 
 
 @contextmanager
-def _shown(steps: int, tables: int = 0) -> Iterator[Bar]:
+def _shown(expected: Mapping[str, tuple[int, float]]) -> Iterator[Bar]:
     from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+    from rich.progress import BarColumn, Progress, TextColumn
 
     console = Console(stderr=True)
     # Names of files are no markup.
     under_way = TextColumn("{task.description}", markup=False)
-    columns = (BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(), under_way)
+    texts = (TextColumn("{task.percentage:3.0f}%"), TextColumn("{task.fields[left]}"))
+    columns = (BarColumn(), *texts, under_way)
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
-        yield Bar(bar, steps, tables)
+        yield Bar(bar, expected)
 
 
 def _speak_until(ended: Event) -> None:
@@ -80,7 +98,7 @@ def _speak_until(ended: Event) -> None:
     while not ended.wait(EVERY):
         waited += EVERY
         # Each line as it is: what is told once is counted in the main thread.
-        tell_together(f"{waited} s, {_whole[-1].says() if _whole else 'it begins, or writes its files'}", ())
+        tell_together(f"{waited} s, {_whole[-1].says() if _whole else 'finding out what there is to measure'}", ())
 
 
 @contextmanager
@@ -97,9 +115,13 @@ def spoken() -> Iterator[None]:
 
 
 @contextmanager
-def progress_of_all(steps: int, tables: int) -> Iterator[None]:
-    """One bar for all tables of a run, which the bars of single tables become part of."""
-    with _shown(steps, tables) as bar:
+def progress_of_all(expected: Mapping[str, tuple[int, float]]) -> Iterator[None]:
+    """Show one bar for all tables of a run, which the bars of single tables become part of.
+
+    Args:
+        expected: by table its steps and how many seconds each is expected to take.
+    """
+    with _shown(expected) as bar:
         _whole.append(bar)
         try:
             yield
@@ -118,5 +140,5 @@ def progress(steps: int, table: str = "", there: int = 0) -> Iterator[Callable[[
         _whole[-1].begin(table, there)
         yield _whole[-1].advance
         return
-    with _shown(steps) as bar:
+    with _shown({table: (steps, 1.0)}) as bar:
         yield bar.advance

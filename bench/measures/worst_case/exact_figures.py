@@ -33,9 +33,9 @@ def supremum(codec: Codec, domain: str | None, area: float, s: Statistics) -> Ro
         }
     if AREAS[domain] < area:
         return {"sup_found_by": f"nothing: the limit and codes are of the {domain}, the set is larger"}
-    from .search import worst_case
+    from . import recorded
 
-    worst = _exactly(worst_case, codec, domain)
+    worst = _exactly(recorded.supremum, codec, domain)
     x, y, z = worst.normal
     row = {"angle_sup_deg": worst.angle_deg, "sup_x": x, "sup_y": y, "sup_z": z}
     return row | {"sup_found_by": worst.found_by, "sup_moved_deg": worst.moved_deg}

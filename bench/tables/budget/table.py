@@ -220,6 +220,7 @@ TABLE = Table(
     "program then finds the codes and targets whose worst class is best, and the layout is drawn whole.",
     example="normalbench budget --bytes 12,16 --read-alone normal,roughness",
     is_kept=True,
+    step_s=0.2,
     options=BudgetOptions,
     outputs=BudgetOutputs,
     columns=COLUMNS,

@@ -103,7 +103,7 @@ def _row_of_each(rows: Sequence[Row]) -> dict[CodecKey, Row]:
 
 def _counted(tables: Mapping[str, Sequence[Row]]) -> list[Row]:
     """The rows that have instructions: of fragment shaders, or of what else a family has where it has none."""
-    rows = [r for r in tables.get("cost", ()) if r.get("family") and is_number(r.get("instructions"))]
+    rows = [r for r in tables.get(TABLE.name, ()) if r.get("family") and is_number(r.get("instructions"))]
     return [row for row in rows if row.get("stage") == usual_stage(str(row["family"]))]
 
 

@@ -232,6 +232,7 @@ TABLE = Table(
     "that moves the same numbers.",
     example="normalbench cost --isa --family navi31 --encoding octahedral,spheremap",
     is_kept=True,
+    step_s=8.0,
     options=CostOptions,
     outputs=CostOutputs,
     columns=COLUMNS,

@@ -132,6 +132,7 @@ TABLE = Table(
     "Errors are distances in the unit of --near and --far, of points anywhere on the screen; a distance stands for "
     "depths up to a sixteenth of it nearer or farther. --depths measures the depths of your own image.",
     example="normalbench depth --depth reversed_window,logarithmic --near 0.1 --far 1000",
+    step_s=0.04,
     options=DepthOptions,
     outputs=DepthOutputs,
     columns=COLUMNS,

@@ -145,6 +145,7 @@ TABLE = Table(
     "Every normal code lies in an otherwise exact layout, and every depth code in one with exact normals. A layout "
     "is measured as it is.",
     example="normalbench effects --effect gtao --encoding octahedral,spheremap --storage rg8,rgb10a2",
+    step_s=0.8,
     options=EffectsOptions,
     outputs=EffectsOutputs,
     columns=COLUMNS,

@@ -101,6 +101,7 @@ TABLE = Table(
     "handedness.\n\nA set may be a mesh (glTF, GLB, OBJ, PLY): the tangent frames of its vertices, authored or along "
     "its uv.",
     example="normalbench frames --encoding smallest_three --backend jax",
+    step_s=0.05,
     options=FramesOptions,
     columns=COLUMNS,
     single={"encoding": "smallest_three", "backend": "jax"},

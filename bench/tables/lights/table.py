@@ -86,6 +86,7 @@ TABLE = Table(
     help="What light buffers lose: adding lights up, banding and rebuilt colour.\n\n"
     "The model, in JAX, stands next to what the GL device does. Without a GL device the model is measured alone.",
     example="normalbench lights --experiment equal,banding --light-buffer rgbm,r11g11b10f",
+    step_s=0.4,
     options=LightsOptions,
     outputs=LightsOutputs,
     columns=COLUMNS,

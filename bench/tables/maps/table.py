@@ -130,6 +130,7 @@ TABLE = Table(
     "A normal map is an image file (PNG, EXR, TIFF, DDS, HDR, WebP, NPY). The encoders are packages: "
     "pip install normalbench[maps].",
     example="normalbench maps --normals frame.png --encoding xy,octahedral --block bc5,bc7",
+    step_s=0.08,
     options=MapsOptions,
     outputs=MapsOutputs,
     columns=COLUMNS,

@@ -227,6 +227,7 @@ TABLE = Table(
     "The verdict of each codec: filterable, blendable, resolvable, or why not. `pick --needs filter,blend,resolve` "
     "leaves out codecs that are not.",
     example="normalbench mix --encoding octahedral,xyz --storage rgba8 --angle 5",
+    step_s=0.05,
     options=MixOptions,
     outputs=MixOutputs,
     columns=COLUMNS,

@@ -169,6 +169,7 @@ TABLE = Table(
     "A code in view space is another one in each frame of a turning camera, so highlights wobble; a code in world "
     "space stays. Measured of the normals, of highlights and of the displayed image.",
     example="normalbench motion --encoding octahedral,spheremap --storage rg8,rgb10a2 --axis yaw,roll",
+    step_s=0.5,
     options=MotionOptions,
     outputs=MotionOutputs,
     columns=COLUMNS,

@@ -270,6 +270,7 @@ TABLE = Table(
     "if it is --worth decibels better. The exit status is 1 where no code meets the constraints.",
     example="normalbench pick --storage rg8 --most-instructions 40 --scene room --power 256",
     is_kept=True,
+    step_s=0.4,
     options=PickOptions,
     outputs=PickOutputs,
     columns=COLUMNS,

@@ -245,6 +245,7 @@ TABLE = Table(
     "a camera (glTF, GLB, OBJ, PLY), its vertex normals in object space (mesh.glb#vertices), or a point "
     "cloud (PLY).",
     example="normalbench quality --encoding octahedral,spheremap --storage rg8,rgb10a2 --normals sphere",
+    step_s=0.008,
     options=QualityOptions,
     outputs=QualityOutputs,
     columns=COLUMNS,

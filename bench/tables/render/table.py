@@ -215,6 +215,7 @@ TABLE = Table(
     "Without --layout every encoding lies in rgba8 in an otherwise exact G-buffer. With --layout and none of "
     "--encoding, --storage and --rounding the layouts are measured as they are.",
     example="normalbench render --encoding octahedral,spheremap --storage rg8 --scene gloss --power 47,1024",
+    step_s=1.2,
     options=RenderOptions,
     outputs=RenderOutputs,
     columns=COLUMNS,

@@ -113,6 +113,7 @@ TABLE = Table(
     "every greater roughness, on the worst of objects and environments. 0.1 is what we call acceptable and 0.05 "
     "invisible: both are conventions.",
     example="normalbench roughness --storage rg8,rgb10a2 --environment studio",
+    step_s=2.5,
     options=RoughnessOptions,
     outputs=RoughnessOutputs,
     columns=COLUMNS,

@@ -110,6 +110,7 @@ TABLE = Table(
     "and how far reprojected points drift.\n\nA motion is in screens a frame. Fixed-point storages keep motions up to "
     "the range. `_centred` is UNORM with an exact code for no motion, as engines store it.",
     example="normalbench vectors --encoding linear --storage rg16f,rg16,rg16_centred --backend jax",
+    step_s=0.05,
     options=VectorsOptions,
     columns=COLUMNS,
     single={"encoding": "linear", "storage": "rg16f", "backend": "jax", "speed": "1"},

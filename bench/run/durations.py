@@ -1,0 +1,48 @@
+"""How long steps of tables take: as in an earlier run of the same question, else as on two cores without a GPU."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from ..ground.output import cache
+from ..ground.output.progress import PAGE
+
+if TYPE_CHECKING:
+    from .measuring import Asked
+
+# Seconds of the page, most of which its pictures take.
+PAGE_S = 12.0
+
+
+def expected(asks: Sequence[Asked], beside: Sequence[Asked]) -> dict[str, tuple[int, float]]:
+    """Return by table its steps and the seconds of each, and those of the page.
+
+    Args:
+        beside: what a second process measures meanwhile: only what it takes longer than this one counts.
+    """
+    own = {ask.table.name: (_ticks(ask), _seconds(ask)) for ask in asks if ask not in beside}
+    theirs = {ask.table.name: (_ticks(ask), _seconds(ask)) for ask in beside}
+    here, there = (sum(count * seconds for count, seconds in part.values()) for part in (own, theirs))
+    share = max(0.0, 1 - here / there) if there else 0.0
+    theirs = {name: (count, seconds * share) for name, (count, seconds) in theirs.items()}
+    return {**own, **theirs, PAGE: (1, PAGE_S)}
+
+
+def keep(ask: Asked, ticks: int, seconds: float) -> None:
+    """Keep how long steps took."""
+    if ticks:
+        cache.write(_key(ask), {"seconds": seconds / ticks})
+
+
+def _ticks(ask: Asked) -> int:
+    return sum(step.ticks for step in ask.steps)
+
+
+def _seconds(ask: Asked) -> float:
+    kept = cache.read(_key(ask))
+    return kept["seconds"] if kept else ask.table.step_s
+
+
+def _key(ask: Asked) -> str:
+    return cache.key_of("seconds", ask.table.name, repr(ask.options), repr(ask.others))
