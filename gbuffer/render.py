@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -69,6 +69,21 @@ def clock_of(device: Device) -> Clock:
     return Clock(WALL, by_wall_clock) if device.is_software else Clock(QUERY, by_query)
 
 
+class Covered(NamedTuple):
+    """The pixels of surfaces: which they are, row 0 at the bottom, their view positions and normals, (pixels, 3)."""
+
+    pixels: np.ndarray
+    position: np.ndarray
+    normals: np.ndarray
+
+    def with_normals(self, surfaces: Sequence[np.ndarray], normals: np.ndarray) -> list[np.ndarray]:
+        """Return the surfaces with other normals."""
+        first, *others = surfaces
+        texels = first[::-1].copy()
+        texels[self.pixels, :3] = normals
+        return [texels[::-1], *others]
+
+
 class Rendering:
     """A pipeline over a scene, its passes compiled; make it with `rendering`."""
 
@@ -96,11 +111,14 @@ class Rendering:
 
     def _exchange(self, keeps: Keeps) -> None:
         texture = self.frame.textures(GBUFFER)[0]
-        texture.write(self._exchanged(read_pixels(texture), keeps).tobytes())
+        texels = read_pixels(texture).copy()
+        covered, position = self._covered(texels)
+        texels[covered, :3] = keeps(position, texels[covered, :3])
+        texture.write(texels.tobytes())
 
-    def _exchanged(self, texels: np.ndarray, keeps: Keeps) -> np.ndarray:
-        """Return the texels of layout fp32's first target, row 0 at the bottom, with other normals."""
-        texels = texels.copy()
+    def _covered(self, texels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return which texels of layout fp32's first target, row 0 at the bottom, are of a surface, (height, width),
+        and their view positions, (pixels, 3)."""
         height, width, _ = texels.shape
         rays, depth = self.frame.scene.view.rays((width, height)), texels[..., 3]
         # (x + 1/2) 2 / width - 1 at the middle of pixel x
@@ -108,8 +126,7 @@ class Rendering:
         planes = position_from_linear_depth(Vec2(x, y[:, None]), depth, Vec2(*rays[:2]))
         position = np.stack(planes, axis=-1).astype(np.float32)
         covered = depth > 0
-        texels[covered, :3] = keeps(position[covered], texels[covered, :3])
-        return texels
+        return covered, position[covered]
 
     def surfaces(self) -> list[np.ndarray]:
         """What the passes up to the geometry's leave, those passes run: the textures of the G-buffer, then those of the
@@ -124,10 +141,11 @@ class Rendering:
                 break
         return [read_pixels(texture)[::-1].copy() for texture in self._textures_of_surfaces()]
 
-    def with_normals(self, surfaces: Sequence[np.ndarray], keeps: Keeps) -> list[np.ndarray]:
-        """Return surfaces, as `surfaces` gives them of layout fp32, with other normals."""
-        first, *others = surfaces
-        return [self._exchanged(first[::-1], keeps)[::-1], *others]
+    def covered(self, surfaces: Sequence[np.ndarray]) -> Covered:
+        """Return what surfaces, as `surfaces` gives them of layout fp32, cover."""
+        texels = surfaces[0][::-1]
+        covered, position = self._covered(texels)
+        return Covered(covered, position, texels[covered, :3])
 
     def lit(self, surfaces: Sequence[np.ndarray]) -> np.ndarray:
         """The image that the passes after the geometry's make of other surfaces, as `surfaces` gives them."""

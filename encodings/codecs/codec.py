@@ -192,10 +192,14 @@ class Codec:
         """Every number in [-1, 1] that a component comes back as from the storage, ascending; float64."""
         if component >= self.encoding.components:
             return np.array([-1.0, 1.0])
-        every, levels = self.storage.numbers(component), self.encoding.levels_of(component)
+        levels = self.encoding.levels_of(component)
+        wanted = np.linspace(-1.0, 1.0, levels or 0)
+        if levels and self.storage.bits[component] == 32 and self.storage.kind == "float":
+            # There are two billions of these numbers, and the nearest is what NumPy makes.
+            return wanted.astype(np.float32).astype(np.float64)
+        every = self.storage.numbers(component)
         if not levels:
             return every
-        wanted = np.linspace(-1.0, 1.0, levels)
         above = np.clip(np.searchsorted(every, wanted), 1, len(every) - 1)
         is_above = every[above] - wanted < wanted - every[above - 1]
         return every[above - ~is_above]

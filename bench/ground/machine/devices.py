@@ -56,6 +56,8 @@ def programs_folder() -> Path:
 
 def found_device() -> tuple[Device | None, str]:
     """The GL device; or None, and why there is none."""
+    # What it draws under an environment is kept: to filter one takes seconds.
+    keep_levels_by(kept_arrays)
     try:
         return device(), ""
     except NoDeviceError as error:
@@ -67,5 +69,4 @@ def require_device() -> Device:
     gl, missing = found_device()
     if not gl:
         raise MissingError(missing)
-    keep_levels_by(kept_arrays)
     return gl

@@ -136,7 +136,7 @@ def _filtered(plane: Plane, terms: tuple[tuple[float, float], ...]) -> Plane:
     gaussians = [np.exp(-((math.pi * degrees) ** 2) / b) for _, b in terms]
     weights = [a * math.sqrt(math.pi / b) * g.sum() ** 2 for (a, b), g in zip(terms, gaussians, strict=True)]
     seen = [w * _along_both(plane, g / g.sum(), g / g.sum()) for w, g in zip(weights, gaussians, strict=True)]
-    return sum(seen[1:], start=seen[0]) / sum(weights)
+    return np.sum(seen, axis=0) / sum(weights)
 
 
 def _features(lightness: Plane) -> tuple[Plane, Plane]:

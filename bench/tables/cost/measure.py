@@ -344,7 +344,7 @@ def known_counts(chosen: Sequence[CostCase], family: str, stage: str) -> dict[tu
 
 
 def _operation_of(case: CostCase) -> tuple[str, str]:
-    return case.encoding.name if case.encoding else case.storage, case.operation
+    return case.encoding.name if case.encoding else str(case.storage), case.operation
 
 
 def nobody(_: str) -> None:

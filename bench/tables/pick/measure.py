@@ -22,7 +22,7 @@ from ....gbuffer.layouts.layout import Layout, engines_space
 from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.layouts.words import LayoutError
 from ....gbuffer.pipelines import PIPELINES, Pipeline
-from ....gbuffer.render import Keeps, Rendering, rendering
+from ....gbuffer.render import Covered, Rendering, rendering
 from ....gbuffer.scenes.catalogue import SCENES, SceneMaker
 from ....gbuffer.scenes.scene import Scene
 from ....gbuffer.scenes.setting import Setting
@@ -391,10 +391,12 @@ class LitScene:
     Attributes:
         made: draws it, by exact normals in one of the spaces that layouts keep them in.
         surfaces: the scene at each power, and its surfaces as `Rendering.surfaces` gives them.
+        covered: their pixels, the same at each power.
     """
 
     made: Rendering
     surfaces: Sequence[tuple[Scene, Sequence[np.ndarray]]]
+    covered: Covered
 
     @classmethod
     def drawn(cls, made: Rendering, scenes: Iterable[Scene]) -> LitScene:
@@ -403,19 +405,21 @@ class LitScene:
         for scene in scenes:
             made.frame.show(scene)
             surfaces.append((scene, made.surfaces()))
-        return cls(made, surfaces)
+        return cls(made, surfaces, made.covered(surfaces[0][1]))
 
-    def images(self, keeps: Keeps) -> list[np.ndarray]:
+    def images(self, normals: np.ndarray) -> list[np.ndarray]:
         """Return the image at each power, linear light, float32 of shape (height, width, 3).
 
         Args:
-            keeps: the code, from view positions and unit normals, (pixels, 3), to its normals.
+            normals: what a code makes of those that are covered, (pixels, 3).
         """
-        found = []
+        images = []
         for scene, surfaces in self.surfaces:
-            self.made.frame.show(scene)
-            found.append(self.made.lit(self.made.with_normals(surfaces, keeps)))
-        return found
+            # To list what is drawn takes as long as to light it.
+            if self.made.frame.scene is not scene:
+                self.made.frame.show(scene)
+            images.append(self.made.lit(self.covered.with_normals(surfaces, normals)))
+        return images
 
 
 class Pictures:
@@ -496,17 +500,14 @@ class Pictures:
 
     def _relit(self, case: PickCase, maker: SceneMaker) -> list[np.ndarray]:
         """Images lit by what JAX makes of the normals. No shader is compiled for the code, which takes a second."""
-
-        def keeps(position: np.ndarray, n: np.ndarray) -> np.ndarray:
-            shots.require_surface(maker, len(n) > 0)
-            return quality.round_trip(case.codec, n, position)
-
         space = engines_space(case.codec.encoding) if maker.is_metal_rough else ""
         question = (maker, case.setting, case.powers, case.pipeline, space)
         if question not in self._lit:
             scene, made = self._opened(self._stack, case, maker, LAYOUTS["fp32"])
             self._lit[question] = LitScene.drawn(made, _at_powers(case, maker, scene))
-        return self._lit[question].images(keeps)
+        lit = self._lit[question]
+        shots.require_surface(maker, len(lit.covered.normals) > 0)
+        return lit.images(quality.round_trip(case.codec, lit.covered.normals, lit.covered.position))
 
     def _opened(self, stack: ExitStack, case: PickCase, maker: SceneMaker, layout: Layout) -> tuple[Scene, Rendering]:
         scene = maker.make(case.setting)
