@@ -175,9 +175,6 @@ def select(condition, a: S, b: S) -> S:
     """GLSL's `condition ? a : b`, for arrays and vectors."""
     if isinstance(a, Vec2 | Vec3 | Vec4):
         chosen = type(a)(*(jnp.where(condition, p, q) for p, q in zip(a, b, strict=True)))  # type: ignore[arg-type]
-    elif isinstance(a, float) and isinstance(b, float):
-        # GLSL's literals; as Python's they would have 64 bits where JAX has them, and so would what comes of them.
-        chosen = jnp.where(condition, jnp.float32(a), jnp.float32(b))
     else:
         chosen = jnp.where(condition, a, b)  # type: ignore[arg-type]
     return cast("S", chosen)

@@ -14,8 +14,9 @@ def encode(n: Vec3, view: Vec3) -> Vec3:
     # the largest component's axis; the others over it
     is_z, is_y = (a.z >= a.x) & (a.z >= a.y), a.y >= a.x
     turned = select(is_z, n, select(is_y, Vec3(n.z, n.x, n.y), Vec3(n.y, n.z, n.x)))
-    axis = select(is_z, 2.0, select(is_y, 1.0, 0.0))
-    face = 2.0 * axis + select(turned.z < 0.0, 1.0, 0.0)
+    zero = 0.0 * n.z
+    axis = select(is_z, 2.0, select(is_y, 1.0, zero))
+    face = 2.0 * axis + select(turned.z < 0.0, 1.0, zero)
     uv = turned.xy * (1.0 / abs(turned.z))
     return Vec3(uv.x, uv.y, number_of(face, FACES))
 

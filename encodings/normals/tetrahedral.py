@@ -21,7 +21,8 @@ def encode(n: Vec3, view: Vec3) -> Vec3:
     upper = Vec2(side * n.y, SIDE * n.z - UP * abs(n.x))
     lower = Vec2(-side * n.x, SIDE * n.z + UP * abs(n.y))
     p = select(is_upper, upper, lower)
-    face = select(is_upper, 2.0, 0.0) + select(deciding < 0.0, 1.0, 0.0)
+    zero = 0.0 * n.z
+    face = select(is_upper, 2.0, zero) + select(deciding < 0.0, 1.0, zero)
     return Vec3(p.x, p.y, number_of(face, FACES))
 
 

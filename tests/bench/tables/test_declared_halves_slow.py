@@ -62,7 +62,7 @@ def test_without_a_device_for_halves_the_answer_is_of_32_bits(run, monkeypatch):
     def missing():
         raise MissingError("half arithmetic by glsl needs wgpu; pip install wgpu")
 
-    monkeypatch.setattr("normalbench.bench.subjects.codecs.names.half_device", missing)
+    monkeypatch.setattr("normalbench.bench.subjects.codecs.half.compute.half_device", missing)
     said, file = "computed in 32 alone: half arithmetic by glsl needs wgpu", str(FORMS / "half_literal.hlsl")
     _, out, err = run("pick", "--storage", "rg8", "--against", file, *SMALL_ANSWER)
     (row,) = [row for row in json.loads(out) if row["against"]]

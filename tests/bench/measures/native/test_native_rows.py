@@ -77,7 +77,7 @@ def test_without_a_c_compiler_xla_measures_and_a_line_says_so(monkeypatch, capsy
     usual = quality.measure(*quality.cases([codec], [sphere(64)], ["jax"]))
     monkeypatch.setattr(library, "compiler", lambda: "")
     monkeypatch.setattr(quality, "compiler", lambda: "")
-    library._made.cache_clear(), quality.meter_of.cache_clear(), normal_sets._fill.cache_clear()
+    forget_what_is_compiled()
     try:
         cases = quality.cases([codec], [sphere(64)], ["jax"])
         (row,) = quality.rows(cases, lambda _: None)
@@ -85,9 +85,14 @@ def test_without_a_c_compiler_xla_measures_and_a_line_says_so(monkeypatch, capsy
             quality.tell_by_xla(cases)
         assert isinstance(quality.meter_of(codec), Meter) and normal_sets._fill(True) is None
     finally:
-        library._made.cache_clear(), quality.meter_of.cache_clear(), normal_sets._fill.cache_clear()
+        forget_what_is_compiled()
     assert "no C compiler found (cc): XLA computes the rows" in capsys.readouterr().err
     assert row["angle_mean_deg"] == pytest.approx(usual["angle_mean_deg"], rel=1e-6)
+
+
+def forget_what_is_compiled():
+    for kept in (library._made, quality.meter_of, quality._compiled, normal_sets._fill):
+        kept.cache_clear()
 
 
 @contextmanager

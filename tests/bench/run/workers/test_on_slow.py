@@ -84,7 +84,7 @@ MANY = ("quality", "--storage", "rgba8", "--normals", "sphere", "--count", "1638
 MANY += (
     "octahedral,octahedral_precise,equal_area_octahedral,equal_area_octahedral_precise,hemi_octahedral,signed_octahedral,"
     "latitude_longitude,spherical,spheremap,spheremap_classic,cryengine3,stereographic,per_pixel_view,xy,xy_sign,"
-    "xyz,xyz_largest,xyz_renormalised,cube,warped_cube,tetrahedral,optimised_rings,spherical_fibonacci,best_fit",
+    "xyz,xyz_largest,xyz_renormalised,cube,warped_cube,tetrahedral",
 )
 
 
