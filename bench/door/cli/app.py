@@ -442,7 +442,7 @@ def _words(words: list[str], group: Any) -> list[str]:
     # It may stand anywhere.
     anywhere = [flag for flag in (NO_CACHE, ANEW) if flag in words]
     words = [word for word in words if word not in anywhere]
-    check_begins_with_command(words, group.list_commands(), own)
+    check_begins_with_command(words, group.list_commands, own)
     if not (words and words[0] in group.commands):
         return anywhere + words
     options = group.commands[words[0]].params

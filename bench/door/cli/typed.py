@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any, get_args
 
 from ...ground.output.errors import UsageError
 
 
-def check_begins_with_command(words: Sequence[str], commands: Collection[str], own: Collection[str]) -> None:
+def check_begins_with_command(
+    words: Sequence[str], commands: Callable[[], Collection[str]], own: Collection[str]
+) -> None:
     """Raises UsageError where a command's options stand before the command.
 
     Args:
+        commands: gives their names in the order of the help, for which every table is imported.
         own: the options of the program itself.
     """
     if not words or not words[0].startswith("-") or words[0].partition("=")[0] in own:
         return
-    command = next((word for word in words if word in commands), None)
+    names = commands()
+    command = next((word for word in words if word in names), None)
     if command is None:
-        raise UsageError(f"{words[0]}: begin with a command: {', '.join(commands)}")
+        raise UsageError(f"{words[0]}: begin with a command: {', '.join(names)}")
     others = [word for word in words if word != command]
     raise UsageError(f"the command comes first: normalbench {' '.join([command, *others])}")
 

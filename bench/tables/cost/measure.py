@@ -338,7 +338,7 @@ def known_counts(chosen: Sequence[CostCase], family: str, stage: str) -> dict[tu
     found = counted([probe, *others], family, stage)
     here = found.get(_operation_of(probe), {})
     if f"{here.get('driver')}, {here.get('compiler')}" != row["recorded_by"]:
-        return counted(chosen, family, stage)
+        return found | counted([case for case in known if case is not probe], family, stage)
     rows = {_operation_of(case): case.row("isa", family=family, stage=stage) | row for case, row in known.items()}
     return {operation: row | {"recorded_by": None} for operation, row in rows.items()} | found
 

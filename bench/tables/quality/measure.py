@@ -375,8 +375,8 @@ def _is_shared(case: QualityCase) -> bool:
 
 def tell_by_xla(chosen: Iterable[QualityCase]) -> None:
     """Say which encodings' rows by JAX are computed by XLA, which rounds otherwise than compiled C."""
-    shared = (case.codec for case in chosen if _is_shared(case) and not case.codec.is_dithered)
-    if not compiler():
+    shared = [case.codec for case in chosen if _is_shared(case) and not case.codec.is_dithered]
+    if shared and not compiler():
         tell("no C compiler found (cc): XLA computes the rows, which is slower, and the last digits may differ")
     elif names := dict.fromkeys(codec.encoding.name for codec in shared if isinstance(meter_of(codec), Meter)):
         tell(f"computed by XLA, not by compiled C like the other rows: {', '.join(names)}")

@@ -47,6 +47,17 @@ def test_help_and_list_import_nothing_heavy():
     assert done.returncode == 0 and done.stdout.count("Usage: ") == len(LIGHT) - 1, done.stderr[-200:]
 
 
+def test_a_command_imports_its_own_table_alone():
+    program = (
+        "import sys; from normalbench.bench.door.cli import app; sys.argv[0] = 'normalbench'; app.main()\n"
+        "print(sorted(name.split('.')[3] for name in sys.modules if name.startswith('normalbench.bench.tables.')"
+        " and name.endswith('.table') and name.count('.') == 4), file=sys.stderr)"
+    )
+    for words, imported in ((["list", "encodings"], []), (["quality", "--help"], ["quality"])):
+        done = subprocess.run([sys.executable, "-c", program, *words], capture_output=True, text=True)
+        assert done.stderr == f"{imported}\n", words
+
+
 @pytest.mark.usefixtures("gl")
 def test_the_formats_carry_the_same_figures(run):
     rows = json.loads(run(*QUICK, "--format", "json")[1])
