@@ -147,12 +147,16 @@ class Rendering:
         covered, position = self._covered(texels)
         return Covered(covered, position, texels[covered, :3])
 
-    def lit(self, surfaces: Sequence[np.ndarray]) -> np.ndarray:
-        """The image that the passes after the geometry's make of other surfaces, as `surfaces` gives them."""
+    def lit(self, surfaces: Sequence[np.ndarray], upto: str = "") -> np.ndarray:
+        """The image that the passes after the geometry's make of other surfaces, as `surfaces` gives them.
+
+        Args:
+            upto: the pass that is left out, with those behind it; none if empty.
+        """
         for texture, texels in zip(self._textures_of_surfaces(), surfaces, strict=True):
             texture.write(np.ascontiguousarray(texels[::-1], np.float32).tobytes())
         names = list(self.passes)
-        for name in names[names.index(GEOMETRY) + 1 :]:
+        for name in names[names.index(GEOMETRY) + 1 : names.index(upto) if upto else None]:
             self.passes[name]()
         return self.image()
 

@@ -152,6 +152,7 @@ class Frame:
             **self._light_defines(),
             "SHADOWS": int(plan.shadows),
             "DITHERED": int(plan.noise is not None),
+            "PLACED": int(plan.sampled_from is not None),
         }
 
     def _light_defines(self) -> dict[str, object]:
@@ -227,7 +228,7 @@ class Frame:
     def _frame_buffer(self, size: tuple[int, int], view: Sight | None) -> Buffer:
         """What `frame.glsl` declares."""
         sight, previous = view or self.scene.view, view or self.scene.previous
-        picture = size if view else self.plan.size
+        picture = size if view else self.plan.sampled_from or self.plan.size
         projection, to_world = sight.projection(picture[0] / picture[1]), np.linalg.inv(sight.matrix())
         to_sun = sun_matrix(self.scene) @ to_world if self.plan.shadows else np.eye(4)
         previous_clip = projection @ previous.matrix() @ to_world

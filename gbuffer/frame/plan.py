@@ -27,6 +27,7 @@ class Plan:
         scale: of the G-buffer's and light buffer's size to the image's, for pipelines that have the choice.
         apart: whether G-buffer and light buffer have that scale, and one sample a pixel; the pipeline says so.
         dither: the noise that is added to the normal's code; None for what its layout says.
+        sampled_from: of pixels that were sampled from another frame, that frame's width and height.
     """
 
     size: tuple[int, int]
@@ -40,6 +41,7 @@ class Plan:
     antialiased: bool = True
     least_roughness: float = LEAST_ROUGHNESS
     dither: Dither | None = None
+    sampled_from: tuple[int, int] | None = None
 
     @property
     def noise(self) -> Dither | None:

@@ -63,6 +63,12 @@ uniform WORD_SAMPLER gbuffer_words[WORD_TARGETS];
 uniform SAMPLER gbuffer[TARGETS];
 #endif
 uniform SAMPLER linear_depth;
+#if PLACED
+uniform sampler2D places;
+#define PLACE_OF(pixel) texelFetch(places, pixel, 0).xy
+#else
+#define PLACE_OF(pixel) screen_place(pixel)
+#endif
 
 // The surface in a pixel's sample. What the layout does not keep is left at a general material's default.
 Surface read_gbuffer(ivec2 pixel) {
@@ -86,7 +92,7 @@ Surface read_gbuffer(ivec2 pixel) {
 #endif
     Surface s;
     float depth = HAS_DEPTH != 0 ? abs(numbers[DEPTH]) : texelFetch(linear_depth, pixel, SAMPLE).x;
-    s.position = position_from_linear_depth(screen_place(pixel), depth, eye_ray.xy);
+    s.position = position_from_linear_depth(PLACE_OF(pixel), depth, eye_ray.xy);
     vec4 code = vec4(numbers[0], numbers[1], numbers[2], 0.0);
 #if SIGN_IN_DEPTH
     // The sign bit, and not a comparison: a depth of zero has a sign too.

@@ -1,0 +1,52 @@
+"""How an encoding's axes may lie in a scene, and how exact a mean over such orientations is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
+# Degrees of the golden angle: whole steps of it never meet, and no even share of a turn favours a fourfold code.
+GOLDEN_ANGLE_DEG = 180 * (3 - 5**0.5)
+# By the axis of the world, y up, that an encoding's z axis lies along: from the world's axes to the encoding's.
+POLES: Mapping[str, Float[np.ndarray, "3 3"]] = MappingProxyType(
+    {axis: np.roll(np.eye(3), shift, axis=1) for axis, shift in (("x", 1), ("y", 2), ("z", 0))}
+)
+
+
+def yaws(first: int, count: int, seed: int) -> Float[np.ndarray, "count 3 3"]:
+    """Return turns of the world about its y axis, `count` from number `first` on of the series that a seed begins."""
+    start = np.random.default_rng([seed, 0]).uniform(0, 360)
+    angles = np.radians(start + GOLDEN_ANGLE_DEG * np.arange(first, first + count))
+    turns = np.tile(np.eye(3), (count, 1, 1))
+    turns[:, 0, 0] = turns[:, 2, 2] = np.cos(angles)
+    turns[:, 0, 2] = np.sin(angles)
+    turns[:, 2, 0] = -turns[:, 0, 2]
+    return turns
+
+
+def rotations(first: int, count: int, seed: int) -> Float[np.ndarray, "count 3 3"]:
+    """Return independent uniform rotations, `count` from number `first` on of the series that a seed begins."""
+    from scipy.spatial.transform import Rotation
+
+    return Rotation.random(first + count, np.random.default_rng([seed, 1])).as_matrix()[first:]
+
+
+def jackknife(figure: Callable[[np.ndarray], float], samples: Sequence[int]) -> float:
+    """Return the standard error of a figure of samples, by leaving out one after the other.
+
+    Source: B. Efron and C. Stein, The jackknife estimate of variance, 1981.
+
+    Args:
+        figure: from indices of samples.
+        samples: all indices, two or more.
+    """
+    # se^2 = (n - 1) / n sum (x_i - mean x)^2, x_i without sample i
+    indices = np.asarray(samples)
+    left = np.array([figure(np.delete(indices, at)) for at in range(len(indices))])
+    return float(np.sqrt((len(indices) - 1) / len(indices) * np.sum((left - left.mean()) ** 2)))
