@@ -170,7 +170,7 @@ def run(monkeypatch, capsys):
     """The command line in this process: arguments to its status, output and errors."""
     monkeypatch.setattr(run_code, "LANGUAGES", SHORT)
     # What one test changes in this process decides no answer of another.
-    monkeypatch.setattr(answers, "is_anew", [True])
+    monkeypatch.setattr(answers, "key_of_answer", lambda *_: "")
 
     def command(*arguments: str) -> tuple[int, str, str]:
         monkeypatch.setattr(sys, "argv", ["normalbench", *arguments])

@@ -59,8 +59,8 @@ class Sent:
         return kept
 
 
-def prepare(send: Send) -> None:  # noqa: ARG001 # as of all that a process calls
-    """Import what is needed, while the first process looks for what to measure."""
+def prepare(send: Send, tables: Sequence[str] = ()) -> None:  # noqa: ARG001 # as of all that a process calls
+    """Import what tables need, while the first process looks for what to measure."""
     have_few_heaps()
     # What is missing is said by the first process.
     with suppress(MissingError):
@@ -68,10 +68,9 @@ def prepare(send: Send) -> None:  # noqa: ARG001 # as of all that a process call
         from ..show import report  # noqa: F401
 
         require_jax()
-        for table in TABLES.values():
-            if table.is_measured_beside:
-                # Looked up when it is first asked for.
-                _ = table.work
+        for name in tables:
+            # Looked up when it is first asked for.
+            _ = TABLES[name].work
 
 
 def measure(send: Send, folder: Path, own: Sequence[Asking], others: Sequence[Asking], said: Iterable[str]) -> None:

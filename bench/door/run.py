@@ -9,6 +9,7 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack, nullcontext
 from dataclasses import fields, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +26,7 @@ from ..keep.commit import commit_of
 from ..keep.plain import plain
 from ..keep.runs import Row, Run, facts_of, opened, read_run, unfinished
 from ..keep.table_files import write_tables
-from ..run.durations import expected
+from ..run.durations import expected, seconds_of
 from ..run.measuring import Asked, Place, asked_together, measured, with_parts
 from ..run.second import Second, is_worth_it, second_process
 from ..run.workers.places import place
@@ -155,8 +156,9 @@ def run_command(request: Any, output: Path | None, on: str | None = None, commit
 
 def _second(request: Any, on: str | None) -> AbstractContextManager[Second | None]:
     """The second process, where there is something for it to do."""
-    is_wanted = not on and is_worth_it(chosen_tables(request.tables, given(request)))
-    return second_process(beside.prepare) if is_wanted else nullcontext()
+    chosen = chosen_tables(request.tables, given(request))
+    names = [table.name for table in chosen if not table.section.leads]
+    return second_process(partial(beside.prepare, tables=names)) if not on and is_worth_it(chosen) else nullcontext()
 
 
 def _measured_and_shown(
@@ -165,11 +167,12 @@ def _measured_and_shown(
     total = sum(1 for ask in asks for _ in with_parts(ask.steps))
     if run.kept:
         tell(f"{run.folder} goes on: {_there(run, asks)} of {total} steps are there")
+    others = _beside(asks) if second and len(asks) > 1 else []
     try:
-        with progress_of_all(expected(asks, _beside(asks) if second else ())):
+        with progress_of_all(expected(asks, others)):
             # The second process ends while its rows are still kept, and before it is said how many are.
             with ending.pop_all():
-                shown = _measure_all(run, asks, where, second)
+                shown = _measure_all(run, asks, where, second, others)
             shown.written |= second.written if second else set()
             run.arrange((ask.table.name, step) for ask in asks for step in ask.steps)
             with progress(1, PAGE):
@@ -190,20 +193,24 @@ def _new_folder() -> Path:
     return next(folder for folder in itertools.chain([named], others) if not folder.exists())
 
 
-def _measure_all(run: Run, asks: Sequence[Asked], where: Place, second: Second | None) -> Shown:
-    """Every table measured and shown."""
+def _measure_all(
+    run: Run, asks: Sequence[Asked], where: Place, second: Second | None, others: Sequence[Asked] = ()
+) -> Shown:
+    """Every table measured and shown.
+
+    Args:
+        others: what the second process measures.
+    """
     # The answer first: this process measures nothing else while people wait for it.
     first, rest = ([ask for ask in asks if ask.table.section.leads is leads] for leads in (True, False))
     shown = Shown([*first, *rest])
-    others = _beside(rest)
-    helping = second if is_worth_it(ask.table for ask in rest) else None
-    if helping:
+    if second and others:
         own, firsts = ([beside.Asking.of(ask) for ask in asks] for asks in (others, first))
-        helping.measure(run, others, beside.measure, run.folder, own, firsts, frozenset(told))
+        second.measure(run, others, beside.measure, run.folder, own, firsts, frozenset(told))
     for ask in first:
         shown.add(ask, measured(ask, run, where))
-    if helping:
-        _measure_others(run, [ask for ask in rest if ask not in others], others, shown, helping)
+    if second and others:
+        _measure_others(run, [ask for ask in rest if ask not in others], others, shown, second)
     # All that the second process did not get to, because something killed it or there is none.
     for ask in rest:
         if ask.table.name not in shown.done:
@@ -212,7 +219,18 @@ def _measure_all(run: Run, asks: Sequence[Asked], where: Place, second: Second |
 
 
 def _beside(asks: Iterable[Asked]) -> list[Asked]:
-    return [ask for ask in asks if ask.table.is_measured_beside and not ask.table.section.leads]
+    """What the second process measures, so that both take as long: no answer, and nothing that times are taken of."""
+    chosen: list[Asked] = []
+    own = sum(seconds_of(ask) for ask in asks if ask.table.section.leads or _takes_times(ask))
+    beside = 0.0
+    movable = [ask for ask in asks if not ask.table.section.leads and not _takes_times(ask)]
+    for ask in sorted(movable, key=seconds_of, reverse=True):
+        if beside <= own:
+            chosen.append(ask)
+            beside += seconds_of(ask)
+        else:
+            own += seconds_of(ask)
+    return [ask for ask in asks if ask in chosen]
 
 
 def _measure_others(run: Run, asks: Iterable[Asked], others: Sequence[Asked], shown: Shown, second: Second) -> None:

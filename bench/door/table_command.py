@@ -18,7 +18,7 @@ from ..ground.output.errors import MissingError, UsageError, tell
 from ..ground.output.replacing import PAGE
 from ..ground.output.sources import sources
 from ..ground.output.writing import check_plot, check_writable, say, whole_file
-from ..keep.answers import answered, key_of_answer
+from ..keep import answers
 from ..keep.row_files import check_rows
 from ..tables.table import Measured, Row, Table
 
@@ -49,8 +49,8 @@ def table_command(
         UsageError, MissingError: see measuring.asked; MissingError also in the end, where a part could not be measured.
     """
     is_alone = not (output or report or on) and outputs == table.outputs()
-    key = key_of_answer(table, options, format) if table.is_kept and is_alone else ""
-    return answered(key, lambda: _command(table, options, outputs, format, output, report, on))
+    key = answers.key_of_answer(table, options, format) if table.is_kept and is_alone else ""
+    return answers.answered(key, lambda: _command(table, options, outputs, format, output, report, on))
 
 
 def _command(

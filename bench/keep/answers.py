@@ -22,8 +22,6 @@ from ..ground.output.sources import sources
 from ..ground.output.writing import say
 from ..tables.table import Table
 
-# Set where commands measure again what is kept.
-is_anew: list[bool] = []
 # What a name of a file has, and names of the catalogue have not.
 FILE_LIKE = re.compile(r"/|\\|\.[A-Za-z]")
 Value = str | int | float | bool | None
@@ -37,7 +35,7 @@ def answered(key: str, command: Callable[[], int]) -> int:
     """
     if not key:
         return command()
-    kept = None if is_anew else cache.read(key)
+    kept = cache.read_figures(key)
     if kept and all(state_of(Path(path)) == state for path, state in kept["files"].items()):
         for is_error, text in kept["said"]:
             (errors.tell if is_error else say)(text)

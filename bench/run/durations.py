@@ -23,10 +23,16 @@ def expected(asks: Sequence[Asked], beside: Sequence[Asked]) -> dict[str, tuple[
     """
     own = {ask.table.name: (_ticks(ask), _seconds(ask)) for ask in asks if ask not in beside}
     theirs = {ask.table.name: (_ticks(ask), _seconds(ask)) for ask in beside}
-    here, there = (sum(count * seconds for count, seconds in part.values()) for part in (own, theirs))
+    here = sum(seconds_of(ask) for ask in asks if ask not in beside)
+    there = sum(map(seconds_of, beside))
     share = max(0.0, 1 - here / there) if there else 0.0
     theirs = {name: (count, seconds * share) for name, (count, seconds) in theirs.items()}
     return {**own, **theirs, PAGE: (1, PAGE_S)}
+
+
+def seconds_of(ask: Asked) -> float:
+    """Return how long a table is expected to take."""
+    return _ticks(ask) * _seconds(ask)
 
 
 def keep(ask: Asked, ticks: int, seconds: float) -> None:

@@ -1,12 +1,12 @@
 """The second process of a run, which measures tables while the first one renders others.
 
-One process renders, and llvmpipe leaves much of the second core idle; JAX and compilers need no more than one. A run
-starts it with `second_process`, and says what it calls. It writes the files of what it measured, too.
+Python and what it waits for keep one core busy, and llvmpipe leaves much of a second one idle. A run starts the process
+with `second_process`, and says what it calls. It writes the files of what it measured, too.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
@@ -40,9 +40,9 @@ class Finished:
     """All is done."""
 
 
-def is_worth_it(tables: Iterable[Table]) -> bool:
+def is_worth_it(tables: Sequence[Table]) -> bool:
     """Whether there is something to measure at the same time, and a core for it."""
-    return cores() > 1 and len({table.is_measured_beside for table in tables}) > 1
+    return cores() > 1 and len(tables) > 1
 
 
 class Second:

@@ -201,8 +201,6 @@ class Table:
         in_all: whether `run` measures it without being asked to.
         asked_by: an option; where it is given, `run` measures the table without being asked to.
         not_with: an option; where it is given, `run` measures the table only if it is named.
-        is_measured_beside: whether `run` measures it in its second process: what takes longer in JAX or compilers than
-            on the GL device.
         is_usual: whether a gate or a test that names no table means this one.
         is_kept: whether the command gives its answer again while nothing has changed that decides it.
         step_s: seconds of a step in the default run, on two cores: what a run expects until it has measured its own.
@@ -227,7 +225,6 @@ class Table:
     in_all: bool = True
     asked_by: str = ""
     not_with: str = ""
-    is_measured_beside: bool = False
     is_usual: bool = False
     is_kept: bool = False
     step_s: float = 0.3

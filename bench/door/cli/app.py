@@ -91,9 +91,7 @@ def every_command(
     no_cache: Annotated[
         bool, typer.Option(NO_CACHE, help="Neither read nor keep instruction counts and compiled programs.")
     ] = False,
-    anew: Annotated[
-        bool, typer.Option(ANEW, help="Measure again what pick, budget and cost have kept of an earlier command.")
-    ] = False,
+    anew: Annotated[bool, typer.Option(ANEW, help="Measure again what pick, budget and cost have kept.")] = False,
 ) -> None:
     """Measures what compact normals and thin G-buffers cost: encodings in JAX and GLSL, stored as hardware does."""
     if no_cache:
@@ -101,9 +99,9 @@ def every_command(
 
         cache.switch_off()
     if anew:
-        from ...keep.answers import is_anew
+        from ...ground.output import cache
 
-        is_anew.append(True)
+        cache.is_anew.append(True)
 
 
 PlainOutput = Annotated[Path | None, typer.Option("-o", "--output", help="Write the rows to this file.")]

@@ -166,6 +166,25 @@ def read(key: str) -> dict[str, Any] | None:
     return value if is_whole and isinstance(value, dict) else None
 
 
+# Set where figures are measured again.
+is_anew: list[bool] = []
+
+
+def figures(key: str, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
+    """Return figures of a key as `kept` does, measured again where that is asked for."""
+    found = read_figures(key)
+    if found is None:
+        found = make()
+        if key:
+            write(key, found)
+    return found
+
+
+def read_figures(key: str) -> dict[str, Any] | None:
+    """Return the figures of a key; None if there are none, or they are to be measured again."""
+    return None if is_anew or not key else read(key)
+
+
 def kept(key: str, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
     """The value of a key, or what is made now, and kept where the key is not empty."""
     found = read(key) if key else None

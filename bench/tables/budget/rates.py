@@ -122,7 +122,7 @@ class Exact:
         """What a layout makes of the image, drawn by it. Raises ShaderError, FormatError and LayoutError."""
         is_known = is_in_catalogue(layout.encoding)
         key = cache.key_of("budget layout", self.key, layout.summary) if is_known else ""
-        found = cache.kept(key, lambda: self._drawn(layout))
+        found = cache.figures(key, lambda: self._drawn(layout))
         return ImageErrors(found["errors"], found["flip"])
 
     def _drawn(self, layout: Layout) -> dict[str, object]:
@@ -158,7 +158,7 @@ def rates_of_pair(exact: Exact, first: Code, second: Code) -> Mapping[str, float
     """The errors that two codes make together."""
     trips = [code.trip for code in (first, second) if code.trip]
     key = cache.key_of("budget pair", exact.key, str(first.key), str(second.key))
-    return cache.kept(key, lambda: exact.of(lambda seen: trips[1](trips[0](seen))))
+    return cache.figures(key, lambda: exact.of(lambda seen: trips[1](trips[0](seen))))
 
 
 Rates = Mapping[str, Mapping[str, float]]
@@ -171,6 +171,6 @@ def rates(exact: Exact, codes: Sequence[Code], tick: Callable[[str], None]) -> R
     for code in codes:
         if code.trip is not None:
             name, trip = f"{code.attribute} {code.name}", code.trip
-            found[code.name] = cache.kept(cache.key_of("budget", key, name), lambda trip=trip: exact.of(trip))
+            found[code.name] = cache.figures(cache.key_of("budget", key, name), lambda trip=trip: exact.of(trip))
             tick(name)
     return found

@@ -243,7 +243,6 @@ TABLE = Table(
     by="measure",
     partial=True,
     compilers=("driver", "compiler"),
-    is_measured_beside=True,
     section=Section(
         title="What it costs",
         short="Cost",

@@ -139,7 +139,6 @@ TABLE = Table(
     also=ALSO,
     usual=({"near": "0.1"},),
     single={"depth": "linear", "backend": "jax", "near": "0.1"},
-    is_measured_beside=True,
     section=Section(
         title="What depth loses",
         short="Depth",

@@ -105,7 +105,6 @@ TABLE = Table(
     options=FramesOptions,
     columns=COLUMNS,
     single={"encoding": "smallest_three", "backend": "jax"},
-    is_measured_beside=True,
     section=Section(
         title="What tangent frames lose",
         short="Frames",

@@ -95,7 +95,6 @@ TABLE = Table(
     single={"experiment": "equal", "light_buffer": "linear", "sums": "1", "counts": "64"},
     by="experiment",
     partial=True,
-    is_measured_beside=True,
     section=Section(
         title="What a light buffer loses",
         short="Light",

@@ -139,7 +139,6 @@ TABLE = Table(
         {"encoding": "octahedral,xyz", "normals": "playground"},
     ),
     single={"encoding": "xy", "block": "bc5", "swizzle": "rg", "normals": "bumps"},
-    is_measured_beside=True,
     section=Section(
         title="What block compression loses of normal maps",
         short="Normal maps",

@@ -246,7 +246,6 @@ TABLE = Table(
         "edge": "none",
         "backend": "jax",
     },
-    is_measured_beside=True,
     section=Section(
         title="Can a code be filtered, blended or resolved?",
         short="Mixing",

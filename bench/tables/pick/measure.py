@@ -9,6 +9,7 @@ from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import ExitStack, nullcontext
 from dataclasses import dataclass, replace
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import jax
@@ -26,6 +27,7 @@ from ....gbuffer.render import Covered, Rendering, rendering
 from ....gbuffer.scenes.catalogue import SCENES, SceneMaker
 from ....gbuffer.scenes.scene import Scene
 from ....gbuffer.scenes.setting import Setting
+from ....reports.charts.pictures import picture
 from ...ground.options.gpu_families import CHOICES
 from ...ground.output import cache as kept
 from ...ground.output.errors import tell
@@ -42,6 +44,7 @@ from ..mix.verdict import DONE
 from ..quality import measure as quality
 from ..table import Row
 from .answer import AFFORDABLE, IMAGE, answered, floor, image_name, price, why_left_out, why_unfit
+from .pictures import write
 from .prices import Costs
 from .table import TABLE
 
@@ -51,6 +54,8 @@ SUPREMUM, AXES = "angle_sup_deg", "angle_axes_deg"
 SURVEYED = (*CHOICES["radeon"], "tgl", "dg2")
 # Normals that tell whether decodes have length 1.
 FEW = 2**14
+# By power, an image and that of exact normals.
+Shown = dict[float | None, tuple[np.ndarray, np.ndarray]]
 QUALITY = ("angle_mean_deg", "angle_max_deg", "angle_counts", "worst_normal", "invalid", "count", "device", "skipped")
 
 
@@ -92,7 +97,7 @@ class PickCase:
 
 
 def rows(
-    asked: Sequence[Sequence[PickCase]], device: Device | None, tick: Callable[[str], None]
+    asked: Sequence[Sequence[PickCase]], device: Device | None, images: Path | None, tick: Callable[[str], None]
 ) -> Iterator[list[Row]]:
     """The rows of each question: the codes of one storage on one set of normals and in its scenes, in their order.
 
@@ -101,6 +106,7 @@ def rows(
 
     Args:
         device: draws; without one there are no images.
+        images: a folder for the images of codes that an answer names, if they are wanted.
     """
     if not asked:
         return
@@ -116,9 +122,12 @@ def rows(
         for question in questions:
             question.measure(tick)
         with Pictures(device) if device else nullcontext() as pictures:
-            for question in questions:
+            for chosen, question in zip(asked, questions, strict=True):
                 question.draw(pictures)
-                yield question.rows()
+                rows = question.rows()
+                if pictures and images:
+                    write(images, chosen, answered(rows), pictures)
+                yield rows
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
 
@@ -272,7 +281,7 @@ def _by_use(case: PickCase) -> Row:
             for use, one in found.items()
         }
 
-    return kept.kept(key, judged)
+    return kept.figures(key, judged)
 
 
 def _mixing_columns(case: PickCase) -> Row:
@@ -290,7 +299,7 @@ def _mixing_columns(case: PickCase) -> Row:
             "mixed_max_deg": found.max_deg,
         }
 
-    return kept.kept(key, judged)
+    return kept.figures(key, judged)
 
 
 def _mixed_domain(case: PickCase) -> str:
@@ -319,7 +328,7 @@ def _case_columns(case: PickCase) -> Row:
 def _angle_columns(chosen: Sequence[PickCase]) -> list[Row]:
     """The columns of angles of each case, measured together where they are not kept."""
     keys = [_figures_key("angles", case.codec, _normals_key(case)) for case in chosen]
-    rows = [kept.read(key) if key else None for key in keys]
+    rows = [kept.read_figures(key) for key in keys]
     missing = [_quality_case(case) for case, row in zip(chosen, rows, strict=True) if row is None]
     measured = quality.rows(missing, lambda _: None)
     for at, key in enumerate(keys):
@@ -368,7 +377,7 @@ def _supremum_deg(case: PickCase) -> float | None:
     if one.backend != "jax":
         return None
     key = _figures_key("supremum", case.codec, _normals_key(case))
-    return kept.kept(key, lambda: {SUPREMUM: quality.measure(replace(one, worst_case=True))[SUPREMUM]})[SUPREMUM]
+    return kept.figures(key, lambda: {SUPREMUM: quality.measure(replace(one, worst_case=True))[SUPREMUM]})[SUPREMUM]
 
 
 def _normals_key(case: PickCase) -> list[Any] | None:
@@ -429,6 +438,7 @@ class Pictures:
     def __init__(self, device: Device):
         self._device, self._stack = device, ExitStack()
         self._references: dict[tuple[Any, ...], Reference] = {}
+        self._bytes: dict[tuple[str, str], Shown] = {}
         self._lit: dict[tuple[Any, ...], LitScene] = {}
 
     def __enter__(self) -> Pictures:
@@ -446,7 +456,7 @@ class Pictures:
             asked = (case.setting, case.powers, case.said.get("effects") or "")
             key = _figures_key("image", case.codec, known, *asked, self._device.renderer)
             try:
-                found |= kept.kept(key, lambda maker=maker: self._image_columns(case, maker))
+                found |= kept.figures(key, lambda maker=maker: self._image_columns(case, maker))
             except (LayoutError, *shots.UNMEASURABLE):
                 continue
         if case.codec.encoding.domain != "sphere":
@@ -463,13 +473,20 @@ class Pictures:
 
     def _image_columns(self, case: PickCase, maker: SceneMaker) -> Row:
         held = self._reference(case, maker).held_by(case.codec.encoding.domain)
+        shown = self.shown(case, maker)
+        # The few bytes of it are kept: a code that an answer names is written as well.
+        self._bytes[case.codec.name, maker.name] = _in_bytes(shown)
         return {
             f"{IMAGE}{image_name(maker.name, power)}": psnr_db(squared_error(image[held], right[held])[0])
-            for power, (image, right) in self.shown(case, maker).items()
+            for power, (image, right) in shown.items()
             if held.any()
         }
 
-    def shown(self, case: PickCase, maker: SceneMaker) -> dict[float | None, tuple[np.ndarray, np.ndarray]]:
+    def in_bytes(self, case: PickCase, maker: SceneMaker) -> Shown:
+        """What `shown` gives, uint8: as it was drawn before, if it was."""
+        return self._bytes.get((case.codec.name, maker.name)) or _in_bytes(self.shown(case, maker))
+
+    def shown(self, case: PickCase, maker: SceneMaker) -> Shown:
         """At each power (None where there is none) the displayed image, and that of exact normals: (height, width, 3),
         0 to 1.
 
@@ -481,7 +498,7 @@ class Pictures:
         if case.codec.encoding.is_half and not by_emulation:
             raise LayoutError(f"{case.codec.name}: the renderer computes in 32 bits")
         images = self._relit(case, maker) if by_emulation else self._drawn(case, maker, layout)[0]
-        found: dict[float | None, tuple[np.ndarray, np.ndarray]] = {}
+        found: Shown = {}
         exact = self._reference(case, maker).images
         for power, image, right in zip(case.powers_of(maker), images, exact, strict=True):
             display = maker.display(right)
@@ -532,6 +549,10 @@ class Pictures:
 
 def _at_powers(case: PickCase, maker: SceneMaker, scene: Scene) -> list[Scene]:
     return [scene if power is None else scene.with_power(power) for power in case.powers_of(maker)]
+
+
+def _in_bytes(shown: Shown) -> Shown:
+    return {power: (picture(image), picture(exact)) for power, (image, exact) in shown.items()}
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,7 +19,9 @@ from ...ground.output.writing import files_of, whole_file
 from .. import shots
 from ..table import Row
 from .answer import AGAINST, BEST, CHEAPER, FEWER_BITS, MORE_EXACT, MOST_EXACT, images, places_of
-from .measure import PickCase, Pictures
+
+if TYPE_CHECKING:
+    from .measure import PickCase, Pictures
 
 # The answer and what stands next to it are what a reader sees first.
 FIRST = 2
@@ -30,7 +33,7 @@ def write(folder: Path, chosen: Sequence[PickCase], rows: Sequence[Row], drawing
     for case, maker in ((one, maker) for one in placed(chosen, rows) for maker in one.makers):
         # A code that the device has no room for has no image.
         with suppress(LayoutError, *shots.UNMEASURABLE):
-            for power, (image, exact) in drawing.shown(case, maker).items():
+            for power, (image, exact) in drawing.in_bytes(case, maker).items():
                 scene = _scene_stem(maker.name, "" if power is None else f"{power:g}")
                 _write(folder / f"{scene}-reference.png", exact)
                 _write(folder / _file_name(scene, _key_of_case(case)), image)
@@ -56,7 +59,7 @@ def _scene_stem(name: str, power: str) -> str:
 
 def _write(path: Path, image: np.ndarray) -> None:
     with whole_file(path) as partial:
-        pictures.write_png(partial, pictures.picture(image))
+        pictures.write_png(partial, image)
 
 
 def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:

@@ -278,9 +278,7 @@ TABLE = Table(
     partial=True,
     single={"encoding": "octahedral", "storage": "rg8"},
     files={"images": "images", "live": "live"},
-    usual=({"survey": True}, {"survey": True, "domain": "hemisphere"}),
-    # Normals of a reader's own are the constraint.
-    usual_where_said={"normals": {"domain": None}},
+    usual=({"survey": True},),
     section=Section(
         title="Which code should I take?",
         short="Answer",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
+from pathlib import Path
 
 from ....encodings.catalogue import is_in_catalogue
 from ....encodings.codecs.codec import Codec
@@ -48,10 +49,11 @@ SHOWN = ("encoding", "storage", "place", "bits", "free_bits", "angle_mean_deg", 
 
 @dataclass(frozen=True)
 class PickStep:
-    """The cases of a question, and the device that draws them."""
+    """The cases of a question, the device that draws them, and the folder for their images, if they are wanted."""
 
     cases: Sequence[measure.PickCase]
     device: Device | None
+    images: Path | None
 
 
 def questions(options: PickOptions) -> list[list[measure.PickCase]]:
@@ -218,7 +220,12 @@ def _steps(options: PickOptions, outputs: PickOutputs) -> list[Step]:
     for folder in filter(None, (outputs.images, outputs.live)):
         check_folder(folder)
     return [
-        Step(_key(chosen), PickStep(chosen, device), _name(chosen), sum(not case.is_beside for case in chosen))
+        Step(
+            _key(chosen),
+            PickStep(chosen, device, outputs.images),
+            _name(chosen),
+            sum(not case.is_beside for case in chosen),
+        )
         for chosen in asked
     ]
 
@@ -238,8 +245,8 @@ def _key(chosen: Sequence[measure.PickCase]) -> Row:
 
 
 def _measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
-    device = steps[0].case.device if steps else None
-    return measure.rows([step.case.cases for step in steps], device, tick)
+    first = steps[0].case if steps else PickStep((), None, None)
+    return measure.rows([step.case.cases for step in steps], first.device, first.images, tick)
 
 
 def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
@@ -272,11 +279,6 @@ def _write(done: Measured, _: Tick) -> None:
 
         placed = (case for step in done.steps for case in pictures.placed(step.case.cases, done.rows))
         write_live((case.codec for case in placed), done.outputs.live)
-    if not done.outputs.images or not done.steps or not (device := done.steps[0].case.device):
-        return
-    with measure.Pictures(device) as drawing:
-        for step in done.steps:
-            pictures.write(done.outputs.images, step.case.cases, done.rows, drawing)
 
 
 WORK = Work(

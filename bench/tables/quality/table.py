@@ -259,7 +259,6 @@ TABLE = Table(
     usual_where_said={"encoding": {"normals": SETS_OF_NAMED}},
     single={"encoding": "octahedral", "backend": "jax"},
     files={"images": "images", "maps": "sphere", "live": "live"},
-    is_measured_beside=True,
     section=Section(
         title="What normals lose",
         short="Normals",

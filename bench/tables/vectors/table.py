@@ -114,7 +114,6 @@ TABLE = Table(
     options=VectorsOptions,
     columns=COLUMNS,
     single={"encoding": "linear", "storage": "rg16f", "backend": "jax", "speed": "1"},
-    is_measured_beside=True,
     section=Section(
         title="What motion vectors lose",
         short="Motion vectors",

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from normalbench.bench.ground.output import errors
+from normalbench.bench.ground.output import cache, errors
 from normalbench.bench.ground.output.writing import say
 from normalbench.bench.keep import answers
 from normalbench.bench.tables.registry import TABLES
@@ -18,7 +18,7 @@ def asked(own_cache, monkeypatch, tmp_path):  # noqa: ARG001 (an empty cache)
     ran, driver = [], tmp_path / "lib" / "driver.so"
     driver.parent.mkdir()
     driver.write_text("1")
-    monkeypatch.setattr(answers, "is_anew", [])
+    monkeypatch.setattr(cache, "is_anew", [])
     monkeypatch.setattr(answers, "loaded", lambda: {str(driver)})
 
     def command() -> int:
@@ -51,7 +51,7 @@ def test_it_is_measured_again_where_something_changed(asked, monkeypatch, change
     elif change == "driver gone":
         asked.driver.unlink()
     elif change == "anew":
-        answers.is_anew.append(True)
+        cache.is_anew.append(True)
     elif change == "width":
         monkeypatch.setenv("COLUMNS", "77")
     elif change == "setting":

@@ -7,17 +7,11 @@ import pytest
 from manual import ROOT
 from typed import codecs_named
 
-from normalbench.bench.door.run import options_of
 from normalbench.bench.tables.pick.answer import answered, groups
 from normalbench.bench.tables.pick.charts import charts
 from normalbench.bench.tables.pick.sentences import sentences
 from normalbench.bench.tables.quality.table import COMMON
 from normalbench.bench.tables.registry import TABLES
-
-
-def test_a_run_asks_for_half_of_the_sphere_too_unless_normals_are_named():
-    assert [one.domain for one in options_of(TABLES["pick"], {})] == [None, "hemisphere"]
-    assert [one.domain for one in options_of(TABLES["pick"], {"normals": "axes"})] == [None, None]
 
 
 def test_codes_of_a_fixed_size_are_not_taken_for_the_bits_that_they_occupy():
