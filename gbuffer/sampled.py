@@ -84,8 +84,8 @@ class SampledScene:
         texels = np.broadcast_to(surfaces[0], (self._rows, *surfaces[0].shape)).astype(np.float32)
         texels[: len(normals), :, :3] = normals
         first.write(texels.tobytes())
-        # Lights are added to what surfaces give off.
-        self._upload(self._made.frame.textures(LIGHT), surfaces[1 + len(others) :])
+        # Lights are added to what surfaces give off, which is in the first of a light buffer's targets.
+        self._upload(self._made.frame.textures(LIGHT), surfaces[1 + len(others) :][:1])
         names = list(self._made.passes)
         for name in names[names.index(GEOMETRY) + 1 :]:
             self._made.passes[name]()

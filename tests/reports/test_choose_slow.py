@@ -27,7 +27,7 @@ ASK = """([questions, constants]) => questions.map(([question, asked]) => {
 })"""
 
 
-def made_up_rows(rng: np.random.Generator, needs: str | None) -> list[dict]:
+def made_up_rows(rng: np.random.Generator, needs: str | None, aim: str = "angle") -> list[dict]:
     """Rows of a question as a run keeps them: prices and errors of a few sizes, so that many are equal, and codes of
     every kind that is left out."""
     usual = {
@@ -35,7 +35,7 @@ def made_up_rows(rng: np.random.Generator, needs: str | None) -> list[dict]:
         "needs": needs,
         "normals": needs or "sphere",
         "scene": "studio",
-        "aim": "angle",
+        "aim": aim,
         "bytes": 4,
         "rounding": "nearest",
     }
@@ -79,7 +79,7 @@ def made_up_rows(rng: np.random.Generator, needs: str | None) -> list[dict]:
                     "length_share": float(rng.choice([0, 0.7], p=[0.9, 0.1])),
                 }
                 | {"invalid": int(rng.random() < 0.03), "code_bits": 10.0 if rng.random() < 0.05 else None}
-                | {"image_db_studio": float(rng.uniform(20, 80)) if rng.random() < 0.5 else None}
+                | images_at_random(rng)
                 | {"image_lost_percent": 3.0 if rng.random() < 0.05 else None, "image_lost_scene": "studio"}
             )
             rows[-1] |= surveyed(rng, mean, float(encode), float(decode))
@@ -87,6 +87,16 @@ def made_up_rows(rng: np.random.Generator, needs: str | None) -> list[dict]:
             if rows[-1]["domain"] == "hemisphere":
                 rows[-1]["lost_percent"] = 0.0 if needs else 50.0
     return rows
+
+
+def images_at_random(rng: np.random.Generator) -> dict:
+    """Errors of two images over some yaws, about levels of 3 dB, so that many tie; of every fourth code none."""
+    if rng.random() < 0.25:
+        return {"image_db_studio": None, "image_db_room": None}
+    level, spread, count = 10 ** (-0.3 * rng.integers(6, 26)), rng.choice([0.02, 0.5]), rng.choice([4, 6])
+    errors = {name: {"y": list(level * np.exp(spread * rng.standard_normal(count)))} for name in ("studio", "room")}
+    row = {f"image_db_{name}": -10 * np.log10(np.mean(of["y"])) for name, of in errors.items()}
+    return row | {"image_pole": "y", "image_errors": json.dumps(errors)}
 
 
 def asked_at_random(rng: np.random.Generator) -> dict:
@@ -137,7 +147,7 @@ def test_the_pages_answer_is_picks_for_any_constraints(opened, tmp_path):
     pairs, expected = [], []
     for at in range(SETS):
         if at % 25 == 0:
-            rows = made_up_rows(rng, needs=(None, "hemisphere")[at // 25 % 2])
+            rows = made_up_rows(rng, needs=(None, "hemisphere")[at // 25 % 2], aim=("angle", "image")[at // 50 % 2])
             (question,) = extras(tmp_path, {"pick": rows}, [])["choices"]["questions"]
         asked = asked_at_random(rng)
         # A price in the rows is that of their own readers.

@@ -10,6 +10,7 @@ import numpy as np
 
 from ....encodings.vec import Vec3
 from ....gbuffer.codecs.mixing.passes import QUARTERS, SIDE, Meetings
+from ...subjects.normals.domains import in_domain
 from ...subjects.normals.normal_sets import NormalSet
 from .reference import angles_between, reoriented, tilted, unit_rows
 
@@ -23,15 +24,6 @@ TEXELS = SIDE * SIDE
 LEAST_EDGE_DEG = 20.0
 # Steradians of the whole sphere.
 SPHERE = 4 * math.pi
-
-
-def in_domain(normals: np.ndarray, views: np.ndarray, domain: str) -> np.ndarray:
-    """Which normals (..., 3) lie in a domain: "sphere", "hemisphere" (z >= 0) or "view" (facing the viewer)."""
-    if domain == "hemisphere":
-        return normals[..., 2] >= 0
-    if domain == "view":
-        return np.sum(normals * views, axis=-1) <= 0
-    return np.ones(normals.shape[:-1], bool)
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,6 +14,7 @@ from functools import reduce
 
 import numpy as np
 
+from ...subjects.normals.domains import in_domain
 from ..table import Row
 from . import turning
 from .trips import Trip
@@ -136,7 +137,7 @@ def _frame(trip: Trip, domain: str, n: np.ndarray, view: np.ndarray, matrix: np.
     length = _row_lengths(decoded)
     valid = np.isfinite(length) & (length > 0)
     decoded = np.where(valid[:, None], decoded / np.where(valid, length, 1.0)[:, None], -n)
-    counts = in_domain(domain, n, view)
+    counts = in_domain(n, view, domain)
     total.invalid += int(np.count_nonzero(~valid & counts))
     # In the space that the surface is fixed in: the difference is small, and turning it loses nothing.
     return Frame((decoded - n) @ matrix, codes, counts)
@@ -150,12 +151,3 @@ def _row_lengths(v: np.ndarray) -> np.ndarray:
 
 def _unit_rows(v: np.ndarray) -> np.ndarray:
     return v / _row_lengths(v)[:, None]
-
-
-def in_domain(domain: str, n: np.ndarray, view: np.ndarray) -> np.ndarray:
-    """Whether an encoding is made for normals, bool of shape (count,), from normals and view positions, (count, 3)."""
-    if domain == "hemisphere":
-        return n[:, 2] >= 0
-    if domain == "view":
-        return np.sum(n * view, axis=1) <= 0
-    return np.ones(len(n), bool)

@@ -5,17 +5,20 @@ The order of two codes depends on these two alone. Adding or removing a third on
 
 from __future__ import annotations
 
+import json
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 
 from ....reports.page.verdict import MADE_FOR
+from ...measures.images.turns import INDISTINGUISHABLE_DB, gap_db
 from ..table import Row
 from .table import HOLE
 
 IMAGE = "image_db_"
 BEST, MORE_EXACT, MOST_EXACT, CHEAPER, FEWER_BITS = "best", "more exact", "most exact", "cheaper", "fewer bits"
+TIE = "tie"
 ACROSS, PLAIN, AGAINST, ELSEWHERE = "across an edge", "plain channels", "against", "elsewhere"
 # What codes of a domain hold, by the domain that is needed.
 HOLDS: Mapping[str, frozenset[str]] = MappingProxyType(
@@ -31,8 +34,6 @@ BEYOND = {"hemisphere": "point away (z < 0)", "view": "face away from the viewer
 HIDDEN_SLOTS = 16
 # How many times the price that takes no time anybody pays for what is not seen.
 AFFORDABLE = 2.0
-# Images above it are equal.
-INDISTINGUISHABLE_DB = 70.0
 # The share of the angle that the error of a decode's length has, from which on it must be normalised before it is lit.
 # `xyz` has 0.7, of the other codes none has over 0.16 but for a rounding at the edge of its domain, 0.03.
 LENGTH = 0.1
@@ -54,7 +55,9 @@ LOOPS_SAID = "how often its loops run is not known"
 # A code has no use for a storage that has so many more bits than it has codes for.
 WASTED_BITS = 8
 # How many figures behind the loss decide where codes are equal.
-TIES = 4
+TIES = 3
+# By how many of its standard errors two images must differ.
+ERRORS = 2
 
 
 def places_of(row: Row) -> list[str]:
@@ -157,14 +160,37 @@ def order(row: Row) -> tuple[float, ...]:
     """By what rows are sorted, less is better.
 
     Of codes that are enough and cost little the one of fewest bits is first, then the cheapest, to a doubling. The
-    others follow by loss + worth log2(price / floor), to half a decibel, and then by the price.
+    others follow by loss + worth log2(price / floor), to half a decibel, and then by the price. Images are not rounded:
+    which of them are equal is a matter of pairs.
     """
-    ties = (to_a_step(image_loss(row)), price(row), _bits(row), row["slots"] or 0.0)
+    ties = (price(row), _bits(row), row["slots"] or 0.0)
     if row["aim"] == "cost":
         return (price(row), not is_enough(row), loss_db(row), *ties)
     if is_enough(row) and price(row) <= AFFORDABLE * floor(row):
         return (0, bool(row["table"]), _bits(row), round(doublings(row)), _to_a_tenth(loss_db(row)), *ties)
-    return (1, to_a_step(loss_db(row) + row["worth"] * doublings(row)), price(row), loss_db(row), *ties)
+    first = score(row) if row["aim"] == "image" else to_a_step(score(row))
+    return (1, first, price(row), loss_db(row), *ties)
+
+
+def score(row: Row) -> float:
+    """Return what a code loses and what its price is worth, in decibels; less is better."""
+    return loss_db(row) + row["worth"] * doublings(row)
+
+
+def clear_gap_db(one: Row, other: Row) -> float:
+    """Return the decibels that two codes must differ by before one of them is better.
+
+    Images of one code differ by how its axes lie in the scene: a gap counts above twice its standard error alone.
+    """
+    if one["aim"] != "image":
+        return LEAST_DB
+    errors = [json.loads(row["image_errors"]) for row in (one, other) if row.get("image_errors")]
+    return max(STEP, ERRORS * gap_db(*errors)[1]) if len(errors) > 1 else STEP
+
+
+def is_clearly_better(one: Row, other: Row) -> bool:
+    """Whether a code loses less than another one, by more than chance explains."""
+    return loss_db(other) - loss_db(one) >= clear_gap_db(one, other)
 
 
 def to_a_step(figure: float) -> float:
@@ -257,8 +283,10 @@ def answered(rows: Sequence[Row]) -> list[Row]:
 def _answered_rows(group: Sequence[Row]) -> list[Row]:
     judged = [row | {"left_out": why_left_out(row) or None} for row in group]
     judged = _unpriced(_rows_with_holes(judged))
-    fit = sorted((row for row in judged if not row["left_out"] and not row["beside"]), key=order)
+    fit, tied = _with_ties(sorted((row for row in judged if not row["left_out"] and not row["beside"]), key=order))
     places = _places(fit)
+    for at in tied:
+        places[at].append(TIE)
     made = [
         row | {"front": not any(beats(other, row) for other in fit), "place": _place_text(row, places[at])}
         for at, row in enumerate(fit)
@@ -267,6 +295,16 @@ def _answered_rows(group: Sequence[Row]) -> list[Row]:
         row | {"front": False, "place": _place_text(row, [])} for row in judged if row["left_out"] and not row["beside"]
     ]
     return [*made, *_elsewhere_rows(judged, fit), *others]
+
+
+def _with_ties(fit: list[Row]) -> tuple[list[Row], list[int]]:
+    """Rows in their order, of those whose images tie with the best the cheapest first; and which of the others tie."""
+    if not fit or fit[0]["aim"] != "image" or order(fit[0])[0] != 1:
+        return fit, []
+    tied = [row for row in fit[1:] if score(row) - score(fit[0]) < clear_gap_db(fit[0], row)]
+    first = min([fit[0], *tied], key=lambda row: (price(row), _bits(row), score(row)))
+    rows = [first, *(row for row in fit if row is not first)]
+    return rows, [at for at, row in enumerate(rows) if at and (row is fit[0] or any(row is other for other in tied))]
 
 
 def _place_text(row: Row, places: Sequence[str]) -> str | None:
@@ -319,9 +357,9 @@ def _places(fit: Sequence[Row]) -> list[list[str]]:
     best, rungs = fit[0], [at for at, row in enumerate(fit) if at and not any(beats(other, row) for other in fit)]
     places[0].append(BEST)
     exact = min(range(len(fit)), key=lambda at: (figures(fit[at]), at))
-    if exact and loss_db(best) - loss_db(fit[exact]) >= LEAST_DB:
+    if exact and is_clearly_better(fit[exact], best):
         places[exact].append(MOST_EXACT)
-    above = [at for at in rungs if loss_db(best) - loss_db(fit[at]) >= LEAST_DB and at != exact]
+    above = [at for at in rungs if is_clearly_better(fit[at], best) and at != exact]
     below = [at for at in rungs if loss_db(fit[at]) >= loss_db(best)]
     for place, chosen in (
         (MORE_EXACT, _rungs_apart(sorted(above, key=lambda at: -loss_db(fit[at])), fit)[:MOST_RUNGS]),
@@ -361,7 +399,7 @@ def _rungs_apart(chosen: Sequence[int], fit: Sequence[Row]) -> list[int]:
     """Of rungs, the least exact first, those that gain enough on the one before."""
     kept: list[int] = []
     for at in chosen:
-        if not kept or loss_db(fit[kept[-1]]) - loss_db(fit[at]) >= LEAST_DB:
+        if not kept or is_clearly_better(fit[at], fit[kept[-1]]):
             kept.append(at)
     return kept
 

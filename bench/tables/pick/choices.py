@@ -15,9 +15,10 @@ from ....encodings.codecs.codec import fewer_bits
 from ....reports.page.codec_key import CodecKey
 from ....reports.page.verdict import MADE_FOR
 from ...ground.options.gpu_families import FAMILIES
+from ...measures.images.turns import INDISTINGUISHABLE_DB, VIEW_SPACE
 from ..mix.table import USES
 from . import answer
-from .answer import Row, asked_of, groups, image_loss, largest, largest_mixed, loss_db, mean, why_unfit
+from .answer import Row, asked_of, groups, largest, largest_mixed, loss_db, mean, why_unfit
 from .charts import FOUND, chart_name, spread_name
 from .sentences import around_gain, called, constraints, not_held, question
 from .table import TABLE
@@ -31,6 +32,8 @@ CONSTANTS = {
     "least": answer.LEAST_DB,
     "much": answer.MUCH_BETTER_DB,
     "hole": answer.HOLE,
+    "errors": answer.ERRORS,
+    "equal": INDISTINGUISHABLE_DB,
 }
 # What a reader may ask for otherwise.
 ASKED = (
@@ -94,7 +97,7 @@ def _code(row: Row) -> dict[str, Any]:
         "families": _read(row.get("by_family")),
         "plain": [row["angle_mean_deg"], largest(row)],
         "loss": _finite(loss_db(row)),
-        "tie": _finite(answer.to_a_step(image_loss(row))),
+        "turns": _turns(row),
         "met": largest(row),
         "largest": largest_mixed(row),
         "mean": mean(row),
@@ -114,6 +117,12 @@ def _code(row: Row) -> dict[str, Any]:
         "begin": begin,
         "end": end,
     }
+
+
+def _turns(row: Row) -> list[list[float]]:
+    """The errors of each image, at the code's pole, of each yaw."""
+    errors = _read(row.get("image_errors")) or {}
+    return [by_pole[row["image_pole"] or VIEW_SPACE] for by_pole in errors.values()]
 
 
 def _read(text: str | None) -> Any:

@@ -6,56 +6,41 @@ import json
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
-from contextlib import ExitStack, nullcontext
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-import jax
 import numpy as np
 
-from ....encodings.catalogue import LIGHT_BUFFERS, is_in_catalogue
 from ....encodings.codecs.codec import Codec
-from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device
-from ....gbuffer.layouts.layout import Layout, engines_space
-from ....gbuffer.layouts.presets import LAYOUTS
-from ....gbuffer.layouts.words import LayoutError
 from ....gbuffer.pipelines import PIPELINES, Pipeline
-from ....gbuffer.render import Covered, Rendering, rendering
-from ....gbuffer.scenes.catalogue import SCENES, SceneMaker
-from ....gbuffer.scenes.scene import Scene
+from ....gbuffer.scenes.catalogue import SceneMaker
 from ....gbuffer.scenes.setting import Setting
-from ....reports.charts.pictures import picture
 from ...ground.options.gpu_families import CHOICES
 from ...ground.output import cache as kept
-from ...ground.output.errors import tell
-from ...ground.output.sources import sources
-from ...measures.metrics.images import squared_error
-from ...measures.metrics.totals import psnr_db
+from ...measures.images.turns import NEAR_DB
 from ...shaders.code.twin import has_twin
 from ...subjects.normals.normal_sets import NORMAL_SETS, NormalSet, from_arrays
-from .. import shots
 from ..mix import judge
-from ..mix.patches import in_domain
 from ..mix.table import USES
 from ..mix.verdict import DONE
 from ..quality import measure as quality
 from ..table import Row
-from .answer import AFFORDABLE, IMAGE, answered, floor, image_name, price, why_left_out, why_unfit
+from .answer import AFFORDABLE, answered, floor, image_loss, image_name, price, score, why_left_out, why_unfit
+from .images import Images
+from .kept_figures import figures_key
 from .pictures import write
 from .prices import Costs
 from .table import TABLE
 
-SIZE = (640, 480)
 SUPREMUM, AXES = "angle_sup_deg", "angle_axes_deg"
 # The GPU families that a survey counts for: Mesa has their compilers, which take a second for each.
 SURVEYED = (*CHOICES["radeon"], "tgl", "dg2")
 # Normals that tell whether decodes have length 1.
 FEW = 2**14
-# By power, an image and that of exact normals.
-Shown = dict[float | None, tuple[np.ndarray, np.ndarray]]
 QUALITY = ("angle_mean_deg", "angle_max_deg", "angle_counts", "worst_normal", "invalid", "count", "device", "skipped")
 
 
@@ -78,7 +63,7 @@ class PickCase:
     setting: Setting
     powers: tuple[float, ...]
     said: Mapping[str, Any]
-    pipeline: Pipeline = PIPELINES["hybrid"]
+    pipeline: Pipeline = PIPELINES["deferred"]
     is_surveyed: bool = False
 
     @property
@@ -121,12 +106,12 @@ def rows(
         # While a device draws in this thread, little Python runs in the other: what JAX traces comes first.
         for question in questions:
             question.measure(tick)
-        with Pictures(device) if device else nullcontext() as pictures:
+        with Images(device) if device else nullcontext() as drawn:
             for chosen, question in zip(asked, questions, strict=True):
-                question.draw(pictures)
+                question.draw(drawn)
                 rows = question.rows()
-                if pictures and images:
-                    write(images, chosen, answered(rows), pictures)
+                if drawn and images:
+                    write(images, chosen, answered(rows), drawn)
                 yield rows
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
@@ -194,16 +179,29 @@ class Question:
                 judged.add(_case_name(row))
                 self._rows[_case_name(row)] |= _mixing_columns(self._cases[_case_name(row)])
 
-    def draw(self, pictures: Pictures | None) -> None:
+    def draw(self, images: Images | None) -> None:
         """Images, if there is what draws them, and the suprema of codes that have a place then."""
         if self._aim == "worst":
             self._take_suprema()
-        if pictures:
-            for row in self._qualified_rows("angle") if self._aim == "image" else self._placed_rows():
-                self._rows[_case_name(row)] |= pictures.of(self._cases[_case_name(row)])
+        if images:
+            if self._aim == "image":
+                self._draw_near_the_best(images)
+            for row in self._placed_rows():
+                self._rows[_case_name(row)] |= images.of(self._cases[_case_name(row)])
         placed = self._placed_rows()
         self._find_suprema(placed)
         self._measure_axes([self._cases[_case_name(row)] for row in placed])
+
+    def _draw_near_the_best(self, images: Images) -> None:
+        """All that qualify by a few orientations, and those near the best by all."""
+        names = [_case_name(row) for row in self._qualified_rows("angle")]
+        for name in names:
+            self._rows[name] |= images.first(self._cases[name])
+        rows = self._qualified_rows(self._aim)
+        for figure in (score, image_loss):
+            least = min(map(figure, rows), default=0.0)
+            for name in (_case_name(row) for row in rows if figure(row) <= least + NEAR_DB):
+                self._rows[name] |= images.of(self._cases[name])
 
     def _measure_axes(self, cases: Sequence[PickCase]) -> None:
         """Errors of axis-aligned normals: of all, or of those with z >= 0 where the code need not hold others."""
@@ -217,8 +215,10 @@ class Question:
 
     def _placed_rows(self) -> list[Row]:
         """What has a place in the answer, which is by the angles where there are no images yet."""
-        aim = "angle" if self._aim == "image" else self._aim
-        return [row for row in answered([row | {"aim": aim} for row in self._rows.values()]) if row["place"]]
+        rows = list(self._rows.values())
+        has_images = any(row.get("image_errors") for row in rows)
+        aim = "angle" if self._aim == "image" and not has_images else self._aim
+        return [row for row in answered([row | {"aim": aim} for row in rows]) if row["place"]]
 
     def _qualified_rows(self, aim: str) -> list[Row]:
         answer = answered([row | {"aim": aim} for row in self._rows.values()])
@@ -267,7 +267,7 @@ def _case_name(row: Row) -> str:
 def _by_use(case: PickCase) -> Row:
     """What each use does to a code: why it cannot be used so, and the sum, the number and the largest of its errors."""
     domain = _mixed_domain(case)
-    key = _figures_key("each use", case.codec, domain, _normals_key(case))
+    key = figures_key("each use", case.codec, domain, _normals_key(case))
 
     def judged() -> Row:
         found = judge.judgements(case.codec, list(USES), case.normal_set, domain)
@@ -287,7 +287,7 @@ def _by_use(case: PickCase) -> Row:
 def _mixing_columns(case: PickCase) -> Row:
     """What the mixing that is asked for does to a code: why it does not survive, if it does not, and its errors."""
     uses, domain = case.said["mixing"], _mixed_domain(case)
-    key = _figures_key("mixing", case.codec, uses, domain, _normals_key(case))
+    key = figures_key("mixing", case.codec, uses, domain, _normals_key(case))
 
     def judged() -> Row:
         found = judge.judgement(case.codec, uses.split(","), case.normal_set, domain)
@@ -327,7 +327,7 @@ def _case_columns(case: PickCase) -> Row:
 
 def _angle_columns(chosen: Sequence[PickCase]) -> list[Row]:
     """The columns of angles of each case, measured together where they are not kept."""
-    keys = [_figures_key("angles", case.codec, _normals_key(case)) for case in chosen]
+    keys = [figures_key("angles", case.codec, _normals_key(case)) for case in chosen]
     rows = [kept.read_figures(key) for key in keys]
     missing = [_quality_case(case) for case, row in zip(chosen, rows, strict=True) if row is None]
     measured = quality.rows(missing, lambda _: None)
@@ -376,7 +376,7 @@ def _supremum_deg(case: PickCase) -> float | None:
     one = _quality_case(case)
     if one.backend != "jax":
         return None
-    key = _figures_key("supremum", case.codec, _normals_key(case))
+    key = figures_key("supremum", case.codec, _normals_key(case))
     return kept.figures(key, lambda: {SUPREMUM: quality.measure(replace(one, worst_case=True))[SUPREMUM]})[SUPREMUM]
 
 
@@ -384,188 +384,6 @@ def _normals_key(case: PickCase) -> list[Any] | None:
     """What is kept of a set of normals in a key; None of one that may be another next time."""
     chosen = case.normal_set
     return [chosen.name, chosen.count, chosen.seed] if chosen.name in NORMAL_SETS else None
-
-
-def _figures_key(what: str, codec: Codec, *parts: Any) -> str:
-    """Where figures are kept for good; empty where they may be others next time."""
-    if None in parts or not is_in_catalogue(codec.encoding):
-        return ""
-    return kept.key_of("pick", what, sources(), jax.__version__, codec.name, *map(repr, parts))
-
-
-@dataclass(frozen=True)
-class LitScene:
-    """A scene whose surfaces are drawn once, at each specular power, and lit by the normals of any code.
-
-    Attributes:
-        made: draws it, by exact normals in one of the spaces that layouts keep them in.
-        surfaces: the scene at each power, and its surfaces as `Rendering.surfaces` gives them.
-        covered: their pixels, the same at each power.
-    """
-
-    made: Rendering
-    surfaces: Sequence[tuple[Scene, Sequence[np.ndarray]]]
-    covered: Covered
-
-    @classmethod
-    def drawn(cls, made: Rendering, scenes: Iterable[Scene]) -> LitScene:
-        """Draw the surfaces of a scene at each power."""
-        surfaces = []
-        for scene in scenes:
-            made.frame.show(scene)
-            surfaces.append((scene, made.surfaces()))
-        return cls(made, surfaces, made.covered(surfaces[0][1]))
-
-    def images(self, normals: np.ndarray) -> list[np.ndarray]:
-        """Return the image at each power, linear light, float32 of shape (height, width, 3).
-
-        Args:
-            normals: what a code makes of those that are covered, (pixels, 3).
-        """
-        images = []
-        for scene, surfaces in self.surfaces:
-            # To list what is drawn takes as long as to light it.
-            if self.made.frame.scene is not scene:
-                self.made.frame.show(scene)
-            images.append(self.made.lit(self.covered.with_normals(surfaces, normals)))
-        return images
-
-
-class Pictures:
-    """The error of the image that is lit by a code's normals. Each scene's reference and its surfaces are drawn once; a
-    context manager that lets go of them."""
-
-    def __init__(self, device: Device):
-        self._device, self._stack = device, ExitStack()
-        self._references: dict[tuple[Any, ...], Reference] = {}
-        self._bytes: dict[tuple[str, str], Shown] = {}
-        self._lit: dict[tuple[Any, ...], LitScene] = {}
-
-    def __enter__(self) -> Pictures:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._stack.close()
-
-    def of(self, case: PickCase) -> Row:
-        """The PSNR of the displayed images over covered pixels, at each power in each scene; none where the device or a
-        layout has no room for the code."""
-        found: Row = {}
-        for maker in case.makers:
-            known = maker.name if maker is SCENES.get(maker.name) else None
-            asked = (case.setting, case.powers, case.said.get("effects") or "")
-            key = _figures_key("image", case.codec, known, *asked, self._device.renderer)
-            try:
-                found |= kept.figures(key, lambda maker=maker: self._image_columns(case, maker))
-            except (LayoutError, *shots.UNMEASURABLE):
-                continue
-        if case.codec.encoding.domain != "sphere":
-            lost = {maker.name: self.lost_percent(case, maker) for maker in case.makers}
-            found["image_lost_scene"] = max(lost, key=lambda name: lost[name], default=None)
-            found["image_lost_percent"] = max(lost.values(), default=0.0)
-        return found
-
-    def lost_percent(self, case: PickCase, maker: SceneMaker) -> float:
-        """The share of covered pixels whose normals the encoding is not made for."""
-        reference = self._reference(case, maker)
-        covered, held = (np.count_nonzero(reference.held_by(one)) for one in ("sphere", case.codec.encoding.domain))
-        return 100.0 * (1 - held / max(covered, 1))
-
-    def _image_columns(self, case: PickCase, maker: SceneMaker) -> Row:
-        held = self._reference(case, maker).held_by(case.codec.encoding.domain)
-        shown = self.shown(case, maker)
-        # The few bytes of it are kept: a code that an answer names is written as well.
-        self._bytes[case.codec.name, maker.name] = _in_bytes(shown)
-        return {
-            f"{IMAGE}{image_name(maker.name, power)}": psnr_db(squared_error(image[held], right[held])[0])
-            for power, (image, right) in shown.items()
-            if held.any()
-        }
-
-    def in_bytes(self, case: PickCase, maker: SceneMaker) -> Shown:
-        """What `shown` gives, uint8: as it was drawn before, if it was."""
-        return self._bytes.get((case.codec.name, maker.name)) or _in_bytes(self.shown(case, maker))
-
-    def shown(self, case: PickCase, maker: SceneMaker) -> Shown:
-        """At each power (None where there is none) the displayed image, and that of exact normals: (height, width, 3),
-        0 to 1.
-
-        Raises:
-            LayoutError, or one of shots.UNMEASURABLE: there is no room for the code.
-        """
-        layout = LAYOUTS["fp32"].with_codec(case.codec)
-        by_emulation = has_twin(case.codec.encoding)
-        if case.codec.encoding.is_half and not by_emulation:
-            raise LayoutError(f"{case.codec.name}: the renderer computes in 32 bits")
-        images = self._relit(case, maker) if by_emulation else self._drawn(case, maker, layout)[0]
-        found: Shown = {}
-        exact = self._reference(case, maker).images
-        for power, image, right in zip(case.powers_of(maker), images, exact, strict=True):
-            display = maker.display(right)
-            found[power] = display.image(image), display.image(right)
-        return found
-
-    def _reference(self, case: PickCase, maker: SceneMaker) -> Reference:
-        """The exact images of a scene, rendered once for all codes."""
-        question = (maker, case.setting, case.powers, case.pipeline)
-        if question not in self._references:
-            self._references[question] = Reference(*self._drawn(case, maker, LAYOUTS["fp32"]))
-            covered = 100.0 * float(np.mean(self._references[question].held_by("sphere")))
-            for line in shots.says_little(maker.name, covered):
-                tell(line)
-        return self._references[question]
-
-    def _relit(self, case: PickCase, maker: SceneMaker) -> list[np.ndarray]:
-        """Images lit by what JAX makes of the normals. No shader is compiled for the code, which takes a second."""
-        space = engines_space(case.codec.encoding) if maker.is_metal_rough else ""
-        question = (maker, case.setting, case.powers, case.pipeline, space)
-        if question not in self._lit:
-            scene, made = self._opened(self._stack, case, maker, LAYOUTS["fp32"])
-            self._lit[question] = LitScene.drawn(made, _at_powers(case, maker, scene))
-        lit = self._lit[question]
-        shots.require_surface(maker, len(lit.covered.normals) > 0)
-        return lit.images(quality.round_trip(case.codec, lit.covered.normals, lit.covered.position))
-
-    def _opened(self, stack: ExitStack, case: PickCase, maker: SceneMaker, layout: Layout) -> tuple[Scene, Rendering]:
-        scene = maker.make(case.setting)
-        if scene.is_metal_rough:
-            layout = replace(layout, space=engines_space(case.codec.encoding))
-        plan = Plan(maker.within(SIZE), 1, layout, LIGHT_BUFFERS["rgba32f"], 2, True, 1.0)
-        return scene, stack.enter_context(rendering(self._device, case.pipeline, scene, plan))
-
-    def _drawn(
-        self, case: PickCase, maker: SceneMaker, layout: Layout
-    ) -> tuple[list[np.ndarray], np.ndarray, np.ndarray]:
-        """The image at each power, and the positions and normals of its pixels."""
-        shown = []
-        with ExitStack() as stack:
-            scene, made = self._opened(stack, case, maker, layout)
-            for at_power in _at_powers(case, maker, scene):
-                made.draw(at_power)
-                shown.append(made.image())
-            position, direction, *_ = made.gbuffer()
-        return shown, position[..., :3], direction[..., :3]
-
-
-def _at_powers(case: PickCase, maker: SceneMaker, scene: Scene) -> list[Scene]:
-    return [scene if power is None else scene.with_power(power) for power in case.powers_of(maker)]
-
-
-def _in_bytes(shown: Shown) -> Shown:
-    return {power: (picture(image), picture(exact)) for power, (image, exact) in shown.items()}
-
-
-@dataclass(frozen=True)
-class Reference:
-    """What exact normals show: an image in linear light at each power; positions and normals, (height, width, 3)."""
-
-    images: list[np.ndarray]
-    position: np.ndarray
-    normals: np.ndarray
-
-    def held_by(self, domain: str) -> np.ndarray:
-        """Which pixels a surface covers whose normal an encoding of that domain holds, (height, width)."""
-        return (self.position[..., 2] != 0) & in_domain(self.normals, self.position, domain)
 
 
 @cache

@@ -16,24 +16,27 @@ from ....reports.charts import pictures
 from ....reports.page.codec_key import CodecKey
 from ....reports.page.pixels import ImagePixels, Pictured, Subject, read_png
 from ...ground.output.writing import files_of, whole_file
+from ...measures.images.turns import VIEW_SPACE
 from .. import shots
 from ..table import Row
 from .answer import AGAINST, BEST, CHEAPER, FEWER_BITS, MORE_EXACT, MOST_EXACT, images, places_of
 
 if TYPE_CHECKING:
-    from .measure import PickCase, Pictures
+    from .images import Images
+    from .measure import PickCase
 
 # The answer and what stands next to it are what a reader sees first.
 FIRST = 2
 PLACES = (BEST, AGAINST, MORE_EXACT, MOST_EXACT, CHEAPER, FEWER_BITS)
 
 
-def write(folder: Path, chosen: Sequence[PickCase], rows: Sequence[Row], drawing: Pictures) -> None:
+def write(folder: Path, chosen: Sequence[PickCase], rows: Sequence[Row], drawing: Images) -> None:
     """The images of every code that has a place, and of the exact normals."""
+    poles = {CodecKey.of(row): row.get("image_pole") or VIEW_SPACE for row in rows}
     for case, maker in ((one, maker) for one in placed(chosen, rows) for maker in one.makers):
         # A code that the device has no room for has no image.
         with suppress(LayoutError, *shots.UNMEASURABLE):
-            for power, (image, exact) in drawing.in_bytes(case, maker).items():
+            for power, (image, exact) in drawing.shown(case, maker, poles[_key_of_case(case)]).items():
                 scene = _scene_stem(maker.name, "" if power is None else f"{power:g}")
                 _write(folder / f"{scene}-reference.png", exact)
                 _write(folder / _file_name(scene, _key_of_case(case)), image)
@@ -59,7 +62,7 @@ def _scene_stem(name: str, power: str) -> str:
 
 def _write(path: Path, image: np.ndarray) -> None:
     with whole_file(path) as partial:
-        pictures.write_png(partial, image)
+        pictures.write_png(partial, pictures.picture(image))
 
 
 def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:

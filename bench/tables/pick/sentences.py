@@ -15,12 +15,15 @@ from .answer import (
     BEST,
     CHEAPER,
     ELSEWHERE,
+    ERRORS,
     FEWER_BITS,
     HIDDEN_SLOTS,
     INDISTINGUISHABLE_DB,
     MORE_EXACT,
     MOST_EXACT,
     PLAIN,
+    STEP,
+    TIE,
     asked_of,
     beats,
     floor,
@@ -143,6 +146,8 @@ def _slots_once(row: Row) -> float:
 def rungs(group: Sequence[Row], best: Row) -> Iterator[str]:
     """A sentence for each rung of the ladder."""
     titles = RUNGS | (BETTER_IMAGE if best["aim"] == "image" else {})
+    if tied := [called(row) for row in group if TIE in places_of(row)]:
+        yield f"Images tie with {', '.join(tied)}: gaps below {STEP:g} dB or within chance. The cheapest is taken."
     for place, title in titles.items():
         yield from (f"{title}: {_rung_text(row, best)}" for row in group if place in places_of(row))
 
@@ -264,9 +269,23 @@ def _images_text(row: Row) -> str:
     if worst > INDISTINGUISHABLE_DB:
         return f"Images of {scenes}{effects} show no difference: the worst has {decibels(worst)}.{beyond}"
     where = f"{scene} at power {power}" if power else scene
-    if scenes == where:
-        return f"The image of {scenes}{effects} has {decibels(worst)}.{beyond}"
-    return f"Of images of {scenes}{effects} the worst is {where}: {decibels(worst)}.{beyond}"
+    which = f"Image of {scenes}{effects}" if scenes == where else f"Worst image of {scenes}{effects}: {where}"
+    return f"{which}, {decibels(worst)}{_spread_text(row)}.{_pole_sentence(row)}{beyond}"
+
+
+def _spread_text(row: Row) -> str:
+    """The standard error of a row's worst image; empty where it is not known."""
+    error = row.get("image_se_db")
+    return f" (standard error {error:.1f} dB over orientations)" if error is not None else ""
+
+
+def _pole_sentence(row: Row) -> str:
+    """Along which axis of the world a code's z axis should lie, where that is worth more than its error."""
+    pole, cost = row.get("image_pole"), row.get("image_wrong_pole_db") or 0.0
+    if not pole or cost < max(STEP, ERRORS * (row.get("image_se_db") or 0.0)):
+        return ""
+    axis = "the vertical" if pole == "y" else f"the world's {pole} axis (y is up)"
+    return f" With its z axis along {axis}; along the worst axis it has {cost:.1f} dB less."
 
 
 def _mixing_text(row: Row) -> str:

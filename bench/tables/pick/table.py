@@ -169,12 +169,43 @@ COLUMNS = (
     Column(
         "image_db_*",
         "PSNR of the displayed image of that scene, at that specular power if its materials have one, against 32-bit "
-        "normals, over covered pixels whose normals the encoding is made for. Of codes with a place; with --aim image "
-        "of all that qualify.",
+        "normals, over covered pixels whose normals the encoding is made for: the mean squared error over yaws of the "
+        "encoding's axes about the vertical, at `image_pole`. Of codes with a place; with --aim image of all that "
+        "qualify, those far from the best by four yaws.",
         unit="dB",
         better="more",
         drops=6,
     ),
+    Column(
+        "image_se_db",
+        "The standard error of the lowest of these, by leaving out one yaw after the other (jackknife).",
+        HOW,
+        "dB",
+        shown=False,
+    ),
+    Column("image_two_worst_db", "That image by its two worst yaws alone.", unit="dB", better="more", shown=False),
+    Column(
+        "image_pole",
+        "The axis of the world, y up, that the encoding's z axis should lie along: images are best so. Empty for an "
+        "encoding in view space.",
+        HOW,
+        shown=False,
+    ),
+    Column("image_wrong_pole_db", "How much worse the image is at the worst axis.", HOW, "dB", shown=False),
+    Column(
+        "image_turned_db",
+        "The lowest PSNR by random rotations in place of yaws, as objects have them that turn.",
+        unit="dB",
+        better="more",
+        shown=False,
+    ),
+    Column(
+        "image_classes",
+        "PSNR by image and class of surfaces: those along the world's axes, the others by roughness. JSON.",
+        Role.RAW,
+        shown=False,
+    ),
+    Column("image_errors", "The mean squared error by image, axis and yaw. JSON.", Role.RAW, shown=False),
     Column(
         "image_lost_percent",
         "The share of covered pixels, in the scene with most of them, whose normals the encoding is not made for.",
@@ -288,9 +319,10 @@ TABLE = Table(
         "those that cost little the cheapest is taken. Of others a code may cost twice as much if it is 3 dB better, "
         "half a bit of each component. The price is in issue slots as they are executed, to encode once and to decode "
         "for four readers; 80 of these take no longer than the target's memory traffic. Angles are over the named "
-        "normals, the largest is a supremum found in float64. Images are frames of 640 x 480 of the hybrid pipeline, "
-        "all else in 32-bit floats, lit by the normals that the emulated code gives back, and compared over covered "
-        "pixels; `render` writes codes in shaders, and agrees to 0.02 dB. Slots are counted in shaders as the vendors' "
+        "normals, the largest is a supremum found in float64. Images are frames of 640 x 480 by deferred shading, "
+        "all else in 32-bit floats, lit by the normals that the emulated code gives back. Some thousand pixels of each "
+        "are compared, in 16 yaws or more of the encoding's axes, as one orientation is a matter of luck; effects are "
+        "drawn whole, in four. Slots are counted in shaders as the vendors' "
         "compilers make them, without the conversion that the render target does.",
         leads=True,
     ),

@@ -167,7 +167,8 @@ def _is_held(codec: Codec, storages: Sequence[Storage], rounding: str) -> bool:
 def _pipeline(effects: Sequence[ChosenEffect], makers: Sequence[SceneMaker], setting: Setting) -> Pipeline:
     """What renders the images. Raises UsageError for effects that do not go together or have nothing to do."""
     complaints: list[str] = []
-    made = pipeline_with(PIPELINES["hybrid"], effects, complaints)
+    # Pixels can be sampled of deferred shading; some effects need what is special to the hybrid pipeline.
+    made = pipeline_with(PIPELINES["hybrid" if effects else "deferred"], effects, complaints)
     complaints += filter(None, (lacking(effects, maker.name, maker.make(setting)) for maker in makers))
     if not made or complaints:
         raise UsageError(complaints[0])

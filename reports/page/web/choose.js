@@ -33,16 +33,32 @@ function codeAs(code, { aim, asked: usual }, { mixing, family }) {
   return Object.assign(made, { mean, largest, loss, cannot: known.map((use) => use.cannot).find(Boolean) ?? "" });
 }
 
+// The lowest PSNR of a code's images over some of its yaws.
+function lowest({ turns }, kept, equal) {
+  return Math.min(equal, ...turns.map((errors) => -10 * Math.log10(kept.reduce((sum, at) => sum + errors[at], 0) / kept.length)));
+}
+
+// The standard error of the gap between two codes' images, by leaving out one yaw after the other (turns.py).
+function gapError(one, other, equal) {
+  const count = Math.min(...[one, other].flatMap(({ turns }) => turns.map((errors) => errors.length))), yaws = [...Array(Number.isFinite(count) ? count : 0).keys()];
+  if (count < 2 || !one.turns.length || !other.turns.length) return 0;
+  const gaps = yaws.map((left) => yaws.filter((at) => at !== left)).map((kept) => lowest(one, kept, equal) - lowest(other, kept, equal));
+  const mean = gaps.reduce((a, b) => a + b) / count;
+  return Math.sqrt(((count - 1) / count) * gaps.reduce((sum, gap) => sum + (gap - mean) ** 2, 0));
+}
+
 // What qualifies, in its order, and why the others do not.
-function answerOf(question, asked, { hidden, affordable, step, same, least, much, hole }) {
-  const { said } = question, codes = question.codes.map((code) => codeAs(code, question, asked));
+function answerOf(question, asked, { hidden, affordable, step, same, least, much, hole, errors, equal }) {
+  const { said } = question, isImage = question.aim === "image", codes = question.codes.map((code) => codeAs(code, question, asked));
   const price = ({ encode, decode }) => Math.max(encode || 0, hidden) + asked.readers * Math.max(decode || 0, hidden);
   const doublings = (code) => Math.log2(price(code) / (hidden * (1 + asked.readers)));
   const loss = (code) => code.loss ?? Infinity, bits = (code) => code.bits || Infinity, tenth = (x) => (Number.isFinite(x) ? even(x * 10) / 10 : x);
-  const ties = (code) => [code.tie ?? Infinity, price(code), bits(code), code.priced ? (code.encode || 0) + asked.readers * (code.decode || 0) : 0];
+  const score = (code) => loss(code) + asked.worth * doublings(code), clearGap = (a, b) => (isImage ? Math.max(step, errors * gapError(a, b, equal)) : least);
+  const isClearlyBetter = (one, other) => loss(other) - loss(one) >= clearGap(one, other);
+  const ties = (code) => [price(code), bits(code), code.priced ? (code.encode || 0) + asked.readers * (code.decode || 0) : 0];
   const order = (code, count) => {
     const isEnough = code.largest !== null && 2 * code.largest <= asked.enough && price(code) <= affordable * hidden * (1 + asked.readers);
-    const first = isEnough ? [0, Number(code.table), bits(code), even(doublings(code)), tenth(loss(code))] : [1, even((loss(code) + asked.worth * doublings(code)) / step) * step, price(code), loss(code)];
+    const first = isEnough ? [0, Number(code.table), bits(code), even(doublings(code)), tenth(loss(code))] : [1, isImage ? score(code) : even(score(code) / step) * step, price(code), loss(code)];
     return [...first, ...ties(code)].slice(0, count);
   };
   const unfit = (code) => code.unfit || (code.long && !asked.accept_lengths ? said.length : "");
@@ -55,18 +71,23 @@ function answerOf(question, asked, { hidden, affordable, step, same, least, much
     return [code, isHoled && (!found || found === said.figure) ? said.hole : found];
   }));
   if (codes.some((code) => !why.get(code) && code.priced)) for (const code of codes) if (!why.get(code) && !code.priced) why.set(code, said.price);
-  const fit = codes.filter((code) => !why.get(code) && !code.beside).sort((a, b) => before(order(a), order(b)));
+  let fit = codes.filter((code) => !why.get(code) && !code.beside).sort((a, b) => before(order(a), order(b)));
+  if (isImage && fit.length && order(fit[0])[0] === 1) {
+    const tied = fit.filter((code) => code === fit[0] || score(code) - score(fit[0]) < clearGap(fit[0], code));
+    const first = tied.reduce((a, b) => (before([price(b), bits(b), score(b)], [price(a), bits(a), score(a)]) < 0 ? b : a));
+    fit = [first, ...fit.filter((code) => code !== first)];
+  }
   const best = fit[0], out = codes.filter((code) => why.get(code) && !code.beside);
   if (!best) return { codes, best, fit, out, why, others: [] };
   // Another storage of the same bytes is worth a word where it is much better, and not worse at its worst.
   const gain = (code) => loss(best) - loss(code), isMuchBetter = (code) => gain(code) >= much && (code.largest || Infinity) <= (best.largest || Infinity);
-  const elsewhere = codes.filter((code) => code.beside && !why.get(code) && isMuchBetter(code)).sort((a, b) => before(order(a, -4), order(b, -4))).slice(0, 1);
+  const elsewhere = codes.filter((code) => code.beside && !why.get(code) && isMuchBetter(code)).sort((a, b) => before(order(a, -3), order(b, -3))).slice(0, 1);
   const figures = (code) => [tenth(loss(code)), price(code), bits(code)];
   const beats = (one, other) => figures(one).every((x, i) => x <= figures(other)[i]) && figures(one).some((x, i) => x < figures(other)[i]);
   const exact = fit.reduce((a, b) => (before(figures(b), figures(a)) < 0 ? b : a));
-  const above = fit.filter((code) => code !== best && code !== exact && gain(code) >= least && !fit.some((other) => beats(other, code))).sort((a, b) => loss(b) - loss(a));
-  const rungs = above.reduce((kept, code) => (!kept.length || loss(kept.at(-1)) - loss(code) >= least ? [...kept, code] : kept), []).slice(0, 2);
-  if (exact !== best && gain(exact) >= least) rungs.push(exact);
+  const above = fit.filter((code) => code !== best && code !== exact && isClearlyBetter(code, best) && !fit.some((other) => beats(other, code))).sort((a, b) => loss(b) - loss(a));
+  const rungs = above.reduce((kept, code) => (!kept.length || isClearlyBetter(code, kept.at(-1)) ? [...kept, code] : kept), []).slice(0, 2);
+  if (exact !== best && isClearlyBetter(exact, best)) rungs.push(exact);
   const near = fit.filter((code) => rungs.includes(code) && code.storage !== best.storage && isMuchBetter(code)).slice(0, 1);
   return { codes, best, fit, out, why, rungs, exact, price, isSame: (a, b) => Math.abs(Math.log2(price(a) / price(b))) < same, others: elsewhere.length ? elsewhere : near, gain };
 }

@@ -3,8 +3,11 @@
 import json
 import math
 import random
+from contextlib import ExitStack
+from dataclasses import replace
 from operator import le
 
+import numpy as np
 import pytest
 import test_pick
 from test_pick import CODES
@@ -12,16 +15,20 @@ from typed import codecs_named
 
 from normalbench.bench.ground.output import cache
 from normalbench.bench.ground.output.errors import told
+from normalbench.bench.measures.images.whole import whole_images
 from normalbench.bench.measures.metrics.images import squared_error
 from normalbench.bench.measures.metrics.totals import psnr_db
-from normalbench.bench.subjects.normals.normal_sets import NORMAL_SETS
 from normalbench.bench.tables.pick import measure
 from normalbench.bench.tables.pick.answer import answered, groups
 from normalbench.bench.tables.pick.sentences import sentences
+from normalbench.bench.tables.quality import measure as quality
 from normalbench.bench.tables.registry import TABLES
-from normalbench.encodings.catalogue import ENCODINGS
-from normalbench.gbuffer.display import displayed
+from normalbench.encodings.catalogue import ENCODINGS, LIGHT_BUFFERS
+from normalbench.gbuffer.frame.plan import Plan
+from normalbench.gbuffer.layouts.layout import engines_space
 from normalbench.gbuffer.layouts.presets import LAYOUTS
+from normalbench.gbuffer.pipelines import PIPELINES
+from normalbench.gbuffer.render import rendering
 from normalbench.gbuffer.scenes.catalogue import SCENES
 from normalbench.gbuffer.scenes.setting import Setting
 
@@ -36,20 +43,21 @@ rows = test_pick.rows
     ],
 )
 def test_images_lit_by_emulated_codes_are_those_of_the_g_buffer(gl, scene, name):
-    """Against the code in a target, encoded and decoded in shaders: to 0.02 dB, at a specular power of 1024."""
+    """Against the code in a target, encoded and decoded in shaders, in the space that engines keep it in: to 0.02 dB,
+    at a specular power of 1024."""
     (codec,) = codecs_named(*name.split("/"), "nearest")
-    maker = SCENES[scene]
-    question = (NORMAL_SETS["sphere"](64, 0), (maker,), Setting(lights=8), (1024.0,), {"beside": False})
-    case, drawing = measure.PickCase(codec, *question), measure.Pictures(gl)
-    right, relit, drawn = (
-        images[0]
-        for images in (
-            drawing._drawn(case, maker, LAYOUTS["fp32"])[0],
-            drawing._relit(case, maker),
-            drawing._drawn(case, maker, LAYOUTS["fp32"].with_codec(codec))[0],
-        )
-    )
-    found, expected = (psnr_db(squared_error(displayed(image), displayed(right))[0]) for image in (relit, drawn))
+    maker, setting, pipeline = SCENES[scene], Setting(lights=8), PIPELINES["hybrid"]
+    power = None if maker.is_metal_rough else 1024.0
+    turn = np.eye(3) if engines_space(codec.encoding) == "world" else None
+    layout = replace(LAYOUTS["fp32"], space=engines_space(codec.encoding)).with_codec(codec)
+    with ExitStack() as stack:
+        image = whole_images(gl, stack, pipeline, maker, setting, [power])[power]
+        relit = image.shown((lambda n, p: quality.round_trip(codec, n, p), turn))
+        plan = Plan((640, 480), 1, layout, LIGHT_BUFFERS["rgba32f"], 2, True, 1.0)
+        made = stack.enter_context(rendering(gl, pipeline, image.scene, plan))
+        made.draw()
+        drawn = image.display.image(made.image())
+    found, expected = (psnr_db(squared_error(shown, image.exact)[0]) for shown in (relit, drawn))
     assert found == pytest.approx(expected, abs=0.02) and 20 < expected < 80
 
 
@@ -101,7 +109,31 @@ def rank(row: dict) -> tuple:
         return (price, not enough, lost)
     if enough and price <= 2 * hidden:
         return (0, row["table"], row["bits"], round(math.log2(price / hidden)), round(lost, 1))
-    return (1, round(2 * (lost + row["worth"] * math.log2(price / hidden))), price, lost)
+    score = lost + row["worth"] * math.log2(price / hidden)
+    return (1, score if row["aim"] == "image" else round(2 * score), price, lost)
+
+
+def lowest(row: dict, yaws: list[int]) -> float:
+    """The PSNR of the worst image over some yaws."""
+    errors = [by_pole["y"] for by_pole in json.loads(row["image_errors"]).values()]
+    return min(70.0, *(-10 * math.log10(sum(of[yaw] for yaw in yaws) / len(yaws)) for of in errors))
+
+
+def ties(row: dict, best: dict) -> bool:
+    """Whether two codes are less than half a decibel apart, or less than two standard errors of the four yaws."""
+    gaps = [lowest(row, kept) - lowest(best, kept) for kept in ([1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2])]
+    error = math.sqrt(3 / 4 * sum((gap - sum(gaps) / 4) ** 2 for gap in gaps))
+    return rank(row)[0] == 1 and rank(row)[1] - rank(best)[1] < max(0.5, 2 * error)
+
+
+def taken(fit: list[dict]) -> list[dict]:
+    """The codes that may be the answer: those of the least rank; by images, the cheapest of those that tie with it."""
+    least = min(map(rank, fit), default=None)
+    first = [row for row in fit if rank(row) == least]
+    if not first or least[0] != 1 or first[0]["aim"] != "image":
+        return first
+    tied = [row for row in fit if any(row is one or ties(row, one) for one in first)]
+    return [row for row in tied if paid(row) == min(map(paid, tied))]
 
 
 def could_be_asked_for(row: dict, asked: dict) -> bool:
@@ -162,6 +194,14 @@ def row_of(encoding: str, storage: str, **figures: object) -> dict:
     return TABLES["pick"].empty(SCENES_OF_IMAGES) | QUESTION | about | figures
 
 
+def images_at_random(chance: random.Random) -> dict:
+    """Errors of each image over four yaws, by which many codes tie."""
+    level, spread = chance.uniform(20, 80), chance.choice([0.05, 1.0])
+    errors = {name: [10 ** (-chance.gauss(level, spread) / 10) for _ in range(4)] for name in SCENES_OF_IMAGES}
+    row = {f"image_db_{name}": -10 * math.log10(sum(four) / 4) for name, four in errors.items()}
+    return row | {"image_pole": "y", "image_errors": json.dumps({name: {"y": four} for name, four in errors.items()})}
+
+
 def rows_at_random(chance: random.Random) -> list[dict]:
     """Prices and errors of a few sizes, so that many are equal, and codes of every kind that is left out."""
     rows = []
@@ -175,7 +215,7 @@ def rows_at_random(chance: random.Random) -> list[dict]:
             figures |= {"bits": chance.choice([16, 17, 20]), "table": chance.random() < 0.1}
             figures |= {"length_share": chance.choice([0.0, 0.0, 0.0, 0.7])}
             if chance.random() < 0.9:
-                figures |= {f"image_db_{name}": chance.uniform(20, 80) for name in SCENES_OF_IMAGES}
+                figures |= images_at_random(chance)
             rows.append(row_of(encoding, storage, **figures))
     return rows
 
@@ -203,8 +243,8 @@ def check(group: list[dict], asked: dict) -> None:
     fit = [row for row in fit if qualifies(row, asked)]
     assert {row["encoding"] for row in group if not row["left_out"]} == {row["encoding"] for row in fit}, asked
     best = [row["encoding"] for row in group if "best" in (row["place"] or "").split(", ")]
-    least = min(map(rank, fit), default=None)
-    assert len(best) == bool(fit) and all(rank(row) == least for row in fit if row["encoding"] in best), (asked, best)
+    could_be = [row["encoding"] for row in taken(fit)]
+    assert len(best) == bool(fit) and set(best) <= set(could_be), (asked, best, could_be)
     for row in fit:
         figures = {one["encoding"]: (round(loss(one, asked["aim"]), 1), paid(one), one["bits"]) for one in fit}
         own = figures[row["encoding"]]
@@ -213,10 +253,12 @@ def check(group: list[dict], asked: dict) -> None:
 
 
 def test_no_code_changes_the_order_of_two_others():
-    """Whichever code of the catalogue is taken away: those that pass the veto stay in their order."""
+    """Whichever code of the catalogue is taken away: those that pass the veto stay in their order. By images, what ties
+    with the best is a matter of the best."""
     chance = random.Random(1)
     for _ in range(40):
         asked = asked_at_random(chance)
+        asked["aim"] = "angle" if asked["aim"] == "image" else asked["aim"]
         given = [row | asked | for_readers(row, asked["readers"]) for row in rows_at_random(chance)]
         for group in groups(answered(given)).values():
             whole = [row["encoding"] for row in group if not row["left_out"]]
@@ -326,7 +368,9 @@ def test_each_way_to_round_is_a_question(run, tmp_path):
     nearest, cut = (found["octahedral", rounding] for rounding in ("nearest", "truncate"))
     for figure in ("angle_mean_deg", "angle_sup_deg"):
         assert cut[figure] / nearest[figure] == pytest.approx(2, rel=0.03), figure
-    assert nearest["image_db_room_47"] - cut["image_db_room_47"] == pytest.approx(6, abs=1)
+    # On floors and walls the codes of both ways are as far off.
+    decibels = [json.loads(row["image_classes"])["room_47"]["glossy"] for row in (nearest, cut)]
+    assert decibels[0] - decibels[1] == pytest.approx(6, abs=1)
     groups_of = [group for group in groups(asked).values() if group[0]["rounding"] == "truncate"]
     (said,) = (" ".join(sentences(group)) for group in groups_of)
     assert said.startswith("rg8 rounded by truncate, on sphere: take octahedral.")

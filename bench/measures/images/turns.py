@@ -1,0 +1,72 @@
+"""What an encoding's orientation does to image errors: the best pole, the mean over yaws, and how exact it is.
+
+Mean squared errors of displayed images, by image, by pole, of each yaw in its order: {"studio": {"x": [...], ...}}. An
+encoding in view space has one orientation, whose pole is "".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from ..metrics.totals import psnr_db
+from .orientations import jackknife
+
+# Yaws of every encoding, of those near the best, and of those whose figure is not exact enough.
+FIRST, ALL, MOST = 4, 16, 64
+# How near, and how exact, in decibels.
+NEAR_DB, EXACT_DB = 1.5, 0.25
+# Images above it are equal.
+INDISTINGUISHABLE_DB = 70.0
+VIEW_SPACE = ""
+
+Errors = Mapping[str, Mapping[str, Sequence[float]]]
+
+
+def best_pole(errors: Errors) -> str:
+    """Return the pole whose worst image is best, by as many yaws as every encoding of the best has."""
+    poles = next(iter(errors.values()))
+    return max(poles, key=lambda pole: worst_db(errors, pole, range(min(ALL, count_of(errors, pole)))))
+
+
+def count_of(errors: Errors, pole: str) -> int:
+    """Return how many yaws every image has at a pole."""
+    return min(len(by_pole[pole]) for by_pole in errors.values())
+
+
+def image_db(errors: Sequence[float] | np.ndarray) -> float:
+    """Return the PSNR of the mean squared error over yaws."""
+    return psnr_db(float(np.mean(errors)))
+
+
+def worst_db(errors: Errors, pole: str, yaws: Sequence[int] | np.ndarray) -> float:
+    """Return the lowest PSNR of all images over some yaws."""
+    kept = np.asarray(yaws)
+    return min(image_db(np.asarray(by_pole[pole])[kept]) for by_pole in errors.values())
+
+
+def error_db(errors: Errors, pole: str) -> float | None:
+    """Return the standard error of the lowest PSNR; None of a single orientation."""
+    yaws = range(count_of(errors, pole))
+    return jackknife(lambda kept: worst_db(errors, pole, kept), yaws) if len(yaws) > 1 else None
+
+
+def two_worst_db(errors: Sequence[float]) -> float:
+    """Return the PSNR of the mean over the two worst yaws."""
+    return image_db(sorted(errors)[-2:])
+
+
+def gap_db(errors: Errors, other: Errors) -> tuple[float, float]:
+    """Return how far the lowest PSNR of an encoding is above that of another one, and the standard error of that.
+
+    Each is at its best pole, over the yaws that both have. One orientation has no error.
+    """
+    poles = best_pole(errors), best_pole(other)
+    yaws = range(min(count_of(errors, poles[0]), count_of(other, poles[1])))
+
+    def gap(kept: Sequence[int] | np.ndarray) -> float:
+        found = (min(worst_db(*part, kept), INDISTINGUISHABLE_DB) for part in zip((errors, other), poles, strict=True))
+        return next(found) - next(found)
+
+    return gap(yaws), jackknife(gap, yaws) if len(yaws) > 1 else 0.0

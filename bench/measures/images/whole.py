@@ -1,0 +1,137 @@
+"""Whole frames of a scene by exact normals and by those of encodings; its surfaces are drawn once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ....encodings.catalogue import LIGHT_BUFFERS
+from ....gbuffer.display import Display
+from ....gbuffer.frame.plan import Plan
+from ....gbuffer.gl.device import Device
+from ....gbuffer.layouts.presets import LAYOUTS
+from ....gbuffer.pipelines import Pipeline
+from ....gbuffer.render import Rendering, rendering
+from ....gbuffer.scenes.catalogue import SceneMaker
+from ....gbuffer.scenes.scene import Scene
+from ....gbuffer.scenes.setting import Setting
+from ...subjects.normals.domains import in_domain
+
+if TYPE_CHECKING:
+    from jaxtyping import Bool, Float
+
+SIZE = (640, 480)
+# Surfaces that lie along the world's axes, and the others by perceptual roughness, each up to its own.
+AXIS_ALIGNED = "floors and walls"
+MIRROR, GLOSSY, ROUGH = "mirror", "glossy", "rough"
+UP_TO = {MIRROR: 0.2, GLOSSY: 0.5, ROUGH: np.inf}
+# What is closer to an axis counts as along it: 1 - cos of 0.1 degrees.
+ALONG = 1.5e-6
+# From unit normals and view positions, float32 of shape (count, 3), to what an encoding decodes.
+Trip = Callable[[np.ndarray, np.ndarray], np.ndarray]
+# A trip, and the rotation from the world's axes to the encoding's, (3, 3); None for view space.
+Job = tuple[Trip, np.ndarray | None]
+
+
+class WholeImage:
+    """A scene at one moment.
+
+    Attributes:
+        scene: that moment.
+        display: how it is shown.
+        exact: the displayed image of exact normals, (height, width, 3), row 0 on top.
+        surfaces: as `Rendering.surfaces` gives them of layout fp32.
+        classes: of each pixel the number of its class among AXIS_ALIGNED and those of UP_TO; -1 where no surface is
+            seen, or one through another; (height, width).
+        places: view positions, float32 of shape (height, width, 3).
+        to_world: view space to the world's axes, (3, 3).
+    """
+
+    def __init__(self, scene: Scene, maker: SceneMaker, made: Rendering):
+        made.frame.show(scene)
+        self.scene, self._made = scene, made
+        self.surfaces = made.surfaces()
+        self._covered = made.covered(self.surfaces)
+        opaque, linear = made.lit(self.surfaces, upto="transparent"), made.lit(self.surfaces)
+        self.display: Display = maker.display(linear)
+        self.exact = self.display.image(linear)
+        self.to_world = np.linalg.inv(scene.view.matrix())[:3, :3]
+        self.places = np.zeros((*self.covered.shape, 3), np.float32)
+        self.places[::-1][self._covered.pixels] = self._covered.position
+        is_seen = self.covered & ~np.any(linear != opaque, axis=-1)
+        self.classes = np.where(is_seen, self._all_classes(), -1)
+
+    @cached_property
+    def covered(self) -> Bool[np.ndarray, "height width"]:
+        """Where a surface is."""
+        return self._covered.pixels[::-1]
+
+    def _all_classes(self) -> np.ndarray:
+        power = self.surfaces[2][..., 3]
+        # r = (2 / (s + 2))^(1/4), B. Karis, Specular BRDF Reference, 2013
+        roughness = power if self.scene.is_metal_rough else (2.0 / (power + 2.0)) ** 0.25
+        along = np.abs(self.surfaces[0][..., :3] @ self.to_world.T).max(axis=-1) > 1 - ALONG
+        return np.where(along, 0, 1 + np.searchsorted(list(UP_TO.values()), roughness))
+
+    def decoded(
+        self, job: Job, normals: Float[np.ndarray, "count 3"], positions: Float[np.ndarray, "count 3"]
+    ) -> Float[np.ndarray, "count 3"]:
+        """Return what comes back of view-space normals, in view space."""
+        trip, turn = job
+        if turn is None:
+            return trip(normals, positions)
+        matrix = turn @ self.to_world
+        given = (normals.astype(np.float64) @ matrix.T).astype(np.float32)
+        return (trip(given, positions).astype(np.float64) @ matrix).astype(np.float32)
+
+    def shown(self, job: Job) -> Float[np.ndarray, "height width 3"]:
+        """Return the displayed image by an encoding's normals."""
+        # To list what is drawn takes as long as to light it.
+        if self._made.frame.scene is not self.scene:
+            self._made.frame.show(self.scene)
+        normals = self.decoded(job, self._covered.normals, self._covered.position)
+        return self.display.image(self._made.lit(self._covered.with_normals(self.surfaces, normals)))
+
+    def held_by(self, domain: str) -> Bool[np.ndarray, "height width"]:
+        """Return where a surface's normal lies in a domain."""
+        return self.covered & self.is_held(self.surfaces[0][..., :3], self.places, domain)
+
+    @staticmethod
+    def is_held(
+        normals: Float[np.ndarray, "*shape 3"], positions: Float[np.ndarray, "*shape 3"], domain: str
+    ) -> Bool[np.ndarray, "*shape"]:
+        """Return which normals lie in a domain."""
+        return in_domain(normals, positions, domain)
+
+    def by_class(self, jobs: Sequence[Job], domain: str) -> dict[str, Float[np.ndarray, " jobs"]]:
+        """Return the mean squared error of each class, and as "" that of the frame; as `SampledImage.by_class`."""
+        held, rows = self.held_by(domain), []
+        numbers = {"": held} | {name: held & (self.classes == at) for at, name in enumerate((AXIS_ALIGNED, *UP_TO))}
+        for job in jobs:
+            shown = self.shown(job)
+            errors = np.mean(np.where(np.isfinite(shown), shown - self.exact, 1.0) ** 2, axis=-1)
+            rows.append({name: errors[mask].mean() for name, mask in numbers.items() if mask.any()})
+        return {name: np.array([row[name] for row in rows]) for name in (rows[0] if rows else ())}
+
+
+def whole_images(
+    device: Device,
+    stack: ExitStack,
+    pipeline: Pipeline,
+    maker: SceneMaker,
+    setting: Setting,
+    powers: Sequence[float | None],
+) -> dict[float | None, WholeImage]:
+    """Return a scene's images at each specular power (None where its materials have none), open with the stack."""
+    scene = maker.make(setting)
+    plan = Plan(
+        maker.within(SIZE), 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], max(pipeline.light_targets), True, 1.0
+    )
+    made = stack.enter_context(rendering(device, pipeline, scene, plan))
+    made.draw()
+    moments = {power: scene if power is None else scene.with_power(power) for power in powers}
+    return {power: WholeImage(moment, maker, made) for power, moment in moments.items()}

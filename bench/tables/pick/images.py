@@ -1,0 +1,207 @@
+"""Images that are lit by what codes give back: their errors in many orientations, and the pictures of one."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ....encodings.codecs.codec import Codec
+from ....gbuffer.gl.device import Device
+from ....gbuffer.layouts.layout import WORLD, engines_space
+from ....gbuffer.layouts.words import LayoutError
+from ....gbuffer.scenes.catalogue import SCENES, SceneMaker
+from ...ground.output import cache as kept
+from ...ground.output.errors import tell
+from ...measures.images import turns
+from ...measures.images.orientations import POLES, rotations, yaws
+from ...measures.images.sampled import SampledImage
+from ...measures.images.whole import Trip, WholeImage, whole_images
+from ...shaders.code.twin import has_twin
+from .. import shots
+from ..motion.trips import trip_of
+from ..quality import measure as quality
+from ..table import Row
+from .answer import IMAGE, image_name
+from .kept_figures import figures_key
+
+if TYPE_CHECKING:
+    from .measure import PickCase
+
+# Not a pole: independent random rotations.
+TURNED = "turned"
+# By image and pole, by class ("" for the frame), the error of each orientation.
+Found = dict[str, dict[str, dict[str, list[float]]]]
+
+
+class Images:
+    """Images of a question's scenes. Each scene's surfaces are drawn once; a context manager that lets go of them."""
+
+    def __init__(self, device: Device):
+        self._device, self._stack = device, ExitStack()
+        self._whole: dict[tuple[Any, ...], Mapping[float | None, WholeImage]] = {}
+        self._sampled: dict[int, SampledImage] = {}
+        self._trips: dict[Codec, Trip] = {}
+
+    def __enter__(self) -> Images:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stack.close()
+
+    def first(self, case: PickCase) -> Row:
+        """Return the columns of images by a few yaws: enough to tell what is far from the best."""
+        return columns(self._errors(case, 0, turns.FIRST, _poles(case)))
+
+    def of(self, case: PickCase) -> Row:
+        """Return the columns of images: PSNRs over covered pixels that the encoding is made for, at each power in each
+        scene; none where the device or a layout has no room for the code.
+
+        What filters or traces is drawn whole, which takes long: by a few yaws.
+        """
+        poles = _poles(case)
+        if case.said.get("effects"):
+            found = self._errors(case, 0, turns.FIRST, poles)
+        else:
+            found, count = self._errors(case, 0, turns.ALL, [*poles, TURNED] if len(poles) > 1 else poles), turns.ALL
+            while found and count < turns.MOST and (turns.error_db(*_frames_and_pole(found)) or 0.0) > turns.EXACT_DB:
+                _, pole = _frames_and_pole(found)
+                _extend(found, self._errors(case, count, count, [pole]))
+                count *= 2
+        row = columns(found)
+        if case.codec.encoding.domain != "sphere":
+            lost = {maker.name: self._lost_percent(case, maker) for maker in case.makers}
+            row["image_lost_scene"] = max(lost, key=lambda name: lost[name], default=None)
+            row["image_lost_percent"] = max(lost.values(), default=0.0)
+        return row
+
+    def _errors(self, case: PickCase, first: int, count: int, poles: Sequence[str]) -> Found:
+        """Errors of `count` yaws from number `first` on, and of as many rotations for TURNED."""
+        found: Found = {}
+        for maker in case.makers:
+            known = maker.name if maker is SCENES.get(maker.name) else None
+            about = (case.setting, case.powers, case.said.get("effects") or "", first, count, tuple(poles))
+            key = figures_key("image errors", case.codec, known, *about, self._device.renderer)
+            try:
+                found |= kept.figures(key, partial(self._errors_now, case, maker, first, count, poles))
+            except (LayoutError, *shots.UNMEASURABLE):
+                continue
+        return found
+
+    def _errors_now(self, case: PickCase, maker: SceneMaker, first: int, count: int, poles: Sequence[str]) -> Found:
+        trip, domain = self._trip(case.codec), case.codec.encoding.domain
+        found: Found = {}
+        for power, whole in self._images(case, maker).items():
+            image = whole if case.said.get("effects") else self._sample(whole, case.setting.seed)
+            by_pole = {
+                pole: image.by_class([(trip, turn) for turn in _turns(pole, first, count, case.setting.seed)], domain)
+                for pole in poles
+            }
+            if all(by_pole.values()):
+                found[image_name(maker.name, power)] = {
+                    pole: {name: values.tolist() for name, values in means.items()} for pole, means in by_pole.items()
+                }
+        return found
+
+    def _trip(self, codec: Codec) -> Trip:
+        if codec not in self._trips:
+            if has_twin(codec.encoding):
+                self._trips[codec] = partial(quality.round_trip, codec)
+            elif codec.encoding.is_half:
+                raise LayoutError(f"{codec.name}: the renderer computes in 32 bits")
+            else:
+                passes = self._stack.enter_context(trip_of(codec))
+                self._trips[codec] = lambda normals, positions: passes(normals, positions)[1]
+        return self._trips[codec]
+
+    def _images(self, case: PickCase, maker: SceneMaker) -> Mapping[float | None, WholeImage]:
+        """A scene's images, drawn once for all codes."""
+        question = (maker, case.setting, case.powers, case.pipeline)
+        if question not in self._whole:
+            powers = case.powers_of(maker)
+            found = whole_images(self._device, self._stack, case.pipeline, maker, case.setting, powers)
+            covered = 100.0 * float(np.mean(next(iter(found.values())).covered))
+            shots.require_surface(maker, covered > 0)
+            for line in shots.says_little(maker.name, covered):
+                tell(line)
+            self._whole[question] = found
+        return self._whole[question]
+
+    def _sample(self, whole: WholeImage, seed: int) -> SampledImage:
+        if id(whole) not in self._sampled:
+            self._sampled[id(whole)] = SampledImage(whole, seed, self._device, self._stack)
+        return self._sampled[id(whole)]
+
+    def _lost_percent(self, case: PickCase, maker: SceneMaker) -> float:
+        """The share of covered pixels whose normals the encoding is not made for."""
+        whole = next(iter(self._images(case, maker).values()))
+        held = np.count_nonzero(whole.held_by(case.codec.encoding.domain))
+        return 100.0 * (1 - held / max(np.count_nonzero(whole.covered), 1))
+
+    def shown(self, case: PickCase, maker: SceneMaker, pole: str) -> dict[float | None, tuple[np.ndarray, np.ndarray]]:
+        """Return at each power (None where there is none) the displayed image of the first yaw, and that of exact
+        normals: (height, width, 3), 0 to 1.
+
+        Raises:
+            LayoutError, or one of shots.UNMEASURABLE: there is no room for the code.
+        """
+        (turn,) = _turns(pole, 0, 1, case.setting.seed)
+        job = (self._trip(case.codec), turn)
+        return {power: (whole.shown(job), whole.exact) for power, whole in self._images(case, maker).items()}
+
+
+def _poles(case: PickCase) -> Sequence[str]:
+    is_of_world = engines_space(case.codec.encoding) == WORLD
+    return list(POLES) if is_of_world else [turns.VIEW_SPACE]
+
+
+def _turns(pole: str, first: int, count: int, seed: int) -> Sequence[np.ndarray | None]:
+    """From the world's axes to a code's: in many orientations, or in none where it is in view space."""
+    if pole == turns.VIEW_SPACE:
+        return [None]
+    if pole == TURNED:
+        return list(rotations(first, count, seed))
+    return [POLES[pole] @ yaw for yaw in yaws(first, count, seed)]
+
+
+def _extend(found: Found, more: Found) -> None:
+    for name, by_pole in more.items():
+        for pole, by_class in by_pole.items():
+            for of, values in by_class.items():
+                found[name][pole][of] = found[name][pole][of] + values
+
+
+def _frames(found: Found) -> turns.Errors:
+    """The errors of whole frames, by pole."""
+    return {
+        name: {pole: by_class[""] for pole, by_class in by_pole.items() if pole != TURNED}
+        for name, by_pole in found.items()
+    }
+
+
+def _frames_and_pole(found: Found) -> tuple[turns.Errors, str]:
+    frames = _frames(found)
+    return frames, turns.best_pole(frames)
+
+
+def columns(found: Found) -> Row:
+    """Return the columns of a code's images; nothing where it has none."""
+    if not found:
+        return {}
+    frames, pole = _frames_and_pole(found)
+    row: Row = {f"{IMAGE}{name}": turns.image_db(by_pole[pole]) for name, by_pole in frames.items()}
+    worst = min(frames, key=lambda name: row[f"{IMAGE}{name}"])
+    by_pole = {other: turns.worst_db(frames, other, range(turns.count_of(frames, other))) for other in frames[worst]}
+    row |= {"image_se_db": turns.error_db(frames, pole), "image_two_worst_db": turns.two_worst_db(frames[worst][pole])}
+    row |= {"image_pole": pole or None, "image_wrong_pole_db": by_pole[pole] - min(by_pole.values()) if pole else None}
+    if all(TURNED in by_pole for by_pole in found.values()):
+        row["image_turned_db"] = min(turns.image_db(by_pole[TURNED][""]) for by_pole in found.values())
+    classes = {
+        name: {of: turns.image_db(errors) for of, errors in by_pole[pole].items() if of}
+        for name, by_pole in found.items()
+    }
+    return row | {"image_classes": json.dumps(classes), "image_errors": json.dumps(frames)}

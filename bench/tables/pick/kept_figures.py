@@ -1,0 +1,19 @@
+"""Where figures of codes are kept."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import jax
+
+from ....encodings.catalogue import is_in_catalogue
+from ....encodings.codecs.codec import Codec
+from ...ground.output.cache import key_of
+from ...ground.output.sources import sources
+
+
+def figures_key(what: str, codec: Codec, *parts: Any) -> str:
+    """Return the key of a figure of a code; empty if it may be another next time, which None among the parts says."""
+    if None in parts or not is_in_catalogue(codec.encoding):
+        return ""
+    return key_of("pick", what, sources(), jax.__version__, codec.name, *map(repr, parts))
