@@ -168,6 +168,7 @@ OWN_JSON = {
     "bench/keep/plain.py": "rows on their way",
     "bench/measures/metrics/totals.py": "totals on their way",
     "bench/shaders/isa/child.py": "what a child is asked",
+    "bench/tables/pick/answer.py": "a column of JSON",
     "bench/measures/worst_case/recorded.py": "suprema that come with the program",
     "bench/shaders/isa/driver_files.py": "files of drivers that are installed",
     "bench/shaders/isa/nvidia/child.py": "what a child is asked",

@@ -1,6 +1,7 @@
 """The program on Python of Windows, in Wine: its figures are Linux's, by JAX, OpenGL and Vulkan."""
 
 import json
+import os
 import subprocess
 import sys
 
@@ -32,7 +33,14 @@ def well(done):
 def test_figures_are_those_of_linux(windows, tmp_path, backend):
     words = ["quality", "--encoding", "octahedral,xyz", "--storage", "rg8,rgb10a2,rg16f", "--backend", backend]
     words += ["--count", "65536", "--format", "json"]
-    here = subprocess.run([sys.executable, "-c", START, *words], capture_output=True, text=True, check=True).stdout
+    # As there, without a C compiler.
+    here = subprocess.run(
+        [sys.executable, "-c", START, *words],
+        env={**os.environ, "PATH": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout
     there = well(windows.command(tmp_path, *words))
     figures = [
         [{name: value for name, value in row.items() if isinstance(value, int | float)} for row in json.loads(text)]
