@@ -11,7 +11,7 @@ import numpy as np
 
 from ....gbuffer.gl.device import Device
 from ....gbuffer.sampled import SampledScene
-from .whole import AXIS_ALIGNED, UP_TO, Job, WholeImage
+from .whole import AXIS_ALIGNED, UP_TO, Trip, Turn, WholeImage
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -65,22 +65,24 @@ class SampledImage:
         self._lit = SampledScene(device, stack, whole.scene, (width, height), pixels, self.positions, ROWS)
         self._exact = whole.display.image(self._lit.lit(whole.scene, self._surfaces, self.normals[None])[0])
 
-    def errors(self, jobs: Sequence[Job]) -> Float[np.ndarray, "jobs count"]:
-        """Return the squared error of each displayed pixel, the mean of its channels; 1 where it is no number."""
-        return np.concatenate([self._errors(jobs[first : first + ROWS]) for first in range(0, len(jobs), ROWS)])
+    def errors(self, trip: Trip, turns: Sequence[Turn]) -> Float[np.ndarray, "turns count"]:
+        """Return the squared error of each displayed pixel in each orientation of an encoding, the mean of its
+        channels; 1 where it is no number."""
+        parts = (turns[first : first + ROWS] for first in range(0, len(turns), ROWS))
+        return np.concatenate([self._errors(trip, part) for part in parts])
 
-    def _errors(self, jobs: Sequence[Job]) -> np.ndarray:
-        normals = np.stack([self._whole.decoded(job, self.normals, self.positions) for job in jobs])
+    def _errors(self, trip: Trip, turns: Sequence[Turn]) -> np.ndarray:
+        normals = self._whole.decoded(trip, turns, self.normals, self.positions)
         shown = self._whole.display.image(self._lit.lit(self._whole.scene, self._surfaces, normals))
         return np.mean(np.where(np.isfinite(shown), shown - self._exact, 1.0) ** 2, axis=-1)
 
-    def by_class(self, jobs: Sequence[Job], domain: str) -> dict[str, Float[np.ndarray, " jobs"]]:
+    def by_class(self, trip: Trip, turns: Sequence[Turn], domain: str) -> dict[str, Float[np.ndarray, " turns"]]:
         """Return the mean squared error of each class, and as "" that of the frame, which has classes by their share.
 
         Args:
             domain: pixels whose normals lie outside do not count; a class without others is left out.
         """
-        return self._means(self.errors(jobs), self._whole.is_held(self.normals, self.positions, domain))
+        return self._means(self.errors(trip, turns), self._whole.is_held(self.normals, self.positions, domain))
 
     def _means(self, errors: np.ndarray, held: np.ndarray) -> dict[str, np.ndarray]:
         means, total, whole = {}, np.zeros(len(errors)), 0.0
@@ -108,7 +110,7 @@ def _changes(whole: WholeImage, seed: int) -> np.ndarray:
 
     total = np.zeros(whole.classes.shape)
     for _ in range(TILTS):
-        total += np.mean((whole.shown((tilted, None)) - whole.exact) ** 2, axis=-1)
+        total += np.mean((whole.shown(tilted, None) - whole.exact) ** 2, axis=-1)
     return np.where(np.isfinite(total), total / TILTS, 0.0)
 
 

@@ -33,8 +33,8 @@ UP_TO = {MIRROR: 0.2, GLOSSY: 0.5, ROUGH: np.inf}
 ALONG = 1.5e-6
 # From unit normals and view positions, float32 of shape (count, 3), to what an encoding decodes.
 Trip = Callable[[np.ndarray, np.ndarray], np.ndarray]
-# A trip, and the rotation from the world's axes to the encoding's, (3, 3); None for view space.
-Job = tuple[Trip, np.ndarray | None]
+# The rotation from the world's axes to the encoding's, (3, 3); None for an encoding in view space.
+Turn = np.ndarray | None
 
 
 class WholeImage:
@@ -78,22 +78,20 @@ class WholeImage:
         return np.where(along, 0, 1 + np.searchsorted(list(UP_TO.values()), roughness))
 
     def decoded(
-        self, job: Job, normals: Float[np.ndarray, "count 3"], positions: Float[np.ndarray, "count 3"]
-    ) -> Float[np.ndarray, "count 3"]:
-        """Return what comes back of view-space normals, in view space."""
-        trip, turn = job
-        if turn is None:
-            return trip(normals, positions)
-        matrix = turn @ self.to_world
-        given = (normals.astype(np.float64) @ matrix.T).astype(np.float32)
-        return (trip(given, positions).astype(np.float64) @ matrix).astype(np.float32)
+        self, trip: Trip, turns: Sequence[Turn], normals: Float[np.ndarray, "count 3"], positions: np.ndarray
+    ) -> Float[np.ndarray, "turns count 3"]:
+        """Return what comes back of view-space normals, in view space, in each orientation of an encoding."""
+        matrices = [np.eye(3) if turn is None else turn @ self.to_world for turn in turns]
+        given = np.concatenate([normals @ matrix.T for matrix in matrices]).astype(np.float32)
+        decoded = trip(given, np.tile(positions, (len(turns), 1))).reshape(len(turns), *normals.shape)
+        return np.stack([part @ matrix for part, matrix in zip(decoded, matrices, strict=True)]).astype(np.float32)
 
-    def shown(self, job: Job) -> Float[np.ndarray, "height width 3"]:
+    def shown(self, trip: Trip, turn: Turn) -> Float[np.ndarray, "height width 3"]:
         """Return the displayed image by an encoding's normals."""
         # To list what is drawn takes as long as to light it.
         if self._made.frame.scene is not self.scene:
             self._made.frame.show(self.scene)
-        normals = self.decoded(job, self._covered.normals, self._covered.position)
+        (normals,) = self.decoded(trip, [turn], self._covered.normals, self._covered.position)
         return self.display.image(self._made.lit(self._covered.with_normals(self.surfaces, normals)))
 
     def held_by(self, domain: str) -> Bool[np.ndarray, "height width"]:
@@ -107,12 +105,12 @@ class WholeImage:
         """Return which normals lie in a domain."""
         return in_domain(normals, positions, domain)
 
-    def by_class(self, jobs: Sequence[Job], domain: str) -> dict[str, Float[np.ndarray, " jobs"]]:
+    def by_class(self, trip: Trip, turns: Sequence[Turn], domain: str) -> dict[str, Float[np.ndarray, " turns"]]:
         """Return the mean squared error of each class, and as "" that of the frame; as `SampledImage.by_class`."""
         held, rows = self.held_by(domain), []
         numbers = {"": held} | {name: held & (self.classes == at) for at, name in enumerate((AXIS_ALIGNED, *UP_TO))}
-        for job in jobs:
-            shown = self.shown(job)
+        for turn in turns:
+            shown = self.shown(trip, turn)
             errors = np.mean(np.where(np.isfinite(shown), shown - self.exact, 1.0) ** 2, axis=-1)
             rows.append({name: errors[mask].mean() for name, mask in numbers.items() if mask.any()})
         return {name: np.array([row[name] for row in rows]) for name in (rows[0] if rows else ())}

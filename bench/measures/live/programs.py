@@ -14,7 +14,9 @@ from ....encodings.codecs.codec import Codec
 from ....encodings.storages.storage import STORAGES, Storage
 from ....encodings.vec import CONSTANTS
 from ....gbuffer.gl.shader import ShaderError, Source
+from ...ground.output import cache as kept
 from ...ground.output.errors import UsageError
+from ...ground.output.sources import sources
 from ...shaders.code.channels import Channels
 from ...shaders.code.files import Code, code_of
 from ...shaders.code.kinds.normal import is_catalogues
@@ -36,11 +38,16 @@ class NotLiveError(ValueError):
 
 @cache
 def program(codec: Codec) -> Record:
-    """A codec as the page's scripts read it; flat but for `channels` and `tables`.
+    """A codec as the page's scripts read it; flat but for `channels` and `tables`. What was written before is kept.
 
     Raises:
         NotLiveError: its GLSL cannot be translated, its look-up tables are too large, or noise is added to its numbers.
     """
+    key = kept.key_of("live program", sources(), codec.name) if is_catalogues(codec.encoding) else ""
+    return kept.kept(key, lambda: _program(codec))
+
+
+def _program(codec: Codec) -> Record:
     if codec.is_dithered:
         raise NotLiveError(f"{codec.name}: a page adds no noise")
     if what := codec.storage.only_measured:

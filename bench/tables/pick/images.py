@@ -20,7 +20,7 @@ from ...ground.output.errors import tell
 from ...measures.images import turns
 from ...measures.images.orientations import POLES, rotations, yaws
 from ...measures.images.sampled import SampledImage
-from ...measures.images.whole import Trip, WholeImage, whole_images
+from ...measures.images.whole import Trip, Turn, WholeImage, whole_images
 from ...shaders.code.twin import has_twin
 from .. import shots
 from ..motion.trips import trip_of
@@ -98,8 +98,7 @@ class Images:
         for power, whole in self._images(case, maker).items():
             image = whole if case.said.get("effects") else self._sample(whole, case.setting.seed)
             by_pole = {
-                pole: image.by_class([(trip, turn) for turn in _turns(pole, first, count, case.setting.seed)], domain)
-                for pole in poles
+                pole: image.by_class(trip, _turns(pole, first, count, case.setting.seed), domain) for pole in poles
             }
             if all(by_pole.values()):
                 found[image_name(maker.name, power)] = {
@@ -150,8 +149,8 @@ class Images:
             LayoutError, or one of shots.UNMEASURABLE: there is no room for the code.
         """
         (turn,) = _turns(pole, 0, 1, case.setting.seed)
-        job = (self._trip(case.codec), turn)
-        return {power: (whole.shown(job), whole.exact) for power, whole in self._images(case, maker).items()}
+        trip = self._trip(case.codec)
+        return {power: (whole.shown(trip, turn), whole.exact) for power, whole in self._images(case, maker).items()}
 
 
 def _poles(case: PickCase) -> Sequence[str]:
@@ -159,7 +158,7 @@ def _poles(case: PickCase) -> Sequence[str]:
     return list(POLES) if is_of_world else [turns.VIEW_SPACE]
 
 
-def _turns(pole: str, first: int, count: int, seed: int) -> Sequence[np.ndarray | None]:
+def _turns(pole: str, first: int, count: int, seed: int) -> Sequence[Turn]:
     """From the world's axes to a code's: in many orientations, or in none where it is in view space."""
     if pole == turns.VIEW_SPACE:
         return [None]

@@ -52,7 +52,7 @@ def test_images_lit_by_emulated_codes_are_those_of_the_g_buffer(gl, scene, name)
     layout = replace(LAYOUTS["fp32"], space=engines_space(codec.encoding)).with_codec(codec)
     with ExitStack() as stack:
         image = whole_images(gl, stack, pipeline, maker, setting, [power])[power]
-        relit = image.shown((lambda n, p: quality.round_trip(codec, n, p), turn))
+        relit = image.shown(lambda n, p: quality.round_trip(codec, n, p), turn)
         plan = Plan((640, 480), 1, layout, LIGHT_BUFFERS["rgba32f"], 2, True, 1.0)
         made = stack.enter_context(rendering(gl, pipeline, image.scene, plan))
         made.draw()

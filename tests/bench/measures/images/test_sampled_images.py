@@ -35,10 +35,10 @@ def image_of(monkeypatch, gl):
 def test_the_error_of_samples_is_that_of_the_frame(image_of, scene, power):
     """Of the frame and of each class, within three standard errors, which are below a tenth of it."""
     codec = Codec(ENCODINGS["octahedral"], STORAGES["rg8"])
-    jobs = [(lambda n, p: round_trip(codec, n, p), POLES["y"] @ yaws(0, 1, 0)[0])]
+    trip, turns = (lambda n, p: round_trip(codec, n, p)), [POLES["y"] @ yaws(0, 1, 0)[0]]
     image, sampled = image_of(scene, power)
-    frame, found = (part.by_class(jobs, "sphere") for part in (image, sampled))
-    spread = sampled.pixel_error(sampled.errors(jobs)[0])
+    frame, found = (part.by_class(trip, turns, "sphere") for part in (image, sampled))
+    spread = sampled.pixel_error(sampled.errors(trip, turns)[0])
     assert abs(found[""][0] - frame[""][0]) < 3 * spread and spread < 0.1 * frame[""][0], (found, frame, spread)
     assert found.keys() == frame.keys()
     assert all(found[name][0] == pytest.approx(frame[name][0], rel=0.35) for name in found), (found, frame)
@@ -58,7 +58,7 @@ def test_classes_are_by_direction_and_roughness(image_of):
 def test_exact_normals_have_no_error(image_of):
     """In view space, and by the frame's axes to the rounding of the rotation; glass is left out of the classes."""
     image, sampled = image_of("room", 50.0)
-    errors = sampled.errors([(lambda normals, _: normals, None), (lambda normals, _: normals, np.eye(3))])
+    errors = sampled.errors(lambda normals, _: normals, [None, np.eye(3)])
     assert (errors[0] == 0).all() and errors[1].max() < 1e-9
     heights = (image.places @ image.to_world.T)[..., 1]
     assert heights[0].mean() > heights[-1].mean(), "the first row is on top"
