@@ -169,7 +169,7 @@ OWN_JSON = {
     "bench/measures/metrics/totals.py": "totals on their way",
     "bench/shaders/isa/child.py": "what a child is asked",
     "bench/tables/pick/answer.py": "a column of JSON",
-    "bench/measures/worst_case/recorded.py": "suprema that come with the program",
+    "bench/measures/recorded.py": "figures that come with the program",
     "bench/shaders/isa/driver_files.py": "files of drivers that are installed",
     "bench/shaders/isa/nvidia/child.py": "what a child is asked",
     "bench/shaders/isa/process.py": "the answer of a child",

@@ -1,0 +1,27 @@
+"""Figures that come with the package: those that are computed now."""
+
+import pytest
+from slowly import a_tenth
+
+from normalbench.bench.measures.worst_case.recorded import supremum
+from normalbench.bench.measures.worst_case.search import worst_case
+from normalbench.bench.subjects.normals.normal_sets import NORMAL_SETS
+from normalbench.bench.tables.mix.judge import judged_now, judgements
+from normalbench.bench.tables.mix.table import USES
+from tests.recorded import codecs, is_half
+
+
+def name_of(value):
+    return getattr(value, "name", value)
+
+
+@pytest.mark.parametrize("codec", a_tenth(codecs()), ids=name_of)
+def test_a_tenth_of_the_suprema_are_what_the_search_finds(codec):
+    found, expected = supremum(codec, is_half(codec)), worst_case(codec, is_half(codec))
+    assert found.angle_deg == pytest.approx(expected.angle_deg, rel=1e-9)
+
+
+@pytest.mark.parametrize("codec", a_tenth(codecs()), ids=name_of)
+def test_a_tenth_of_what_uses_do_is_what_is_measured(codec):
+    asked = list(USES), NORMAL_SETS["sphere"](64, 0), codec.encoding.domain
+    assert judgements(codec, *asked) == judged_now(codec, *asked)
