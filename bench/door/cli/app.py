@@ -101,7 +101,7 @@ def every_command(
     if anew:
         from ...ground.output import cache
 
-        cache.is_anew.append(True)
+        cache.measure_anew()
 
 
 PlainOutput = Annotated[Path | None, typer.Option("-o", "--output", help="Write the rows to this file.")]

@@ -26,12 +26,17 @@ from .errors import MissingError
 # The cache is for its user alone.
 PRIVATE = 0o700
 # Set for this process and its children where nothing is to be read from the cache, or kept in it.
-OFF = "NORMALBENCH_NO_CACHE"
+OFF, ANEW = "NORMALBENCH_NO_CACHE", "NORMALBENCH_ANEW"
 
 
 def switch_off() -> None:
     """Do without the cache from here on, in this process and in those that it starts."""
     os.environ[OFF] = "1"
+
+
+def measure_anew() -> None:
+    """Measure figures that are kept again, in this process and in those that it starts."""
+    os.environ[ANEW] = "1"
 
 
 def is_off() -> bool:
@@ -166,10 +171,6 @@ def read(key: str) -> dict[str, Any] | None:
     return value if is_whole and isinstance(value, dict) else None
 
 
-# Set where figures are measured again.
-is_anew: list[bool] = []
-
-
 def figures(key: str, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
     """Return figures of a key as `kept` does, measured again where that is asked for."""
     found = read_figures(key)
@@ -182,7 +183,7 @@ def figures(key: str, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
 
 def read_figures(key: str) -> dict[str, Any] | None:
     """Return the figures of a key; None if there are none, or they are to be measured again."""
-    return None if is_anew or not key else read(key)
+    return None if os.environ.get(ANEW) or not key else read(key)
 
 
 def kept(key: str, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:

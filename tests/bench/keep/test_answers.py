@@ -18,7 +18,7 @@ def asked(own_cache, monkeypatch, tmp_path):  # noqa: ARG001 (an empty cache)
     ran, driver = [], tmp_path / "lib" / "driver.so"
     driver.parent.mkdir()
     driver.write_text("1")
-    monkeypatch.setattr(cache, "is_anew", [])
+    monkeypatch.delenv(cache.ANEW, raising=False)
     monkeypatch.setattr(answers, "loaded", lambda: {str(driver)})
 
     def command() -> int:
@@ -51,7 +51,7 @@ def test_it_is_measured_again_where_something_changed(asked, monkeypatch, change
     elif change == "driver gone":
         asked.driver.unlink()
     elif change == "anew":
-        cache.is_anew.append(True)
+        monkeypatch.setenv(cache.ANEW, "1")
     elif change == "width":
         monkeypatch.setenv("COLUMNS", "77")
     elif change == "setting":
