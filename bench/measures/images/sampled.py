@@ -130,7 +130,8 @@ def _sampled(whole: WholeImage, changes: np.ndarray, seed: int) -> tuple[np.ndar
         # The least error of a sum: as many of each part as it adds (Neyman 1934).
         count = OF_EACH + round(SHARED * float(change.sum() / change_of_all))
         # p = (1 + e / mean e) / 2 n, and a weight of 1 / n p
-        chance = (1 + (change / change.mean() if change.any() else 1.0)) / (2 * len(there))
+        relative: np.ndarray = change / change.mean() if change.any() else np.ones(len(there))
+        chance = (1 + relative) / (2 * len(there))
         picked = random.choice(len(there), count, p=chance / chance.sum())
         picked = picked[_along_a_curve(whole.places[there[picked, 0], there[picked, 1]])]
         chosen.append(there[picked])
