@@ -19,7 +19,7 @@ from .table import HOLE
 IMAGE = "image_db_"
 BEST, MORE_EXACT, MOST_EXACT, CHEAPER, FEWER_BITS = "best", "more exact", "most exact", "cheaper", "fewer bits"
 TIE = "tie"
-ACROSS, PLAIN, AGAINST, ELSEWHERE = "across an edge", "plain channels", "against", "elsewhere"
+INSIDE, PLAIN, AGAINST, ELSEWHERE = "inside a surface", "plain channels", "against", "elsewhere"
 # What codes of a domain hold, by the domain that is needed.
 HOLDS: Mapping[str, frozenset[str]] = MappingProxyType(
     {
@@ -52,6 +52,7 @@ HOLE_SAID = f"a hole: the largest error is over {HOLE:g} times the least; --acce
 LENGTH_SAID = "decodes are not of length 1, and light needs a normalise; --accept-lengths takes them"
 TABLE_SAID = "reads a look-up table; --look-ups takes it"
 LOOPS_SAID = "how often its loops run is not known"
+EDGE_SAID = "does not survive an edge"
 # A code has no use for a storage that has so many more bits than it has codes for.
 WASTED_BITS = 8
 # How many figures behind the loss decide where codes are equal.
@@ -134,13 +135,18 @@ def loss_db(row: Row) -> float:
 
 def floor(row: Row) -> float:
     """The issue slots that take no longer than the target's memory traffic: every code costs at least these."""
-    return HIDDEN_SLOTS * (1 + row["readers"])
+    return _hidden(row) * (1 + row["readers"])
+
+
+def _hidden(row: Row) -> float:
+    """The issue slots of a pass that take no time, where a question supposes others."""
+    return row.get("hidden_slots") or HIDDEN_SLOTS
 
 
 def price(row: Row) -> float:
     """The issue slots to encode once and to decode for each reader, in each pass at least those that hide; these alone
     where the slots are not known."""
-    encode, decode = (max(row[name] or 0.0, HIDDEN_SLOTS) for name in ("encode_slots", "decode_slots"))
+    encode, decode = (max(row[name] or 0.0, _hidden(row)) for name in ("encode_slots", "decode_slots"))
     return encode + row["readers"] * decode
 
 
@@ -239,6 +245,9 @@ def why_left_out(row: Row) -> str:
         return TABLE_SAID
     if row.get("cannot_mix"):
         return str(row["cannot_mix"]).partition(":")[0]
+    # Decals have edges, and surfaces end.
+    if row.get("mixed_across"):
+        return EDGE_SAID
     most, once = row["most_instructions"], row["slots_once"]
     if most is not None and once is None:
         return "issue slots not known"
@@ -291,8 +300,11 @@ def _answered_rows(group: Sequence[Row]) -> list[Row]:
         row | {"front": not any(beats(other, row) for other in fit), "place": _place_text(row, places[at])}
         for at, row in enumerate(fit)
     ]
+    inside = _only_inside(judged, made[:1])
     others = [
-        row | {"front": False, "place": _place_text(row, [])} for row in judged if row["left_out"] and not row["beside"]
+        row | {"front": False, "place": _place_text(row, [INSIDE] if row is inside else [])}
+        for row in judged
+        if row["left_out"] and not row["beside"]
     ]
     return [*made, *_elsewhere_rows(judged, fit), *others]
 
@@ -305,6 +317,13 @@ def _with_ties(fit: list[Row]) -> tuple[list[Row], list[int]]:
     first = min([fit[0], *tied], key=lambda row: (price(row), _bits(row), score(row)))
     rows = [first, *(row for row in fit if row is not first)]
     return rows, [at for at, row in enumerate(rows) if at and (row is fit[0] or any(row is other for other in tied))]
+
+
+def _only_inside(judged: Sequence[Row], best: Sequence[Row]) -> Row | None:
+    """The best of the codes that survive mixing inside a surface alone, if it is better than the answer."""
+    codes = [row for row in judged if row["left_out"] == EDGE_SAID and not row["hole"] and not row["beside"]]
+    first = min(codes, key=order, default=None)
+    return first if first and all(is_clearly_better(first, row) for row in best) else None
 
 
 def _place_text(row: Row, places: Sequence[str]) -> str | None:
@@ -350,10 +369,8 @@ def _places(fit: Sequence[Row]) -> list[list[str]]:
     places: list[list[str]] = [[] for _ in fit]
     if not fit:
         return places
-    for place, is_lacking in ((ACROSS, lambda row: row.get("mixed_across")), (PLAIN, lambda row: row.get("packed"))):
-        others = [at for at, row in enumerate(fit) if not is_lacking(row)] if is_lacking(fit[0]) else []
-        for at in others[:1]:
-            places[at].append(place)
+    for at in [at for at, row in enumerate(fit) if not row.get("packed")][: bool(fit[0].get("packed"))]:
+        places[at].append(PLAIN)
     best, rungs = fit[0], [at for at, row in enumerate(fit) if at and not any(beats(other, row) for other in fit)]
     places[0].append(BEST)
     exact = min(range(len(fit)), key=lambda at: (figures(fit[at]), at))

@@ -29,7 +29,18 @@ from ..mix.table import USES
 from ..mix.verdict import DONE
 from ..quality import measure as quality
 from ..table import Row
-from .answer import AFFORDABLE, answered, floor, image_loss, image_name, price, score, why_left_out, why_unfit
+from .answer import (
+    AFFORDABLE,
+    EDGE_SAID,
+    answered,
+    floor,
+    image_loss,
+    image_name,
+    price,
+    score,
+    why_left_out,
+    why_unfit,
+)
 from .images import Images
 from .kept_figures import figures_key
 from .pictures import write
@@ -273,7 +284,7 @@ def _by_use(case: PickCase) -> Row:
         found = judge.judgements(case.codec, list(USES), case.normal_set, domain)
         return {
             use: {
-                "cannot": f"cannot be {DONE[use]}" if one.inside else "",
+                "cannot": f"cannot be {DONE[use]}" if one.inside else EDGE_SAID if one.across else "",
                 "count": one.count,
                 "sum": (one.mean_deg or 0.0) * one.count,
                 "max": one.max_deg,

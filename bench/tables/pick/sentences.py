@@ -11,7 +11,6 @@ from ....reports.page.verdict import MADE_FOR
 from ...ground.machine.systems.people import command_line
 from ..table import Row
 from .answer import (
-    ACROSS,
     BEST,
     CHEAPER,
     ELSEWHERE,
@@ -19,11 +18,13 @@ from .answer import (
     FEWER_BITS,
     HIDDEN_SLOTS,
     INDISTINGUISHABLE_DB,
+    INSIDE,
     MORE_EXACT,
     MOST_EXACT,
     PLAIN,
     STEP,
     TIE,
+    answered,
     asked_of,
     beats,
     floor,
@@ -52,7 +53,7 @@ RUNGS = {
     MOST_EXACT: "Most exact to 0.1 dB",
     CHEAPER: "Cheaper",
     FEWER_BITS: "Fewer bits",
-    ACROSS: "Survives an edge, too",
+    INSIDE: "Inside a surface only",
     PLAIN: "In plain channels",
 }
 BETTER_IMAGE = {MORE_EXACT: "Better image", MOST_EXACT: "Best image"}
@@ -65,6 +66,8 @@ EXACT_DEG = 1e-3
 TRAFFIC = "the target's memory traffic"
 # From so far on a reflection is not the same picture moved.
 ELSEWHERE_DEG = 30.0
+# What else may be supposed of the issue slots of a pass that take no time, and shares of what is enough.
+FREE_SLOTS, ENOUGH = (8, 32), (0.5, 1.5)
 # How far the mirror's image is, in metres, and the map that it shows.
 FAR, MAP = 10.0, "a 1k environment map"
 WOBBLES = "A code in view space wobbles when the camera turns; one in world space must hold every direction."
@@ -90,7 +93,7 @@ def told(group: Sequence[Row]) -> list[str]:
     ]
     made += list(filter(None, [_images_text(best), _mixing_text(best)]))
     made += [WOBBLES] if best["needs"] in ("hemisphere", "view") else []
-    made += rungs(group, best)
+    made += [*rungs(group, best), *_hangs_on(group, best)]
     return made + [_rival_sentence(row, best) for row in group if row["against"] and row is not best]
 
 
@@ -123,6 +126,9 @@ def _much_better(group: Sequence[Row], best: Row) -> list[Row]:
 def _instead(group: Sequence[Row]) -> Iterator[str]:
     """What comes nearest where no code qualifies."""
     if group[0]["mixing"]:
+        for row in (row for row in group if INSIDE in places_of(row)):
+            found = f"{called(row)}, mean error {degrees(mean(row))}"
+            yield f"{RUNGS[INSIDE]}: {found}. Across an edge: {row['mixed_across']}."
         yield f"Decode each texel and mix normals instead ({UPSAMPLE}): no code minds that."
         if group[0]["needs"] not in ("hemisphere", "view"):
             yield "Or ask for another storage, or for half of the sphere (--domain hemisphere), which has no seam."
@@ -150,6 +156,23 @@ def rungs(group: Sequence[Row], best: Row) -> Iterator[str]:
         yield f"Images tie with {', '.join(tied)}: gaps below {STEP:g} dB or within chance. The cheapest is taken."
     for place, title in titles.items():
         yield from (f"{title}: {_rung_text(row, best)}" for row in group if place in places_of(row))
+
+
+def _hangs_on(group: Sequence[Row], best: Row) -> Iterator[str]:
+    """Which answer a constant near the one that was supposed would give, where that is another one."""
+    worth, enough = best["worth"], best["enough"]
+    supposed = [({"worth": worth + change}, f"at {worth + change:g} dB a doubling") for change in (-1, 1) if worth > 1]
+    supposed += [({"hidden_slots": slots}, f"if {slots} slots of a pass are free") for slots in FREE_SLOTS]
+    supposed += [({"enough": share * enough}, f"with --enough {share * enough:.2g}") for share in ENOUGH if enough]
+    others: dict[str, list[str]] = {}
+    for values, said in supposed:
+        rows = answered([{**row, **values} for row in group])
+        code = next((called(row) for row in rows if BEST in places_of(row)), "")
+        if code and code != called(best):
+            others.setdefault(code, []).append(said)
+    if others:
+        found = "; ".join(f"{code} {' or '.join(said)}" for code, said in others.items())
+        yield f"Another constant gives another answer: {found}."
 
 
 def called(row: Row) -> str:
@@ -294,10 +317,7 @@ def _mixing_text(row: Row) -> str:
         return ""
     upsampled = "Upsampling decodes each texel before it weighs it, which no code minds. "
     said = upsampled if UPSAMPLE in row["mixing"].split(",") else ""
-    across = row.get("mixed_across")
     left = f"mean error {degrees(mean(row))}, largest {degrees(largest_mixed(row))}"
-    if across:
-        return f"{said}Inside a surface it survives {_uses_text(row)} ({left}). Across an edge it does not: {across}."
     return f"{said}It survives {_uses_text(row)}, inside a surface ({left}) and across an edge."
 
 

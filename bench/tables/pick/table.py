@@ -135,9 +135,9 @@ COLUMNS = (
     Column(
         "place",
         "best: the answer. tie: its image ties with that of the best. more exact, most exact, cheaper, fewer bits: "
-        "the rungs above and below it. across an edge: survives what --needs asks for there, too. plain channels: the "
-        "first that is not packed. against: named by --against. elsewhere: of another storage of the same bytes, where "
-        "it is 6 dB better.",
+        "the rungs above and below it. inside a surface: better, and survives what --needs asks for there alone. "
+        "plain channels: the first that is not packed. against: named by --against. elsewhere: of another storage of "
+        "the same bytes, where it is 6 dB better.",
         HOW,
     ),
     Column("front", "Whether no other code is as good in error, price and bits and better in one.", HOW, shown=False),
