@@ -79,7 +79,9 @@ def test_the_second_run_compiles_nothing(run, first, monkeypatch):
 
 
 def test_a_damaged_cache_is_computed_again(run, first, own_cache):
-    files, damages = list(own_cache.rglob("*.json")), (b"", b"{", b"[1]", b'{"key": "", "value": {}}', b"\xff\x00")
+    damages = (b"", b"{", b"[1]", b'{"key": "", "value": {}}', b"\xff\x00")
+    # Commands of other tests keep answers, which are not read here.
+    files = [path for path in own_cache.rglob("*.json") if "said" not in json.loads(path.read_text())["value"]]
     assert len(files) > len(damages)
     for path, damage in zip(files, itertools.cycle(damages), strict=False):
         path.write_bytes(damage)
