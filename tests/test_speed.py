@@ -27,6 +27,13 @@ def test_small_numbers_stay_what_they_are_beside_the_c_program():
     assert np.float64(5e-324) * 1 > 0 and np.float32(1e-45) * np.float32(1) > 0
 
 
+def test_a_command_takes_wall_and_processor_seconds(capsys):
+    program.main(["commands", "--only", "help"])
+    (row,) = json.loads(capsys.readouterr().out)
+    assert row["typed"] == "normalbench --help" and 0.05 < row["wall_s"] < 30 and 0.05 < row["processor_s"] < 30, row
+    assert row["cores"] >= 1 and row["load"] >= 0 and row["byte_code"] in (True, False)
+
+
 def test_the_exponent_is_the_slope_in_logarithms():
     """By hand: 3 x^2 has 2, a constant 0; through 1, 10 and 1000 seconds at 1, 10 and 100 the slope is 1.5."""
     assert timing.exponent([1, 2, 4], [3, 12, 48]) == pytest.approx(2)

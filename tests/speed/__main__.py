@@ -1,12 +1,14 @@
 """Measures the program itself, and prints the rows of one run as JSON.
 
+    python -m tests.speed commands [--only NAMES]
     python -m tests.speed throughput [--encoding NAMES] [--counts COUNTS]
     python -m tests.speed growth [--over KINDS] [--sizes SIZES]
     python -m tests.speed simulate [--record TABLES] [--file FILE]
 
-`throughput` measures rows of the quality table next to a C program, NumPy and reading the input, in turns. `growth`
-times one kind of work at several sizes. `simulate` says how long a run takes on many workers, by recorded times of
-steps. Names, counts and sizes are comma-separated.
+`commands` measures the wall and processor seconds of commands, as someone types them. `throughput` measures rows of
+the quality table next to a C program, NumPy and reading the input, in turns. `growth` times one kind of work at
+several sizes. `simulate` says how long a run takes on many workers, by recorded times of steps. Names, counts and
+sizes are comma-separated.
 """
 
 from __future__ import annotations
@@ -22,12 +24,16 @@ from normalbench.bench.ground.options.words import names
 from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.subjects.codecs.names import codecs_named
 
-from . import growth, simulate, throughput
+from . import commands, growth, simulate, throughput
 from .timing import Row
 
 # What a machine holds in memory at once.
 MOST = 2**28
 RECORD = Path(__file__).with_name("record.json")
+
+
+def _commands(asked: argparse.Namespace) -> list[Row]:
+    return commands.rows(tuple(choose("command", names(asked.only), {name: name for name in commands.COMMANDS})))
 
 
 def _throughput(asked: argparse.Namespace) -> list[Row]:
@@ -64,6 +70,8 @@ def _asked(words: list[str] | None) -> argparse.Namespace:
         made.set_defaults(rows=rows)
         return made
 
+    one = program("commands", _commands)
+    one.add_argument("--only", default="all", help=f"{', '.join(commands.COMMANDS)}, or all, which takes 20 minutes.")
     one = program("throughput", _throughput)
     one.add_argument("--encoding", default="spheremap,octahedral,spherical,xyz,per_pixel_view")
     one.add_argument("--counts", default="2^22", help="Normals, such as 2^18,2^20; rounded down to whole blocks.")
