@@ -28,7 +28,19 @@ from .own import Own, own
 from .question import Question
 from .rates import FRAME, LEAST_PIXELS, PIPELINE, Exact, rates, rates_of_pair
 from .sentences import INVISIBLE
-from .solve import NOTHING, UNSEEN, Key, Pair, Problem, Rules, Solution, fewest_bytes, finalists
+from .solve import (
+    HALF_STEP,
+    NOTHING,
+    UNSEEN,
+    Key,
+    Pair,
+    Problem,
+    Rules,
+    Solution,
+    enough_bytes,
+    fewest_bytes,
+    finalists,
+)
 from .table import ENGINE, IMPROVED, MINE, PROPOSAL, TABLE
 from .written import layout_of
 
@@ -40,6 +52,8 @@ INTEGER_DB = 3.0
 OFF_DB, LEAST_SHARE = 0.5, 0.05
 # By how many bytes more a limit is tried, to say what they would buy, and from how many decibels on that is said.
 MORE, WORTH_DB = (1, 2, 4), 0.5
+# Bits of the largest code that is usual.
+ONE_WORD = 32
 UNMEASURABLE = (ShaderError, FormatError, LayoutError)
 # What engines may lack, with a word of a layout that has it.
 LACKS = {"motion": "motion.x", "id": "kind", "specular": "reflectance", "occlusion": "occlusion"}
@@ -100,8 +114,18 @@ class Judged:
         return [name for name in names if name.rpartition(" ")[2] in self._question.judging]
 
     def _usual(self, attributes: Sequence[Attribute]) -> list[Attribute]:
-        """Those that no scene shows in their usual bits."""
-        return [usual(one) if one.is_seen and not self._shows(one) else one for one in attributes]
+        """Those that no scene shows in their usual bits, and others without codes of needless words."""
+        return [usual(one) if one.is_seen and not self._shows(one) else self._in_one_word(one) for one in attributes]
+
+    def _in_one_word(self, attribute: Attribute) -> Attribute:
+        """An attribute without codes of more than 32 bits, where one of as many or fewer shows in no class: nobody
+        spends 48 bits on a normal then. What decals blend into may need them."""
+        if attribute.name in self._question.rules[0].blended:
+            return attribute
+        small = [code for code in attribute.codes if code.total_bits <= ONE_WORD]
+        errors = [self._errors.get(code.key, {}) for code in small]
+        is_shown = all(max((of.get(name, 0.0) for name in self.classes), default=0.0) > HALF_STEP for of in errors)
+        return attribute if is_shown else replace(attribute, codes=tuple(small))
 
     def _solved(self, rules: Rules) -> Solution | None:
         q = self._question
@@ -199,13 +223,25 @@ class Judged:
 
     def proposals(self, rules: Rules) -> Iterator[Row]:
         """The row of a limit; one without figures where nothing keeps to the rules."""
-        best = self._best(f"budget_{rules.bytes}", Own(self._question.attributes, self._question.bins, rules))
+        enough = replace(rules, bytes=self._enough(rules))
+        best = self._best(f"budget_{rules.bytes}", Own(self._question.attributes, self._question.bins, enough))
         if best is None:
             yield self._empty(PROPOSAL, f"{rules.bytes} bytes") | {"limit": rules.bytes, "skipped": self._why(rules)}
             return
         found, layout, row = best
         yield row | self._predicted(found, row) | self._next(rules, found) | {"limit": rules.bytes}
         self._tick(layout.name)
+
+    def _enough(self, rules: Rules) -> int:
+        """The least bytes that are as good as a limit, to half a decibel."""
+        q = self._question
+        if q.most_instructions is None:
+            plain = [one for one in q.bins if not one.fields]
+            for held in (self._usual(q.attributes), q.attributes):
+                problem = Problem(held, self._errors, self.classes, plain, rules, self._together)
+                if (size := enough_bytes(problem)) is not None:
+                    return size
+        return rules.bytes
 
     def mine(self, layout: Layout) -> Iterator[Row]:
         """The row of somebody's layout, and that of a proposal that holds the same in targets of the same formats."""
@@ -231,7 +267,7 @@ class Judged:
         """How many bytes more bring something, and what; empty where a few bring nothing."""
         worst = found.worst_of(self.classes)
         now = psnr_db(worst)
-        for size in MORE if worst > UNSEEN else ():
+        for size in MORE if worst > HALF_STEP else ():
             more = self._solved(replace(rules, bytes=rules.bytes + size))
             gain = psnr_db(more.worst_of(self.classes)) - now if more else 0.0
             if gain >= WORTH_DB:

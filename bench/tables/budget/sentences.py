@@ -7,12 +7,14 @@ from collections.abc import Iterator
 from ..table import Row
 from .bins import WEBGPU_BYTES
 from .readers import times
-from .table import IMPROVED
+from .table import IMPROVED, PROPOSAL
 
 # FLIP's 99th percentile that we call invisible, and acceptable: both are conventions (see `roughness`).
 INVISIBLE, ACCEPTABLE = 0.05, 0.1
 # Codes as a sentence says them.
 WORDS = {"basecolor": "base colour", "square_root": "by its root", "linear": "", "id": "model"}
+# What free bytes may hold: how many it takes, a word of layouts that have it, and what it is.
+FREE_FOR = ((4, "emission", "emissive light"), (2, "coat", "a clear coat"), (2, "anisotropy", "anisotropy"))
 # Shares of an error that a sentence names.
 NAMED = 3
 
@@ -22,7 +24,7 @@ def told(row: Row) -> Iterator[str]:
     if row["skipped"]:
         yield f"{row['skipped'].rstrip('.')}."
         return
-    yield f"{_subject(row)}: {_answer(row)}"
+    yield f"{_subject(row)}: {_answer(row)}{_free(row)}"
     yield _codes(row)
     yield _errors(row)
     yield _rules(row)
@@ -40,6 +42,14 @@ def _answer(row: Row) -> str:
     formats = " + ".join(target.partition(":")[0] for target in row["targets"].split("; "))
     fewer = f" ({row['bytes_per_pixel']} bytes)" if row["bytes_per_pixel"] != row["limit"] else ""
     return f"take {formats}{fewer}. {_seen(row['flip_p99'])}the worst surfaces have {row['worst_db']:.1f} dB."
+
+
+def _free(row: Row) -> str:
+    """What the bytes that a limit leaves may hold, of what the layout does not."""
+    free = (row["limit"] or 0) - row["bytes_per_pixel"] if row["kind"] == PROPOSAL else 0
+    uses = [use for size, word, use in FREE_FOR if size <= free and word not in row["targets"]]
+    which = f": for {' or '.join(uses)}" if uses else ""
+    return f" More bring nothing that shows; {free:g} stay free{which}." if free >= 1 else ""
 
 
 def _seen(flip: float) -> str:

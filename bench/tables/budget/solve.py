@@ -28,8 +28,8 @@ from ...ground.output.quiet import without_their_output
 from .attributes import UNORM, Attribute, Code
 from .bins import SHARED, WEBGPU, Bin
 
-# Decibels within which layouts are equal, and how long HiGHS may look, in seconds.
-EQUAL_DB, MOST_SECONDS = 0.2, 20.0
+# Decibels within which layouts are equal, those that fewer bytes may cost, and how long HiGHS may look, in seconds.
+EQUAL_DB, ENOUGH_DB, MOST_SECONDS = 0.2, 0.5, 20.0
 # Of the least cost, within which a solution is the best.
 GAP = 1e-3
 # What SciPy says of a program whose time is over.
@@ -38,8 +38,8 @@ TIMED_OUT = 1
 ANY_BYTES = 256
 # Bytes that a pass fetches for each attribute that it reads, and bits from which another one beside it is large.
 READ_BYTES, LARGE_BITS = 4, 16
-# Errors that are not seen in any class: 60 dB, half of a step of 8 bits.
-UNSEEN = 1e-6
+# Errors that nobody looks for less than: 60 dB, a quarter of a step of 8 bits. And those that no 8 bits show, 54.2 dB.
+UNSEEN, HALF_STEP = 1e-6, (0.5 / 255) ** 2
 # Codes that are off by so little are exact: below what 8 bits of a display can show in any pixel, 120 dB.
 NOTHING = 1e-12
 SMALL = 1e-6
@@ -263,6 +263,19 @@ class _Program:
         """The bytes of the targets that are used."""
         return {self.used(slot): float(one.bytes) for slot, (one, _) in enumerate(self.slots)}
 
+    def bytes_of(self, values: np.ndarray) -> int:
+        """The bytes of a solution's targets."""
+        return sum(one.bytes for slot, (one, _) in enumerate(self.slots) if values[self.used(slot)] > 0.5)
+
+    def others(self, best: Solution) -> Terms:
+        """The sum of the errors of all classes, each in units of what the best has, or of what is seen."""
+        classes = self.problem.classes
+        units = {name: max(best.errors.get(name, 0.0), UNSEEN) for name in classes}
+        return {
+            i: sum(self.problem.error(code, name) / units[name] for name in classes)
+            for i, (code, *_) in enumerate(self.choices)
+        }
+
     def costs(self) -> Terms:
         """What the codes cost by themselves; 0 where nobody asks."""
         cost = self.problem.cost
@@ -360,8 +373,8 @@ def _least(
 
 
 # One target more is worth half a target of shared bits; a number of bits that is no byte's a tenth, and one that is
-# joined of bytes, which a wider channel would convert, a twentieth.
-TARGET_FUSS, ODD_FUSS, JOINED_FUSS = 0.5, 0.1, 0.05
+# joined of bytes, which a wider channel would convert, a twentieth; a curve that shaders compute as much.
+TARGET_FUSS, ODD_FUSS, JOINED_FUSS, CURVE_FUSS = 0.5, 0.1, 0.05, 0.05
 # In units of the last t: what is far above it in one code is left out of the program, whose numbers stay of one size.
 WORST = 1e3
 
@@ -369,10 +382,11 @@ WORST = 1e3
 def fuss(code: Code, one: Bin) -> float:
     """What an engineer would rather do without about a code in a target."""
     is_shared = one.fields or SHARED in (one.need(code) or {})
+    curve = CURVE_FUSS * any("(" in word for word in code.words)
     if not is_shared:
-        return 0.0
+        return curve
     joined = sum(bits > one.part for bits in code.bits) if not one.fields else 0
-    return ODD_FUSS * sum(bits % 8 != 0 for bits in code.bits) + JOINED_FUSS * joined
+    return curve + ODD_FUSS * sum(bits % 8 != 0 for bits in code.bits) + JOINED_FUSS * joined
 
 
 def solved(problem: Problem) -> Solution | None:
@@ -382,29 +396,17 @@ def solved(problem: Problem) -> Solution | None:
 
 def finalists(problem: Problem, count: int) -> list[Solution]:
     """Up to so many layouts of other codes each, the plainest first, none of them worse than the best by more than what
-    counts as equal; none where none keeps to the rules."""
+    counts as equal: in the worst class, and then in the sum of all; none where none keeps to the rules."""
     program = _Program(problem)
-    unit = 1.0
-    values = program.solved(unit)
-    if values is None:
+    best = _best(program)
+    if best is None:
         return []
-    best = program.solution(values)
-    # Solved anew in units of what was found, until that no longer changes.
-    for _ in range(6):
-        worst = best.worst_of(problem.classes)
-        if worst <= NOTHING:
-            break
-        values = program.solved(worst)
-        if values is None:
-            break
-        tried = program.solution(values)
-        better = tried.worst_of(problem.classes)
-        if better < worst:
-            best = tried
-        if better > worst * (1 - 1e-3):
-            break
     # What nobody sees is no reason for another layout.
     allowed = max(best.worst_of(problem.classes) * 10 ** (EQUAL_DB / 10), UNSEEN)
+    others = program.others(best)
+    values = program.solved(allowed, most=1.0, least=others) if allowed > UNSEEN else None
+    if values is not None:
+        program.row(others, -np.inf, sum(values[i] * value for i, value in others.items()) * 10 ** (EQUAL_DB / 10))
     found: list[Solution] = []
     while len(found) < count:
         plain = program.solved(allowed, most=1.0, least=program.fusses())
@@ -415,13 +417,49 @@ def finalists(problem: Problem, count: int) -> list[Solution]:
     return found or [best]
 
 
+def _best(program: _Program) -> Solution | None:
+    """The layout whose worst class is best; None where none keeps to the rules."""
+    classes = program.problem.classes
+    values = program.solved(1.0)
+    if values is None:
+        return None
+    best = program.solution(values)
+    # Solved anew in units of what was found, until that no longer changes.
+    for _ in range(6):
+        worst = best.worst_of(classes)
+        if worst <= NOTHING:
+            break
+        values = program.solved(worst)
+        if values is None:
+            break
+        tried = program.solution(values)
+        better = tried.worst_of(classes)
+        if better < worst:
+            best = tried
+        if better > worst * (1 - 1e-3):
+            break
+    return best
+
+
+def enough_bytes(problem: Problem) -> int | None:
+    """The bytes of the smallest layout whose worst class is within ENOUGH_DB of the best, or not seen; None where none
+    keeps to the rules."""
+    program = _Program(problem)
+    best = _best(program)
+    if best is None:
+        return None
+    allowed = max(best.worst_of(problem.classes) * 10 ** (ENOUGH_DB / 10), HALF_STEP)
+    values = program.solved(allowed, most=1.0, least=program.bytes())
+    return problem.rules.bytes if values is None else program.bytes_of(values)
+
+
 def fewest_bytes(problem: Problem) -> int | None:
     """The bytes of the smallest layout that keeps to the other rules; None where none does."""
     program = _Program(replace(problem, rules=replace(problem.rules, bytes=ANY_BYTES)))
     values = program.solved(1.0, least=program.bytes())
     if values is None:
         return None
-    return sum(one.bytes for slot, (one, _) in enumerate(program.slots) if values[program.used(slot)] > 0.5)
+    return program.bytes_of(values)
 
 
 def cheapest(problem: Problem) -> Solution | None:

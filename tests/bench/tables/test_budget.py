@@ -14,7 +14,7 @@ from normalbench.bench.tables.budget import changes
 from normalbench.bench.tables.budget.bins import BINS, WEBGPU, WEBGPU_BYTES, webgpu_cost
 from normalbench.bench.tables.budget.contract import KNOWN
 from normalbench.bench.tables.budget.own import own
-from normalbench.bench.tables.budget.solve import Placed, Problem, Rules, Solution, finalists, solved
+from normalbench.bench.tables.budget.solve import Placed, Problem, Rules, Solution, enough_bytes, finalists, solved
 from normalbench.bench.tables.budget.table import TABLE, BudgetOptions
 from normalbench.bench.tables.budget.written import layout_of
 from normalbench.bench.tables.vectors import measure as vectors
@@ -189,6 +189,38 @@ def test_finalists_are_other_codes_that_count_as_equal():
     assert len(set(codes)) == 3 and codes[0] == frozenset(one.key for one in solved(asked).placed)
     worst = [each.worst_of(asked.classes) for each in found]
     assert max(worst) <= min(worst) * 10**0.0202, worst
+
+
+def test_a_limit_takes_no_bytes_that_bring_nothing():
+    """Where errors show, the smallest layout within half a decibel of the best; where 8 bits of a display show none,
+    the smallest of all."""
+    scaled = [{key: {n: scale * e for n, e in of.items()} for key, of in falling().items()} for scale in (1e3, 1e-6)]
+    large, small = scaled
+    for limit in (12, 16, 20):
+
+        def worst(size: int, limit: int = limit) -> float:
+            asked = problem(replace(USUAL, bytes=min(size, limit)), errors=large)
+            found = solved(asked)
+            return found.worst_of(asked.classes) if found else np.inf
+
+        size, most = enough_bytes(problem(replace(USUAL, bytes=limit), errors=large)), worst(limit) * 10**0.05
+        # What is solved is exact to a thousandth, and the plainest may be 0.2 dB worse.
+        assert worst(size) <= most * 10**0.0202 < worst(size - 1) * 10**0.0202, (limit, size)
+        assert enough_bytes(problem(replace(USUAL, bytes=limit), errors=small)) == 12
+    assert enough_bytes(problem(replace(USUAL, bytes=8))) is None
+
+
+def test_what_the_worst_class_leaves_goes_to_the_others():
+    """A code whose error one class alone shows is taken as well as the bytes allow, though that class is not the
+    worst."""
+    (metalness,) = (one for one in DEFAULT if one.name == "metalness")
+    errors = falling() | {
+        ("metalness", code.name): {"class 0": 0.0, "class 1": 1e-4 * 4.0**-code.total_bits} for code in metalness.codes
+    }
+    chosen = [placed.code for placed in solved(problem(USUAL, errors=errors)).placed]
+    assert next(code for code in chosen if code.attribute == "metalness").total_bits > min(
+        code.total_bits for code in metalness.codes
+    )
 
 
 def test_two_codes_that_are_worse_together_are_not_taken_together():
