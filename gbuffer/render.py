@@ -155,6 +155,10 @@ class Rendering:
         """
         for texture, texels in zip(self._textures_of_surfaces(), surfaces, strict=True):
             texture.write(np.ascontiguousarray(texels[::-1], np.float32).tobytes())
+        return self.light(upto)
+
+    def light(self, upto: str = "") -> np.ndarray:
+        """Run the passes after the geometry's on the surfaces that are there; the image, as `lit`."""
         names = list(self.passes)
         for name in names[names.index(GEOMETRY) + 1 : names.index(upto) if upto else None]:
             self.passes[name]()

@@ -86,10 +86,7 @@ class SampledScene:
         first.write(texels.tobytes())
         # Lights are added to what surfaces give off, which is in the first of a light buffer's targets.
         self._upload(self._made.frame.textures(LIGHT), surfaces[1 + len(others) :][:1])
-        names = list(self._made.passes)
-        for name in names[names.index(GEOMETRY) + 1 :]:
-            self._made.passes[name]()
-        return self._made.image()[::-1][: len(normals)]
+        return self._made.light()[::-1][: len(normals)]
 
     def _upload(self, textures: Sequence[Any], columns: Sequence[np.ndarray]) -> None:
         """Write the same numbers, (count, channels), into each row."""

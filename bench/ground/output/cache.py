@@ -173,12 +173,7 @@ def read(key: str) -> dict[str, Any] | None:
 
 def figures(key: str, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
     """Return figures of a key as `kept` does, measured again where that is asked for."""
-    found = read_figures(key)
-    if found is None:
-        found = make()
-        if key:
-            write(key, found)
-    return found
+    return _found_or_made(read_figures(key), key, make)
 
 
 def read_figures(key: str) -> dict[str, Any] | None:
@@ -188,7 +183,10 @@ def read_figures(key: str) -> dict[str, Any] | None:
 
 def kept(key: str, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
     """The value of a key, or what is made now, and kept where the key is not empty."""
-    found = read(key) if key else None
+    return _found_or_made(read(key) if key else None, key, make)
+
+
+def _found_or_made(found: dict[str, Any] | None, key: str, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
     if found is None:
         found = make()
         if key:

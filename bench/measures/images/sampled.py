@@ -11,6 +11,7 @@ import numpy as np
 
 from ....gbuffer.gl.device import Device
 from ....gbuffer.sampled import SampledScene
+from ...subjects.normals.domains import in_domain
 from .whole import AXIS_ALIGNED, UP_TO, Trip, Turn, WholeImage
 
 if TYPE_CHECKING:
@@ -82,7 +83,7 @@ class SampledImage:
         Args:
             domain: pixels whose normals lie outside do not count; a class without others is left out.
         """
-        return self._means(self.errors(trip, turns), self._whole.is_held(self.normals, self.positions, domain))
+        return self._means(self.errors(trip, turns), in_domain(self.normals, self.positions, domain))
 
     def _means(self, errors: np.ndarray, held: np.ndarray) -> dict[str, np.ndarray]:
         means, total, whole = {}, np.zeros(len(errors)), 0.0

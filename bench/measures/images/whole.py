@@ -96,14 +96,7 @@ class WholeImage:
 
     def held_by(self, domain: str) -> Bool[np.ndarray, "height width"]:
         """Return where a surface's normal lies in a domain."""
-        return self.covered & self.is_held(self.surfaces[0][..., :3], self.places, domain)
-
-    @staticmethod
-    def is_held(
-        normals: Float[np.ndarray, "*shape 3"], positions: Float[np.ndarray, "*shape 3"], domain: str
-    ) -> Bool[np.ndarray, "*shape"]:
-        """Return which normals lie in a domain."""
-        return in_domain(normals, positions, domain)
+        return self.covered & in_domain(self.surfaces[0][..., :3], self.places, domain)
 
     def by_class(self, trip: Trip, turns: Sequence[Turn], domain: str) -> dict[str, Float[np.ndarray, " turns"]]:
         """Return the mean squared error of each class, and as "" that of the frame; as `SampledImage.by_class`."""
@@ -130,6 +123,5 @@ def whole_images(
         maker.within(SIZE), 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], max(pipeline.light_targets), True, 1.0
     )
     made = stack.enter_context(rendering(device, pipeline, scene, plan))
-    made.draw()
     moments = {power: scene if power is None else scene.with_power(power) for power in powers}
     return {power: WholeImage(moment, maker, made) for power, moment in moments.items()}

@@ -132,19 +132,19 @@ class Judged:
         return next(iter(self._finalists(Own(q.attributes, q.bins, rules), 1)), None)
 
     def _finalists(self, asked: Own, count: int) -> list[Solution]:
-        # What nobody sees has its usual bits where there is room for them, and its floor where there is not.
+        return next(filter(None, (self._kept(problem, count) for problem in self._problems(asked))), [])
+
+    def _problems(self, asked: Own) -> Iterator[Problem]:
+        """What nobody sees has its usual bits where there is room for them, and its floor where there is not."""
         usually = self._usual(asked.attributes)
         for held in (usually, *([asked.attributes] if usually != asked.attributes else [])):
-            problem = Problem(held, self._errors, self.classes, asked.bins, asked.rules, self._together)
-            if found := self._kept(problem, count):
-                return found
-        return []
+            yield Problem(held, self._errors, self.classes, asked.bins, asked.rules, self._together)
 
     def _kept(self, problem: Problem, count: int) -> list[Solution]:
         """Up to so many of the best layouts: of whole numbers only where they gain much."""
-        plain = [one for one in problem.bins if not one.fields]
-        found = self._in_slots(replace(problem, bins=plain), count)
-        if len(plain) == len(problem.bins):
+        plain = _in_channels(problem)
+        found = self._in_slots(plain, count)
+        if len(plain.bins) == len(problem.bins):
             return found
         if not found:
             return self._in_slots(problem, count)
@@ -223,8 +223,9 @@ class Judged:
 
     def proposals(self, rules: Rules) -> Iterator[Row]:
         """The row of a limit; one without figures where nothing keeps to the rules."""
-        enough = replace(rules, bytes=self._enough(rules))
-        best = self._best(f"budget_{rules.bytes}", Own(self._question.attributes, self._question.bins, enough))
+        asked = Own(self._question.attributes, self._question.bins, rules)
+        enough = replace(rules, bytes=self._enough(asked))
+        best = self._best(f"budget_{rules.bytes}", replace(asked, rules=enough))
         if best is None:
             yield self._empty(PROPOSAL, f"{rules.bytes} bytes") | {"limit": rules.bytes, "skipped": self._why(rules)}
             return
@@ -232,16 +233,11 @@ class Judged:
         yield row | self._predicted(found, row) | self._next(rules, found) | {"limit": rules.bytes}
         self._tick(layout.name)
 
-    def _enough(self, rules: Rules) -> int:
+    def _enough(self, asked: Own) -> int:
         """The least bytes that are as good as a limit, to half a decibel."""
-        q = self._question
-        if q.most_instructions is None:
-            plain = [one for one in q.bins if not one.fields]
-            for held in (self._usual(q.attributes), q.attributes):
-                problem = Problem(held, self._errors, self.classes, plain, rules, self._together)
-                if (size := enough_bytes(problem)) is not None:
-                    return size
-        return rules.bytes
+        problems = self._problems(asked) if self._question.most_instructions is None else ()
+        sizes = (enough_bytes(_in_channels(problem)) for problem in problems)
+        return next((size for size in sizes if size is not None), asked.rules.bytes)
 
     def mine(self, layout: Layout) -> Iterator[Row]:
         """The row of somebody's layout, and that of a proposal that holds the same in targets of the same formats."""
@@ -418,6 +414,11 @@ class Judged:
                 except LayoutError:
                     continue
                 yield layout
+
+
+def _in_channels(problem: Problem) -> Problem:
+    """A problem without targets of whole numbers."""
+    return replace(problem, bins=[one for one in problem.bins if not one.fields])
 
 
 def _with_depth(layout: Layout, depth: DepthEncoding | None) -> Layout:
