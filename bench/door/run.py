@@ -6,7 +6,7 @@ import itertools
 import sys
 import time
 from collections import deque
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack, nullcontext
 from dataclasses import fields, replace
 from functools import partial
@@ -30,7 +30,7 @@ from ..run.durations import expected, seconds_of
 from ..run.measuring import Asked, Place, asked_together, measured, with_parts
 from ..run.second import Second, is_worth_it, second_process
 from ..run.workers.places import place
-from ..show.showing import say_lines, say_skipped, show_summary
+from ..show.showing import say_lines, say_skipped, say_verdict
 from ..tables.registry import TABLES
 from ..tables.table import Measured, Table
 from . import beside
@@ -120,7 +120,7 @@ def _asked(table: Table, said: Mapping[str, Any], folder: Path) -> Asked:
 
 
 def run_command(request: Any, output: Path | None, on: str | None = None, commit: str | None = None) -> int:
-    """Measure tables into a results folder, their summaries to standard output. What was stopped goes on.
+    """Measure tables into a results folder, their verdicts to standard output. What was stopped goes on.
 
     Args:
         on: where they are measured; None for this process.
@@ -283,11 +283,11 @@ class Shown:
 
 
 def _show(table: Table, rows: Sequence[Row]) -> bool:
-    """A table's summary, and what is to be said of its rows; whether one fails."""
+    """Write a table's verdict, and warn of its rows; return whether one fails."""
     say_skipped(table, rows)
     say_lines(table.warnings(rows))
     failed = say_lines(table.work.failures(rows))
-    show_summary(table, rows)
+    say_verdict(table, rows)
     return failed
 
 
@@ -302,14 +302,6 @@ def _complete(run: Run, shown: Shown) -> None:
         if ask.table.name not in shown.written:
             ask.table.work.write(shown.done[ask.table.name], lambda _: None)
     keep_code(run.folder, done)
-    say(f"\nEvery figure, the pictures and the machine they come from: {run.folder}\n")
     page = write_report(run.folder, done, run.folder / REPORT, CHARTS, most_charts=CHARTS_OF_A_RUN)
     run.finish()
-    answers = (line for ask in shown.asks if ask.table.section.leads for line in in_short(ask.table, shown.done))
-    say("".join(f"{line}\n" for line in answers) + f"All of it on one page: {page}\n")
-
-
-def in_short(table: Table, done: Mapping[str, Measured]) -> Iterator[str]:
-    """The first sentence of each of a table's answers."""
-    sheets = table.work.summary(done[table.name].rows) if table.name in done else ()
-    yield from (sheet.said[0] for sheet in sheets if sheet.said)
+    say(f"The page: {page}\nA table: normalbench show {run.folder} {shown.asks[0].table.name}\n")

@@ -34,6 +34,7 @@ from ..tables.shared_columns import ENCODING
 from ..tables.table import UNEXPECTED, Table
 from .cards import about_codecs
 from .kept_code import read_code
+from .showing import summary
 
 PAGE, CHARTS, PICTURES = "report.html", "charts", "pictures"
 LIVE = "live"
@@ -245,7 +246,7 @@ def _section(folder: Path, found: Found, done: Done, table: Table, remarks: list
 def _summary(done: Done, table: Table, remarks: list[str]) -> list[Sheet]:
     """Return the sheets that sum up a table; none, and a remark is added, where its rows are of another version."""
     try:
-        return [sheet for sheet in table.work.summary(done.finished_rows(table.name)) if sheet.rows]
+        return summary(table, done.finished_rows(table.name))
     except UNEXPECTED:
         again = f"measure them again: normalbench run --tables {table.name}"
         remarks.append(f"The rows of {table.name} are not those of this version, and shown as they are; {again}.")

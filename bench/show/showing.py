@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 import textwrap
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from ...reports import tables
@@ -61,6 +62,10 @@ def bins(text: str) -> list[tuple[float, int]]:
 
 def sheets(table: Table, done: Measured) -> Iterator[Sheet]:
     """The sheets that people are shown of finished rows."""
+    yield from with_verdict(table, done.rows, _own_sheets(table, done))
+
+
+def _own_sheets(table: Table, done: Measured) -> Iterator[Sheet]:
     if table.work.shown:
         yield from table.work.shown(done)
         return
@@ -89,18 +94,32 @@ def _said(sheet: Sheet, width: int) -> str:
     return "\n".join([textwrap.fill(first, wide), *made]) + "\n\n"
 
 
-def show_summary(table: Table, rows: Sequence[Row]) -> None:
-    """What people look at first, to standard output; every row of a table that has no summary."""
-    width = shutil.get_terminal_size((120, 40)).columns
-    for sheet in summary(table, rows):
-        say(f"\n{_said(sheet, width)}{sheet.title}\n\n{tables.written(sheet.rows, 'table', width, sheet.drops)}")
+def with_verdict(table: Table, rows: Sequence[Row], sheets: Iterable[Sheet]) -> Iterator[Sheet]:
+    """Sheets, the first below the table's verdict."""
+    verdict = tuple(table.work.verdict(rows))
+    for number, sheet in enumerate(sheets):
+        yield replace(sheet, said=(*verdict, *sheet.said)) if verdict and not number else sheet
 
 
 def summary(table: Table, rows: Sequence[Row]) -> list[Sheet]:
-    """A table's summary; the rows themselves where it has none."""
-    found = [sheet for sheet in table.work.summary(rows) if sheet.rows]
+    """Return what people look at first: the verdict, and sheets that have rows."""
+    return list(with_verdict(table, rows, (sheet for sheet in table.work.summary(rows) if sheet.rows)))
+
+
+def show_summary(table: Table, rows: Sequence[Row]) -> None:
+    """Write a table's summary to standard output; every row if it has none."""
+    width = shutil.get_terminal_size((120, 40)).columns
     shown = table.without_hidden(rows)
-    return found or ([Sheet(table.section.title, shown, table.drops(shown))] if shown else [])
+    for sheet in summary(table, rows) or ([Sheet(table.section.title, shown, table.drops(shown))] if shown else []):
+        say(f"{_sheet(sheet, 'table', width, spares=True)}\n")
+
+
+def say_verdict(table: Table, rows: Sequence[Row]) -> None:
+    """Write the first sentence of each of a table's answers to standard output, below its name."""
+    width = min(shutil.get_terminal_size((120, 40)).columns, SENTENCE_WIDTH)
+    for sheet in summary(table, rows):
+        if sheet.said:
+            say(textwrap.fill(f"{table.name}: {sheet.said[0]}", width, subsequent_indent="  ") + "\n")
 
 
 def say_skipped(table: Table, rows: Sequence[Row], known: Iterable[str] = ()) -> None:

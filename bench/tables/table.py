@@ -126,7 +126,8 @@ class Work:
         finish: new rows with what needs all of them: their order, their ranks. It is called where rows are measured,
             and where a run is read; all others receive finished rows.
         shown: finished rows for people; None where they are shown as they are.
-        summary: what people look at first.
+        verdict: what finished rows say, as an engineer would: a sentence, and others that it needs.
+        summary: what people look at first, below the verdict.
         warnings: a line for each row that is measured but odd.
         failures: a line for each row that makes the command fail.
         write: the files that were asked for beside the rows. Returns lines that make the command fail.
@@ -154,6 +155,7 @@ class Work:
     merge: Callable[[Step, Sequence[Row]], list[Row]] = _last_row
     finish: Callable[[Sequence[Row]], list[Row]] = _all_rows
     shown: Callable[[Measured], Iterable[Sheet]] | None = None
+    verdict: Callable[[Sequence[Row]], Iterable[str]] = _no_items
     summary: Callable[[Sequence[Row]], Iterator[Sheet]] = _no_items
     warnings: Callable[[Sequence[Row]], Iterable[str]] = _no_items
     failures: Callable[[Sequence[Row]], Iterable[str]] = _no_items

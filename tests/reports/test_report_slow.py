@@ -93,7 +93,7 @@ def test_markdown_of_a_real_run(run, results, tmp_path):
 def test_reading_leaves_the_run_as_it_is_and_run_has_written_the_same_report(run, results, tmp_path):
     folder, out, _ = results
     before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
-    assert f"All of it on one page: {folder / 'report.html'}" in out
+    assert f"The page: {folder / 'report.html'}" in out
     begin = time.process_time()
     status, _, err = run("report", str(folder), "--charts", "-o", str(tmp_path / "page.html"))
     assert status == 0, err

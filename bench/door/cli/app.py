@@ -291,6 +291,17 @@ def compare(
     return compare_command(before, after, fail_on, format_of(format, output), output)
 
 
+@app.command(rich_help_panel=Group.KEEP)
+def show(
+    run: Annotated[Path, typer.Argument(help="A results folder.", metavar="RUN")],
+    tables: Annotated[str, typer.Argument(help="Tables to print, comma-separated, or all.", metavar="TABLE")] = "",
+) -> None:
+    """Print what a run found: the verdict of each table, or a table."""
+    from ...show.show_command import show_command
+
+    show_command(run, names(tables))
+
+
 class PicturePlace(StrEnum):
     inside = "inside"
     beside = "beside"

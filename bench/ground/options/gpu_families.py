@@ -10,6 +10,8 @@ RADV, ANV, HASVK = "libvulkan_radeon", "libvulkan_intel", "libvulkan_intel_hasvk
 # NVIDIA's compiler of CUDA, which is given its own language and knows one kind of shader.
 NVRTC = "libnvrtc"
 FRAGMENT = "fragment"
+# The family that answers quote.
+USUAL = "navi21"
 
 
 @dataclass(frozen=True)

@@ -34,6 +34,8 @@ from .table import TABLE, CostOptions, CostOutputs
 
 FLOAT = "float"
 MEASURES = ("isa", "time")
+# The most encodings that a verdict lists.
+MOST_LISTED = 8
 
 
 def measures(options: CostOptions) -> list[str]:
@@ -219,6 +221,21 @@ def _texts(done: Measured) -> list[tuple[Row, str]]:
     return [] if not asked else asked.listed or list(_listings(asked, []))
 
 
+def _verdict(rows: Sequence[Row]) -> Iterator[str]:
+    """List what encoding and decoding take on one family: the cheapest, and the most expensive."""
+    listed = [row for row in rows if row["measure"] == "isa" and row["encoding"] and row["instructions"] is not None]
+    family = next((row["family"] for row in sorted(listed, key=lambda row: row["family"] != families.USUAL)), None)
+    counts: dict[str, dict[str, int]] = {}
+    for row in listed:
+        if (row["family"], row["stage"]) == (family, listed[0]["stage"]):
+            counts.setdefault(row["encoding"], {})[row["operation"]] = row["instructions"]
+    whole = sorted((name for name in counts if len(counts[name]) > 1), key=lambda name: sum(counts[name].values()))
+    if whole:
+        shown = [*whole[: MOST_LISTED - 1], *whole[MOST_LISTED - 1 :][-1:]]
+        figures = ", ".join(f"{name} {' + '.join(map(str, counts[name].values()))}" for name in shown)
+        yield f"Instructions on {family}, {' + '.join(counts[whole[0]])}: {figures}."
+
+
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     """Families side by side, those of one vendor in one sheet."""
     first = next((row for row in rows if row["stage"]), None)
@@ -279,6 +296,7 @@ WORK = Work(
     steps=_steps,
     measure=each(lambda part: part.measured()),
     shown=_shown,
+    verdict=_verdict,
     summary=_summary,
     warnings=_warnings,
     write=_write,

@@ -16,6 +16,7 @@ from ...subjects.names.backends import backends_here
 from ...subjects.names.storages import roundings_named
 from ..charts import one_backend
 from ..table import NoOutputs, Row, Sheet, Step, Work, each
+from ..verdicts import by_bits
 from . import measure
 from .charts import charts
 from .table import CurvesOptions
@@ -62,6 +63,16 @@ def in_order(rows: Sequence[Row]) -> list[Row]:
     return sorted(rows, key=lambda row: (row["bits"], math.inf if row["error_max"] is None else row["error_max"]))
 
 
+def _verdict(rows: Sequence[Row]) -> Iterator[str]:
+    measured = one_backend([row for row in rows if row["error_max"] is not None])
+    quantities = {"error_max": "roughness, metallic and AO", "display_max": "colours, in display steps"}
+    for figure, quantity in quantities.items():
+        part = [row for row in measured if row[figure] is not None]
+        if part:
+            best = by_bits(part, figure, lambda row, figure=figure: f"{row[figure]:.2g}")
+            yield f"Most accurate (largest error) for {quantity}: {best}."
+
+
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     measured = one_backend([row for row in rows if row["error_mean"] is not None])
     names = ("encoding", "storage", "rounding", "range", "bits", "error_mean", "error_max", "display_max", "least")
@@ -73,6 +84,7 @@ WORK = Work(
     steps=_steps,
     measure=each(lambda case: [measure.measure(case)]),
     finish=in_order,
+    verdict=_verdict,
     summary=_summary,
     charts=charts,
 )

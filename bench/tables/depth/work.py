@@ -38,6 +38,7 @@ from ...subjects.names.storages import roundings_named
 from ..charts import but_without_twins, having
 from ..table import Measured, Row, Sheet, Step, Tick, Work, each
 from ..unmeasurable import UNMEASURABLE
+from ..verdicts import by_bits
 from . import measure
 from .charts import charts, depth_chart
 from .frames import check_and_say, frames_named
@@ -166,6 +167,23 @@ def _shown(done: Measured) -> Iterator[Sheet]:
     found = but_without_twins(done.rows)
     rows = _of_frames(found) if any(step.case.frame for step in done.steps) else _beside(found)
     yield Sheet("", rows, TABLE.drops(rows))
+
+
+def _verdict(rows: Sequence[Row]) -> Iterator[str]:
+    """Name the codes with the smallest error relative to the distance, of depth buffers and of other targets."""
+    ranges = dict.fromkeys((row["near"], row["far"]) for row in rows)
+    for near, far in ranges:
+        worst: dict[tuple[Any, ...], Row] = {}
+        for row in rows:
+            if _is_at(row, near, far):
+                key = row["depth"], row["storage"], row["rounding"], row["rebuilt"]
+                relative = max(row["error_max"] / row["distance"], worst.get(key, {}).get("relative", 0.0))
+                worst[key] = row | {"relative": relative}
+        for kind, is_buffer in {"in depth buffers": True, "in other targets": False}.items():
+            part = [row for row in worst.values() if str(row["storage"]).startswith("depth") is is_buffer]
+            if part:
+                best = by_bits(part, "relative", lambda row: f"{row['relative']:.2g}")
+                yield f"Largest error relative to the distance, {near:g} to {far:g}, {kind}: {best}."
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
@@ -338,6 +356,7 @@ WORK = Work(
     steps=_steps,
     measure=each(measure.measure),
     shown=_shown,
+    verdict=_verdict,
     summary=_summary,
     write=_write,
     charts=charts,

@@ -31,6 +31,7 @@ from ...subjects.scenes.scene_names import scene_makers_named
 from ..plans import attempt, with_codecs
 from ..shots import by_shots, checked_device, shot_steps
 from ..table import Row, Sheet, Step, Work
+from ..verdicts import codec_name
 from . import pictures
 from .charts import charts
 from .measure import EffectsBench, EffectsCase, group_of, in_order
@@ -145,6 +146,20 @@ def _key(case: EffectsCase, options: EffectsOptions) -> Row:
     return key | {"repeats": options.repeats, "flip": options.flip}
 
 
+def _verdict(rows: Sequence[Row]) -> Iterator[str]:
+    measured = [row for row in rows if row["effect_psnr_db"] is not None and row["encoding"]]
+    said = []
+    for effect, pipeline, scene in dict.fromkeys(map(group_of, measured)):
+        part = [row for row in measured if group_of(row) == (effect, pipeline, scene)]
+        worst, best = (chosen(part, key=lambda row: row["effect_psnr_db"]) for chosen in (min, max))
+        ends = [f"{row['effect_psnr_db']:.1f} dB ({codec_name(row)})" for row in (worst, best)]
+        moved = max((row["moved_percent"] for row in part if row["moved_percent"] is not None), default=0.0)
+        rays = f", up to {moved:.0f}% of the rays hit something else" if moved >= 1 else ""
+        said.append(f"{effect} in {scene} {' to '.join(dict.fromkeys(ends))}{rays}")
+    if said:
+        yield f"Effects against those of exact normals: {'; '.join(said)}."
+
+
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     names = ("encoding", "storage", "depth", "effect_psnr_db", "effect_rms", "moved_percent", "method_rms", "psnr_db")
     for effect, pipeline, scene in dict.fromkeys(group_of(row) for row in rows):
@@ -158,6 +173,7 @@ WORK = Work(
     steps=_steps,
     measure=by_shots(lambda folder, row, drawn, exact: pictures.write(folder, row, drawn, exact[0])),
     finish=in_order,
+    verdict=_verdict,
     summary=_summary,
     charts=charts,
     subjects=pictures.subjects,

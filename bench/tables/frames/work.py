@@ -13,7 +13,9 @@ from ...ground.options.targets import not_with_noise, that_fit, without_noise
 from ...subjects.codecs.kinds.codecs import codecs_of_kind
 from ...subjects.names.backends import backends_here
 from ...subjects.names.storages import roundings_named
+from ..charts import having, one_backend
 from ..table import NoOutputs, Row, Sheet, Step, Work, each
+from ..verdicts import by_bits
 from . import measure
 from .sets import frame_sets_named
 from .table import FramesOptions
@@ -77,6 +79,15 @@ def _codec_of(row: Row) -> tuple:
     return row["frame_set"], row["encoding"], row["storage"], row["rounding"]
 
 
+def _verdict(rows: Sequence[Row]) -> Iterator[str]:
+    measured = one_backend(having(rows, "rotation_rms_deg"))
+    for kind, is_handed in {"with handedness": True, "without handedness": False}.items():
+        part = [row for row in measured if (row["hands_lost"] is not None) is is_handed]
+        if part:
+            best = by_bits(part, "rotation_rms_deg", lambda row: f"mean {row['rotation_mean_deg']:.2g}°")
+            yield f"Most accurate {kind}: {best}."
+
+
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     measured = [row for row in rows if row["rotation_rms_deg"] is not None]
     chosen = [row for row in measured if row["backend"] == measured[0]["backend"]]
@@ -91,6 +102,7 @@ WORK = Work(
     steps=_steps,
     measure=each(lambda case: [measure.measure(case)]),
     finish=in_order,
+    verdict=_verdict,
     summary=_summary,
     failures=_failures,
 )

@@ -19,9 +19,13 @@ from ...ground.output.writing import check_folder, whole_file
 from ...subjects.codecs.kinds.named import light_codecs_named
 from ...subjects.names.light_buffers import MOST_LIGHT
 from ..table import Row, Sheet, Step, Work, each
+from ..verdicts import listed
 from . import measure
 from .charts import charts
 from .table import LightsOptions, LightsOutputs
+
+# How far off a sum of lights may be.
+ADDS_UP = 0.01
 
 # Lights in one sum.
 MOST_LIGHTS = 4096
@@ -97,6 +101,20 @@ def _finish(rows: Sequence[Row]) -> list[Row]:
     return measure.sorted_rows(list(rows))
 
 
+def _verdict(rows: Sequence[Row]) -> Iterator[str]:
+    """Say which light buffers add up the most lights, to 1%, in their worst channel."""
+    sums = [row for row in rows if row["experiment"] == "equal" and row["sum"] == 1 and row["model"] is not None]
+    most = max((row["lights"] for row in sums), default=0)
+    worst: dict[str, float] = {}
+    for row in sums:
+        if row["lights"] == most:
+            worst[row["light_buffer"]] = max(worst.get(row["light_buffer"], 0.0), abs(row["model"] - 1))
+    if worst:
+        good = listed(name for name, error in worst.items() if error <= ADDS_UP)
+        last = max(worst, key=lambda name: worst[name])
+        yield f"{most} lights add up to within {ADDS_UP:.0%} in {good}; {last} is off by {worst[last]:.0%}."
+
+
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     equal: dict[tuple[str, str], Row] = {}
     for row in rows:
@@ -111,6 +129,7 @@ WORK = Work(
     steps=_steps,
     measure=each(lambda rows: rows()),
     finish=_finish,
+    verdict=_verdict,
     summary=_summary,
     charts=charts,
 )

@@ -18,6 +18,7 @@ from ...subjects.codecs.encoding_names import encodings_named
 from ...subjects.codecs.names import check_twin
 from ...subjects.normals.normal_names import normal_sets_named
 from ...subjects.normals.normal_sets import NormalSet
+from ..charts import having
 from ..table import Measured, Row, Sheet, Step, Work, each
 from . import measure, pictures
 from .charts import charts
@@ -119,6 +120,18 @@ def _key(case: MapCase) -> Row:
     return key | {"normals": case.normal_set.name, "decoder": case.decoder, "encoder": case.block.encoder.name}
 
 
+def _verdict(rows: Sequence[Row]) -> Iterator[str]:
+    """Say each format's best encoding, the most accurate first."""
+    known = having(rows, "angle_rms_deg")
+    for normals, decoder in dict.fromkeys(map(group_of, known)):
+        part = [row for row in known if group_of(row) == (normals, decoder)]
+        best: dict[str, str] = {}
+        for row in sorted(part, key=lambda row: row["angle_rms_deg"]):
+            block = f"in {row['block']}" if FORMATS[row["block"]].is_compressed else "uncompressed"
+            best.setdefault(row["block"], f"{row['encoding']} {block} {row['angle_mean_deg']:.2g}°")
+        yield f"Mean error on {normals} by format: {', '.join(best.values())}."
+
+
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     names = ("encoding", "block", "swizzle", "bits_per_texel", "angle_mean_deg", "angle_rms_deg", "angle_p99_deg")
     names += ("angle_max_deg", "psnr_db")
@@ -147,6 +160,7 @@ WORK = Work(
     steps=_steps,
     measure=each(measure.measure),
     finish=in_order,
+    verdict=_verdict,
     summary=_summary,
     write=_write,
     charts=charts,

@@ -15,11 +15,12 @@ from ...subjects.names.backends import backends_named
 from ...subjects.normals.normal_names import check_rays, normal_sets_named
 from ..charts import one_backend
 from ..table import Measured, Row, Sheet, Step, Work, each
+from ..verdicts import codec_name, codecs, listed
 from . import measure
 from .charts import charts
 from .measure import MixCase
 from .patches import Patches, mixes_of, patches_of
-from .table import MOST_COUNT, MOST_JUDGED_DEG, OPERATIONS, TABLE, MixOptions, MixOutputs
+from .table import ACROSS, MOST_COUNT, MOST_JUDGED_DEG, OPERATIONS, TABLE, MixOptions, MixOutputs
 from .verdict import judged, lines, worst_of_each
 
 # Two neighbours further apart than this lie on no surface that a filter is for.
@@ -145,6 +146,26 @@ def _ways(rows: Sequence[Row]) -> list[Row]:
     return [dict(zip(names, key, strict=True)) | {"agree_percent": least} for key, least in found.items()]
 
 
+def _verdict(rows: Sequence[Row]) -> Iterator[str]:
+    """Say which codes survive each use by every backend."""
+    made = list(lines(rows))
+    uses = {"filtering": "filterable", "blending": "blendable", "MSAA resolve": "resolvable"}
+    uses["filtering across an edge"] = f"filterable{ACROSS}"
+    by_codecs: dict[str, list[str]] = {}
+    for use, column in uses.items():
+        if any(line[column] is not None for line in made):
+            by_codecs.setdefault(_surviving(made, column), []).append(use)
+    if by_codecs:
+        yield "Codes that survive " + "; ".join(f"{listed(uses)}: {them}" for them, uses in by_codecs.items()) + "."
+
+
+def _surviving(made: Sequence[Row], column: str) -> str:
+    """Return the codes that a verdict holds for by every backend."""
+    failing = {codec_name(line) for line in made if line[column] != "yes"}
+    surviving = {codec_name(line): line for line in made if codec_name(line) not in failing}
+    return codecs(list(surviving.values()), listed) if surviving else "none of them"
+
+
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     made = list(lines(rows))
     if made:
@@ -162,6 +183,7 @@ WORK = Work(
     measure=each(measure.measure),
     finish=in_order,
     shown=_shown,
+    verdict=_verdict,
     summary=_summary,
     charts=charts,
 )

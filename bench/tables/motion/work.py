@@ -19,6 +19,7 @@ from ...subjects.codecs.names import check_twin, codecs_named, fitting
 from ..charts import having
 from ..shots import by_shots, shot_steps
 from ..table import Row, Sheet, Step, Work
+from ..verdicts import codec_name
 from . import pictures, turning
 from .charts import wobble_chart
 from .code_wobble import Motion
@@ -132,6 +133,8 @@ def _key(case: MotionCase) -> Row:
 
 IMAGE = ("static_psnr_db", "wobble_psnr_db", "reprojected_psnr_db")
 LINE = ("encoding", "storage", "rounding", "space", "moves", "axis")
+# A code that changes less than this from frame to frame, in degrees, does not wobble.
+STILL_DEG = 1e-4
 
 
 def _lines(rows: Sequence[Row]) -> list[list[Row]]:
@@ -140,6 +143,21 @@ def _lines(rows: Sequence[Row]) -> list[list[Row]]:
     for row in having(rows, "wobble_deg", "turn_deg"):
         lines.setdefault(tuple(row.get(name) for name in LINE), []).append(row)
     return list(lines.values())
+
+
+def _verdict(rows: Sequence[Row]) -> Iterator[str]:
+    measured = having(rows, "wobble_deg", "turn_deg")
+    said = []
+    for space, moves in dict.fromkeys((row["space"], row["moves"]) for row in measured):
+        part = [row for row in measured if (row["space"], row["moves"]) == (space, moves)]
+        worst = max(part, key=lambda row: row["wobble_deg"])
+        where = f"in {space} space, turning the {moves},"
+        if worst["wobble_deg"] < STILL_DEG:
+            said.append(f"{where} it does not change")
+        else:
+            said.append(f"{where} it changes by up to {worst['wobble_deg']:.2g}° RMS ({codec_name(worst)})")
+    if said:
+        yield f"Error from one frame to the next: {'; '.join(said)}."
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
@@ -177,6 +195,7 @@ WORK = Work(
     steps=_steps,
     check=_check,
     measure=by_shots(pictures.write),
+    verdict=_verdict,
     summary=_summary,
     charts=_charts,
     plotted=lambda done: [wobble_chart(_plotted(done.rows))],

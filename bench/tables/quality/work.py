@@ -21,8 +21,9 @@ from ...measures.metrics import published
 from ...subjects.codecs.names import check_twin, codecs_named, fitting
 from ...subjects.names.backends import backends_named
 from ...subjects.normals.normal_names import lacking_rays, normal_sets_named
-from ..charts import backends_of, one_backend
+from ..charts import backends_of, having, one_backend
 from ..table import BACKENDS_NEED, C_COMPILER, PART, Measured, Row, Sheet, Step, Tick, Work
+from ..verdicts import by_bits
 from . import measure
 from .charts import charts
 from .extras import extras
@@ -187,6 +188,17 @@ def _not_shown(rows: Sequence[Row]) -> Iterator[str]:
         yield f"{what}: {said} ({reason})"
 
 
+def _verdict(rows: Sequence[Row]) -> Iterator[str]:
+    measured = one_backend(having(rows, "bits", "angle_rms_deg"))
+    for normals in dict.fromkeys(row["normals"] for row in measured):
+        part = [row for row in measured if row["normals"] == normals]
+        yield f"Most accurate on {normals}: {by_bits(part, 'angle_rms_deg', _angles)}."
+
+
+def _angles(row: Row) -> str:
+    return f"mean {row['angle_mean_deg']:.3g}°, largest {row['angle_max_deg']:.3g}°"
+
+
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     measured = [row for row in rows if not row.get("skipped")]
     # A row without figures has no count; it stands with the others of its set, and makes no sheet.
@@ -287,6 +299,7 @@ WORK = Work(
     merge=lambda step, rows: [measure.merged(step.case, rows) | best_columns(step.case.codec)],
     finish=_finished,
     shown=_shown,
+    verdict=_verdict,
     summary=_summary,
     warnings=_warnings,
     failures=_failures,

@@ -30,6 +30,7 @@ from ...subjects.scenes.scene_names import scene_makers_named
 from ..plans import suited, with_codecs
 from ..shots import by_shots, checked_device, described, says_little, shot_steps
 from ..table import Measured, Row, Sheet, Step, Work
+from ..verdicts import codec_name
 from . import pictures
 from .charts import charts
 from .measure import RenderBench, RenderCase, in_order, ranked, shown_scene
@@ -39,6 +40,11 @@ MAX_FRAMES = 1000
 # Percent of covered pixels beyond which a line says that they are black, or clipped.
 MOSTLY_BLACK = 95.0
 MUCH_CLIPPED = 5.0
+# What `pick` measures of studio: an encoding's figures with each axis up, over many orientations.
+ONE_ORIENTATION = (
+    " This is one orientation: turning an encoding's axes changes its image by several dB, often more than encodings "
+    "differ. pick compares them over many orientations."
+)
 
 
 def layouts(options: RenderOptions) -> list[Layout]:
@@ -197,6 +203,20 @@ def _usual_columns(rows: Sequence[Row]) -> tuple[str, ...]:
     return tuple(name for names, is_usual in usual.items() if is_usual for name in names)
 
 
+def _verdict(rows: Sequence[Row]) -> Iterator[str]:
+    measured = [row for row in rows if row["psnr_db"] is not None]
+    for scene, pipeline in dict.fromkeys((shown_scene(row), row["pipeline"]) for row in measured):
+        part = [row for row in measured if (shown_scene(row), row["pipeline"]) == (scene, pipeline)]
+        worst, best = (chosen(part, key=lambda row: row["psnr_db"]) for chosen in (min, max))
+        figures = [f"{row['psnr_db']:.1f} dB ({_called(row)})" for row in (worst, best)]
+        caution = ONE_ORIENTATION if len({row["encoding"] for row in part}) > 1 else ""
+        yield f"Image of {scene} by {pipeline}: {' to '.join(dict.fromkeys(figures))}.{caution}"
+
+
+def _called(row: Row) -> str:
+    return codec_name(row) if row["encoding"] else row["layout"]
+
+
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     names = ("encoding", "storage", "psnr_db", "rank", "normal_psnr_db", "normal_rank")
     groups: dict[tuple, list[Row]] = {}
@@ -223,6 +243,7 @@ WORK = Work(
     measure=by_shots(lambda folder, row, drawn, reference: pictures.write(folder, row, drawn, reference[0])),
     finish=_finish,
     shown=_shown,
+    verdict=_verdict,
     summary=_summary,
     warnings=_warnings,
     charts=charts,

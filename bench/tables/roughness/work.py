@@ -79,6 +79,21 @@ def _said(rows: Sequence[Row]) -> tuple[str, ...]:
     return *CODE, *(name for name, usual in USUAL.items() if any(row[name] != usual for row in rows))
 
 
+def _verdict(rows: Sequence[Row]) -> Iterator[str]:
+    found = list(answers(rows))
+    for threshold, word in {0.1: "acceptable", 0.05: "invisible"}.items():
+        part = [row for row in found if row["threshold"] == threshold]
+        for encoding in dict.fromkeys(row["encoding"] for row in part):
+            where = ", ".join(_from(row) for row in part if row["encoding"] == encoding)
+            yield f"{encoding}: banding in reflections is {word} (FLIP {threshold:g}) from roughness {where}."
+
+
+def _from(row: Row) -> str:
+    least = "none" if row["roughness"] is None else f"{row['roughness']:.2f}"
+    dithered = "" if row["dither"] == NONE else f" with {row['dither']} dither"
+    return f"{least} in {row['storage']}{dithered}"
+
+
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     """From which roughness on each code keeps each threshold."""
     lines: dict[tuple[object, ...], Row] = {}
@@ -101,6 +116,7 @@ WORK = Work(
     measure=each(_measured),
     finish=in_order,
     shown=_shown,
+    verdict=_verdict,
     summary=_summary,
     charts=charts,
 )

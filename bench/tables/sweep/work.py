@@ -33,10 +33,17 @@ def _shown(done: Measured) -> Iterator[Sheet]:
     yield Sheet("", rows, TABLE.drops(rows))
 
 
+def _verdict(rows: Sequence[Row]) -> Iterator[str]:
+    timed = sorted((row for row in rows if row["ms_frame"] is not None), key=lambda row: row["ms_frame"])
+    if timed:
+        figures = [f"{row['pipeline']}, {row['ms_frame']:.3g} ms" for row in (timed[0], timed[-1])]
+        yield f"Fastest frame: {figures[0]}; slowest: {figures[1]}, by {timed[0]['clock']}."
+
+
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     names = ("pipeline", "layout", "objects", "shadow", "ms_frame", "ms_frame_spread", "triangles")
     shown = [{name: row[name] for name in names} for row in rows]
     yield Sheet(f"a frame of {rows[0]['objects']} objects, milliseconds by {rows[0]['clock']}", shown, ("layout",))
 
 
-WORK = Work(steps=_steps, measure=_measure, shown=_shown, summary=_summary, charts=charts)
+WORK = Work(steps=_steps, measure=_measure, shown=_shown, verdict=_verdict, summary=_summary, charts=charts)

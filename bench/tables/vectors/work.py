@@ -15,8 +15,10 @@ from ...subjects.names.backends import backends_here
 from ...subjects.names.storages import roundings_named
 from ..charts import but_without_twins, one_backend
 from ..table import Measured, NoOutputs, Row, Sheet, Step, Work, each
+from ..verdicts import by_bits
 from . import measure
 from .charts import charts
+from .order import place
 from .paths import Paths
 from .table import VectorsOptions
 
@@ -24,6 +26,10 @@ MAX_SIDE, MAX_POINTS = 2**16, 2**24
 SPEEDS, RANGES = (1e-6, 1e5), (1e-3, 16.0)
 # What tells a line of a sheet or a chart from another.
 LINE = ("encoding", "storage", "rounding", "backend", "range", "size")
+# The speed that a verdict compares at, in pixels per frame.
+EVERYDAY_PX = 4.0
+# Errors up to this are alike: reprojection filters between pixels.
+UNNOTICED_PX = 0.01
 
 
 def cases(options: VectorsOptions) -> list[measure.MotionVectorCase]:
@@ -109,6 +115,19 @@ def _shown(done: Measured) -> Iterator[Sheet]:
             yield Sheet(f"{title}; {part[0]['size']}", _by_speed(part, figure, (*names, *more)), ("range",))
 
 
+def _verdict(rows: Sequence[Row]) -> Iterator[str]:
+    """Name the codes that keep still pixels still and have the smallest error at an everyday speed."""
+    measured = one_backend([row for row in rows if row["error_mean_px"] is not None])
+    speed = min((row["speed"] for row in measured), key=lambda speed: abs(speed - EVERYDAY_PX), default=0.0)
+    still = [row for row in sorted(measured, key=place) if row["speed"] == speed and not row["still_px"]]
+    seen = [row | {"at_least_px": max(row["error_mean_px"], UNNOTICED_PX)} for row in still]
+    if seen:
+        best = by_bits(seen, "at_least_px", lambda row: f"{row['error_mean_px']:.2g} px")
+        yield f"Most accurate at {speed:g} px per frame, of encodings that keep still pixels still: {best}."
+    elif measured:
+        yield "No encoding keeps still pixels still; use a storage whose code for 0 is exact (_centred or _snorm)."
+
+
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     measured = one_backend([row for row in rows if row["error_mean_px"] is not None])
     if measured:
@@ -122,6 +141,7 @@ WORK = Work(
     measure=each(measure.measure),
     finish=in_order,
     shown=_shown,
+    verdict=_verdict,
     summary=_summary,
     charts=charts,
 )

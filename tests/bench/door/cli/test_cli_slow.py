@@ -176,13 +176,24 @@ def pixels_of(path) -> np.ndarray:
         return np.asarray(image)
 
 
-def test_run_prints_the_articles_figures_beside_its_own(results):
-    _, out, err = results
+def test_run_prints_a_verdict_and_show_the_articles_figures_beside_its_own(run, results):
+    folder, out, err = results
+    assert err == "" and out.startswith("quality: Most accurate on playground: 16 bits: octahedral_precise"), out
+    assert len(out.splitlines()) <= 6 and "normalbench show" in out, out
+    status, shown, _ = run("show", str(folder), "quality")
+    assert status == 0 and shown.startswith("Most accurate on playground: 16 bits: octahedral_precise"), shown
     for name, figure in published.PSNR_DB.items():
-        table = out[out.index("playground, rgba8") :]
+        table = shown[shown.index("playground, rgba8") :]
         line = next(line for line in table.splitlines() if line.startswith(f"{name} "))
         assert f"{figure:.2f}" in line, line
-    assert err == ""
+    assert run("show", str(folder))[1].split() == " ".join(out.splitlines()[:-2]).split(), "in another width"
+
+
+def test_show_names_the_tables_that_a_run_has(run, results, tmp_path):
+    status, _, err = run("show", str(results[0]), "depth")
+    assert (status, err) == (2, "normalbench: unknown table of the run 'depth'; known: all, quality\n")
+    status, _, err = run("show", str(tmp_path))
+    assert status == 2 and err.count("\n") == 1, err
 
 
 def test_run_leaves_a_results_folder(results):

@@ -25,7 +25,7 @@ def test_the_answer_comes_first(cores, monkeypatch):
     monkeypatch.setattr(
         run_of, "measured", lambda ask, *_: seen.append(ask.table.name) or Measured(ask.options, None, (), ())
     )
-    monkeypatch.setattr(run_of, "show_summary", lambda table, _: seen.append(f"{table.name} is shown"))
+    monkeypatch.setattr(run_of, "say_verdict", lambda table, _: seen.append(f"{table.name} is shown"))
     tables = [TABLES[name] for name in ("vectors", "frames", "pick")]
     run_of._measure_all(None, [Asked(table, table.options(), None, ()) for table in tables], HERE, None)
     assert seen[:2] == ["pick", "pick is shown"], seen

@@ -1,0 +1,33 @@
+"""What `show` does: print what a run found, or a table of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ..ground.choose import choose
+from ..ground.options.words import Names
+from ..ground.output.errors import UsageError
+from ..keep.runs import read_to_show
+from ..tables.registry import TABLES
+from ..tables.table import UNEXPECTED
+from .showing import say_verdict, show_summary
+
+
+def show_command(folder: Path, tables: Names) -> None:
+    """Print the verdicts of a run; if tables are named, their summaries.
+
+    Args:
+        tables: empty for the verdicts of all.
+
+    Raises:
+        UsageError: the folder is not a run's, it has no such table, or its rows are of another version.
+    """
+    done = read_to_show(folder, needs_rows=True)
+    here = {name: table for name, table in TABLES.items() if name in done.tables}
+    say = show_summary if tables else say_verdict
+    for table in choose("table of the run", tables or ("all",), here):
+        try:
+            say(table, done.finished_rows(table.name))
+        except UNEXPECTED as error:
+            again = f"measure them again: normalbench run --tables {table.name}"
+            raise UsageError(f"{folder}: the rows of {table.name} are not those of this version; {again}") from error
