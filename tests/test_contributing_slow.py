@@ -38,8 +38,8 @@ def test_an_encoding_is_a_pair_and_a_line(copy):
 
 @pytest.mark.usefixtures("gl")
 def test_a_storage_is_a_line_and_a_column_two(copy):
-    """Both languages store codes of 5:6 bits as integers of so many bits in two bytes do."""
-    rows = rows_of(copy, "quality", "--encoding", "octahedral", "--storage", "rgb565,rg8_5_6_5", "--normals", "sphere")
+    """Both languages store codes of 5:5 bits as integers of so many bits in two bytes do."""
+    rows = rows_of(copy, "quality", "--encoding", "octahedral", "--storage", "rgb5_a1,rg8_5_5", "--normals", "sphere")
     figures = {(row["storage"], row["backend"]): float(row["psnr_db"]) for row in rows}
     assert len(figures) == 4 and max(figures.values()) - min(figures.values()) < 1e-4, figures
     for row in rows:

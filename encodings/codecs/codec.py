@@ -162,7 +162,7 @@ class Codec:
     @property
     def is_integer(self) -> bool:
         """Whether its texels are bits alone, whose means are no numbers: an integer, or floats across channels."""
-        return self.encoding.is_packed or self.storage.form is not None
+        return self.encoding.is_packed or self.storage.is_word or self.storage.form is not None
 
     @property
     def bits(self) -> int:

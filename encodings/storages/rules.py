@@ -14,7 +14,7 @@ from types import MappingProxyType
 from .storage import BITS_32, CENTRED, FORMATS, FORMS, RGBA8, STORAGES, FloatForm, Storage, centred_storage
 
 # Most bits of a number laid across channels, and of all numbers together.
-MOST_BITS, MOST_TOGETHER = 20, 64
+MOST_BITS, MOST_TOGETHER, MOST_IN_WORD = 20, 64, 32
 # Words for numbers by their bits, and what the names of storages end with that hold them across channels.
 ENDINGS: Mapping[str, str] = MappingProxyType({"unorm": "", "snorm": "_snorm", "snorm_full": "_snorm_full"})
 # Other words for the same numbers. SNORM of OpenGL before 4.2 is (2 i + 1) / (2^n - 1), which are UNORM's.
@@ -52,6 +52,19 @@ def _target_of(bits: int) -> str:
     return f"{RGBA[: -(-bits // part)]}{part}"
 
 
+def word(kind: str, bits: tuple[int, ...]) -> Storage:
+    """Numbers of so many bits in one integer of 8, 16 or 32 bits, the first in the lowest bits: r32_uint_12_12.
+
+    Raises:
+        ValueError: as `across`; a line.
+    """
+    laid = across(kind, bits)
+    spread, size = ":".join(map(str, bits)), next(size for size in (8, 16, 32) if size >= sum(bits))
+    name = f"r{size}_uint_{spread.replace(':', '_')}{ENDINGS[kind]}"
+    signed = "signed " if kind == "snorm" else ""
+    return replace(laid, name=name, title=f"{spread} {signed}in R{size}_UINT", is_word=True)
+
+
 # Storages by rule: unorm:9:7, float:5:10.
 KINDS = (*ENDINGS, *SAME, "centred", "float", "ufloat")
 BY_RULE = re.compile(rf"(?P<kind>{'|'.join(KINDS)}):(?P<bits>\d{{1,3}}(?::\d{{1,3}})*)")
@@ -61,8 +74,8 @@ def by_rule(kind: str, bits: tuple[int, ...]) -> Storage:
     """Numbers of so many bits: the catalogue's format that has just these, or laid across channels.
 
     Args:
-        kind: "unorm", "snorm", "snorm_full", or another word for these; "uint" and "sint" are never a format's own
-            conversion. "centred" for the integers of SNORM in the channels of a UNORM format. "float" and "ufloat" have
+        kind: "unorm", "snorm", "snorm_full", or another word for these; "uint" and "sint" lie in one integer, where they
+            are of 32 bits together at most. "centred" for the integers of SNORM in the channels of a UNORM format. "float" and "ufloat" have
             the bits of exponent and mantissa, with and without a sign, and are all alike: see `of_count`.
 
     Raises:
@@ -78,6 +91,8 @@ def by_rule(kind: str, bits: tuple[int, ...]) -> Storage:
             )
         return centred_storage(like)
     same = SAME.get(kind, kind)
+    if kind in ("uint", "sint") and sum(bits) <= MOST_IN_WORD:
+        return word(same, bits)
     alike = (s for s in FORMATS.values() if (s.kind, s.bits, s.curved) == (same, bits, 0) and s != BITS_32)
     laid = (s for s in STORAGES.values() if s.is_packed and (s.kind, s.bits) == (same, bits))
     found = next(laid if kind in ("uint", "sint") else itertools.chain(alike, laid), None)
@@ -120,6 +135,7 @@ def rule_of(storage: Storage) -> str:
     """The bits of a storage as they are said: snorm:16:16; of floats what each channel has."""
     if storage.kind != "float":
         kind = "centred" if storage.is_centred else "snorm_full" if storage.is_full else storage.kind
+        kind = {"unorm": "uint", "snorm": "sint"}[kind] if storage.is_word else kind
         return ":".join((kind, *map(str, storage.bits)))
     forms = [storage.float_form(channel) for channel in range(storage.channels)]
     said = dict.fromkeys(f"{form.exponent}:{form.mantissa}" for form in forms)
@@ -148,11 +164,11 @@ def storage_of(name: str) -> Storage | None:
         return by_rule("centred", like.bits) if like.kind == "unorm" else None
     if floats := re.fullmatch(r"(u?float)_(\d{1,2})_(\d{1,2})", name):
         return _of_floats(floats[1], (int(floats[2]), int(floats[3])))
-    match = re.fullmatch(r"(r|rg|rgb|rgba)(8|16)((?:_\d{1,3})+)(_snorm|_snorm_full)?", name)
+    match = re.fullmatch(r"(r|rg|rgb|rgba)(8|16|32)(_uint)?((?:_\d{1,3})+)(_snorm|_snorm_full)?", name)
     if not match:
         return FORMATS.get(name)
-    kind = next(kind for kind, ending in ENDINGS.items() if ending == (match[4] or ""))
-    made = across(kind, tuple(map(int, match[3][1:].split("_"))))
+    kind = next(kind for kind, ending in ENDINGS.items() if ending == (match[5] or ""))
+    made = (word if match[3] else across)(kind, tuple(map(int, match[4][1:].split("_"))))
     if made.name != name:
         raise ValueError(f"{name}: these bits are called {made.name}")
     return made

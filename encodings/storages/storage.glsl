@@ -166,6 +166,28 @@ float number_of(uint integer, int i) {
 }
 #endif
 
+// The same numbers in one integer, the first in the lowest bits.
+uint to_word(vec4 code) {
+    vec4 numbers = biased(code);
+    uint word = 0u;
+    int first = 0;
+    for (int i = 0; i < STORAGE_CHANNELS; ++i) {
+        word |= integer_of(numbers[i], i) << first;
+        first += storage_bits[i];
+    }
+    return word;
+}
+
+vec4 from_word(uint word) {
+    vec4 numbers = vec4(0.0);
+    int first = 0;
+    for (int i = 0; i < STORAGE_CHANNELS; ++i) {
+        numbers[i] = number_of(word >> first & ~0u >> (32 - storage_bits[i]), i);
+        first += storage_bits[i];
+    }
+    return unbiased(numbers);
+}
+
 vec4 to_texel(vec4 code) {
     vec4 numbers = biased(code);
     uvec4 parts = uvec4(0u);

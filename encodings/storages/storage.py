@@ -77,6 +77,8 @@ class Storage:
         curved: how many of its channels, the first, keep linear light by the sRGB curve.
         part: bits of each channel of a target that numbers lie across as integers, 8 or 16; 0 where each number has a
             channel.
+        is_word: its numbers lie in one integer, the first in the lowest bits, for an integer format or a buffer. `part`
+            is then of the channels that the same integer fills in other targets, where it is measured.
         is_centred: the integers of SNORM lie in UNORM channels, 2^(n-1) - 1 more than themselves.
         holds_unit: its texels hold numbers in [0, 1] though it has a sign: those of an encoder that returns them so.
         is_said: somebody said its bits, however few they are.
@@ -93,6 +95,7 @@ class Storage:
     internal_format: int
     curved: int = 0
     part: int = 0
+    is_word: bool = False
     is_centred: bool = False
     holds_unit: bool = False
     is_said: bool = field(default=False, compare=False)
@@ -298,6 +301,7 @@ FORMATS: Mapping[str, Storage] = MappingProxyType(
         "r32f": R32F,
         "rg32f": Storage("rg32f", "RG32F", "float", (32, 32), 0x8230),
         "srgb8_a8": SRGB8_A8,
+        "rgb565": Storage("rgb565", "R5 G6 B5", "unorm", (5, 6, 5), 0x8D62),
     }
 )
 

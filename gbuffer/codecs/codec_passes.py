@@ -96,6 +96,7 @@ def storage_defines(storage: Storage, roundings: Sequence[str], shader_rounds: b
         "STORAGE_KIND": storage_kind(storage),
         "STORAGE_BIASED": int(storage.is_biased),
         "STORAGE_PART": storage.part,
+        "STORAGE_WORD": int(storage.is_word),
         "STORAGE_MOST": tuple(float(storage.most(i)) for i in channels),
         **_form_defines(storage),
         "STORAGE_CENTRED": int(storage.is_centred),

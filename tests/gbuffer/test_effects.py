@@ -60,8 +60,8 @@ WRITES, READS = Pass("first", (), (HALF,), nothing), Pass("second", (HALF,), (FI
         ((WRITES, WRITES), "pass first has the name of another pass"),
         ((Pass("first", (), (), nothing),), "pass first writes nothing"),
         (
-            (Pass("first", (), (replace(HALF, format="rgb565"),), nothing),),
-            "pass first has the resource half, which has the unknown format 'rgb565'; known: rgba8, ",
+            (Pass("first", (), (replace(HALF, format="rgb555"),), nothing),),
+            "pass first has the resource half, which has the unknown format 'rgb555'; known: rgba8, ",
         ),
         (
             (WRITES, Pass("second", (replace(HALF, scale=0.25),), (FINAL,), nothing)),

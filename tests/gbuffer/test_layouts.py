@@ -87,7 +87,7 @@ def test_a_sign_in_the_depth_is_a_bit_of_the_normal():
         ([("rgba16f", "normal.x normal.y")], {"encoding": "octahedral_precise"}, "in fixed point and not otherwise"),
         ([("rgba8", "normal.x:8 normal.y:8 normal.z:1")], {"encoding": "tetrahedral"}, "normal.z has 4 values"),
         ([("rg8", "normal.x normal.y"), ("r11g11b10f", "depth")], {"encoding": "xy_sign"}, "which depth needs"),
-        ([("rgb565", "normal.x normal.y")], {}, "unknown format 'rgb565'; known: rgba8"),
+        ([("rgb555", "normal.x normal.y")], {}, "unknown format 'rgb555'; known: rgba8"),
         ([("rgba8", "normal.x normal.y kind*normal.z")], {}, "only depth, power, roughness carry a sign"),
         ([("rgba8", "normal.x roughness*normal.y")], {}, "normal.y of octahedral is no sign"),
         (

@@ -180,13 +180,14 @@ class Channels:
 
     @property
     def part(self) -> int:
-        """The bits of a channel that numbers are laid across; 0 where each has a channel."""
-        return self.numbers.storage.part
+        """The bits of a channel that numbers are laid across; 0 where each has a channel, or all lie in one integer."""
+        return 0 if self.numbers.storage.is_word else self.numbers.storage.part
 
     @property
     def parts(self) -> int:
-        """How many channels numbers are laid across."""
-        return -(-self._end // self.part) if self.part else 0
+        """How many channels of a target the bits of the texel fill one after the other; 0 where each number has one."""
+        size = self.numbers.storage.part
+        return -(-self._end // size) if size else 0
 
     @property
     def _end(self) -> int:
@@ -251,10 +252,11 @@ class Channels:
 
     def _read_part(self, part: int) -> str:
         """A channel's integer, from the texel's words."""
-        each = WORD // self.part
+        size = self.numbers.storage.part
+        each = WORD // size
         word = "texel" + (f".{FIELDS[part // each]}" if self.words > 1 else "")
-        shift = self.part * (part % each)
-        return f"{word} >> {shift} & {mask_text(self.part)}" if shift else f"{word} & {mask_text(self.part)}"
+        shift = size * (part % each)
+        return f"{word} >> {shift} & {mask_text(size)}" if shift else f"{word} & {mask_text(size)}"
 
     @property
     def layout(self) -> str:
@@ -303,20 +305,23 @@ class Channels:
             "rule": self.rule,
             "target": numbers.target.title,
             "texels": [self._texel_text(word) for word in range(self.words)],
-            **(self._across_fields() if self.part else {"parts": []}),
+            "is_word": numbers.storage.is_word,
+            **self._across_fields(),
         }
 
     def _across_fields(self) -> dict[str, Any]:
-        """What the template is given of numbers that are laid across channels."""
-        each = WORD // self.part
-        made, read = zip(*((self._part_text(at), self._read_part(at)) for at in range(self.parts)), strict=True)
+        """What the template is given of a texel whose bits fill channels one after the other."""
+        if not self.parts:
+            return {"parts": [], "target_parts": []}
+        size, each = self.numbers.storage.part, WORD // self.numbers.storage.part
+        read = [self._read_part(at) for at in range(self.parts)]
         words = [range(word * each, min(self.parts, word * each + each)) for word in range(self.words)]
-        joined = [" | ".join(_shifted_text(f"parts.{FIELDS[at]}", self.part * (at % each)) for at in w) for w in words]
+        joined = [" | ".join(_shifted_text(f"parts.{FIELDS[at]}", size * (at % each)) for at in w) for w in words]
         return {
-            "parts": [(PARTS[at], made[at], read[at]) for at in range(self.parts)],
-            "part_scale": f"{(1 << self.part) - 1}.0",
-            "target_parts": [f"float({one})" for one in read] + ["0.0"] * (4 - self.parts),
-            "from_parts": [one or "0u" for one in joined],
+            "parts": [(PARTS[at], self._part_text(at), read[at]) for at in range(self.parts) if self.part],
+            "part_scale": f"{(1 << size) - 1}.0",
+            "target_parts": [f"float({part})" for part in read] + ["0.0"] * (4 - self.parts),
+            "from_parts": [part or "0u" for part in joined],
         }
 
     # The same in NumPy.
@@ -348,8 +353,9 @@ class Channels:
 
     def part_in(self, words: np.ndarray, part: int) -> np.ndarray:
         """The integers of a channel that numbers are laid across, uint32 of shape (count,)."""
-        place = part * self.part
-        return words[:, place // WORD] >> np.uint32(place % WORD) & np.uint32((1 << self.part) - 1)
+        size = self.numbers.storage.part
+        place = part * size
+        return words[:, place // WORD] >> np.uint32(place % WORD) & np.uint32((1 << size) - 1)
 
 
 def mask_text(bits: int) -> str:

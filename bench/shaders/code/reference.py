@@ -114,7 +114,7 @@ def _texels(channels: Channels, integers: np.ndarray, words: np.ndarray) -> np.n
     """What a shader reads from a render target, float32 of shape (count, 4)."""
     texels = np.zeros((len(integers), 4), np.float32)
     for part in range(channels.parts):
-        texels[:, part] = channels.part_in(words, part) * np.float32(1 / ((1 << channels.part) - 1))
+        texels[:, part] = channels.part_in(words, part) * np.float32(1 / ((1 << channels.numbers.storage.part) - 1))
     if channels.parts:
         return texels
     for at, channel in enumerate(channels.channels):

@@ -77,7 +77,7 @@ BY_BITS = {
     "snorm_full:B:...": "c is i/2^(B-1), exact at -1, 0, not at 1",
     "snorm_gl2:B:...": "c is (2i+1)/(2^B-1): unorm's numbers",
     "centred:B:...": "snorm's integers and a half, in UNORM",
-    "uint:B:... sint:B:...": "as unorm and snorm; the shader rounds",
+    "uint:B:... sint:B:...": "unorm and snorm in one integer, x lowest",
     "float:E:M ufloat:E:M": "as many as 8 bytes hold, 4 at most",
     "unorm:4:4..16:16": "each, from some bits to some others",
 }

@@ -303,12 +303,14 @@ def _spread_text(row: Row) -> str:
 
 
 def _pole_sentence(row: Row) -> str:
-    """Along which axis of the world a code's z axis should lie, where that is worth more than its error."""
+    """Say how an encoding's z axis should lie and how to write that, if that is worth more than its error."""
     pole, cost = row.get("image_pole"), row.get("image_wrong_pole_db") or 0.0
     if not pole or cost < max(STEP, ERRORS * (row.get("image_se_db") or 0.0)):
         return ""
-    axis = "the vertical" if pole == "y" else f"the world's {pole} axis (y is up)"
-    return f" With its z axis along {axis}; along the worst axis it has {cost:.1f} dB less."
+    where, ups = ("up", "yz") if pole == "y" else ("sideways", "zy")
+    name, known = row["encoding"], ENCODINGS.get(row["encoding"])
+    write = f": {name}:axis=y if {ups[0]} is up in your world, {name} if {ups[1]} is" if known and known.can_turn else ""
+    return f" Point its z axis {where}{write}; the worst axis costs {cost:.1f} dB."
 
 
 def _mixing_text(row: Row) -> str:

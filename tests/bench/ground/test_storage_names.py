@@ -38,7 +38,9 @@ from normalbench.encodings.storages.storage import DITHERED, MOTION_STORAGES, RO
         ("unorm:8:8:4..10:10:4", "rgb8_8_8_4 rgb8_9_9_4 rgb8_10_10_4"),
         ("unorm:8,unorm:5", "r8 r8_5"),
         ("unorm:20:20:20:4", "rgba16_20_20_20_4"),
-        ("uint:8:8,sint:8:8", "rg8_8_8 rg8_8_8_snorm"),
+        ("uint:8:8,sint:8:8", "r16_uint_8_8 r16_uint_8_8_snorm"),
+        ("uint:16:16,r32_uint_16_16,uint:4:3", "r32_uint_16_16 r8_uint_4_3"),
+        ("uint:16:16:16", "rgb16_16_16_16"),
         ("snorm_full:8:8,snorm_gl2:8:8", "rg8_8_8_snorm_full rg8"),
         ("float:5:10,float:8:23,float:8:7,ufloat:5:6", "rgba16f rgba32f float_8_7 ufloat_5_6"),
         ("float:5:2..5:4", "float_5_2 float_5_3 float_5_4"),
@@ -46,7 +48,7 @@ from normalbench.encodings.storages.storage import DITHERED, MOTION_STORAGES, RO
         ("R16G16_SNORM,DXGI_FORMAT_R10G10B10A2_UNORM", "rg16_snorm rgb10a2"),
         ("snorm10-10-10-2,unorm10-10-10-2", "rgba8_10_10_10_2_snorm rgb10a2"),
         ("unorm8x4,snorm16x2,float16x2,float32x4", "rgba8 rg16_snorm rg16f rgba32f"),
-        ("B5G6R5_UNORM_PACK16", "rg8_5_6_5"),
+        ("B5G6R5_UNORM_PACK16,unorm:5:6:5", "rgb565"),
     ],
 )
 def test_bits_name_a_storage(said, names):

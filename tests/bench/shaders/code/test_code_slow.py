@@ -112,7 +112,7 @@ def test_what_is_wrong_in_one_language_is_written_in_none(run, tmp_path, monkeyp
 
 # One of each that is made otherwise: plain, precise, with a view, a sign, tables, levels, polynomials, an axis, a
 # parameter, floats of each size, numbers across bytes, signed ones, the ways to round, centred numbers, floats of any
-# form, signed integers over a power of two, and words of 64 bits.
+# form, signed integers over a power of two, words of 64 bits, and integers of 32.
 CODECS = (
     "octahedral/rgb10a2",
     "octahedral_precise/rgb8_12_12_snorm",
@@ -133,6 +133,8 @@ CODECS = (
     "octahedral_precise/snorm_full:8:7",
     "xyz/unorm:20:17:20",
     "cube/snorm:18:18:4/truncate",
+    "octahedral/uint:16:16",
+    "cube/sint:12:12:3/truncate",
 )
 
 
