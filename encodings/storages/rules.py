@@ -74,9 +74,10 @@ def by_rule(kind: str, bits: tuple[int, ...]) -> Storage:
     """Numbers of so many bits: the catalogue's format that has just these, or laid across channels.
 
     Args:
-        kind: "unorm", "snorm", "snorm_full", or another word for these; "uint" and "sint" lie in one integer, where they
-            are of 32 bits together at most. "centred" for the integers of SNORM in the channels of a UNORM format. "float" and "ufloat" have
-            the bits of exponent and mantissa, with and without a sign, and are all alike: see `of_count`.
+        kind: "unorm", "snorm", "snorm_full", or another word for these; "uint" and "sint" lie in one integer, if they
+            have at most 32 bits together. "centred" for the integers of SNORM in the channels of a UNORM format. "float"
+            and "ufloat" have the bits of exponent and mantissa, with and without a sign, and are all alike: see
+            `of_count`.
 
     Raises:
         ValueError: as `across`; centred ones that are no format of a GPU; and floats that cannot be.

@@ -309,8 +309,8 @@ def _pole_sentence(row: Row) -> str:
         return ""
     where, ups = ("up", "yz") if pole == "y" else ("sideways", "zy")
     name, known = row["encoding"], ENCODINGS.get(row["encoding"])
-    write = f": {name}:axis=y if {ups[0]} is up in your world, {name} if {ups[1]} is" if known and known.can_turn else ""
-    return f" Point its z axis {where}{write}; the worst axis costs {cost:.1f} dB."
+    names = f": {name}:axis=y if {ups[0]} is up in your world, {name} if {ups[1]} is"
+    return f" Point its z axis {where}{names if known and known.can_turn else ''}; the worst axis costs {cost:.1f} dB."
 
 
 def _mixing_text(row: Row) -> str:

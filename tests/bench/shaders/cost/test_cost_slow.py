@@ -12,8 +12,9 @@ from normalbench.bench.shaders.isa.disassembly import KINDS, names
 from normalbench.bench.tables.cost import measure as cost
 from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.storages.rules import by_rule
 from normalbench.gbuffer.defines.kernels import STAGES
-from normalbench.gbuffer.defines.packings import PACKINGS
+from normalbench.gbuffer.defines.packings import PACKINGS, StoragePacking
 
 # The one without a multiply-add of full rate, and one with waves of 64; all five at night.
 FAMILIES = ("polaris10", "navi21")
@@ -34,6 +35,7 @@ def table_of(families, cache) -> list:
             for name in ("rgba8", "rgba8_snorm", "12:12", "depth16", "depth24", "depth24_sign")
             for p in PACKINGS[name]
         ]
+        packings += [StoragePacking(by_rule("uint", (12, 12)), 2)]
         chosen = cost.cases(ENCODINGS.values(), packings, cost.OPERATIONS)
         lacks: list[str] = []
         found = list(cost.isa_rows(chosen, list(STAGES), [*families], lacks, lambda _: None))
@@ -205,12 +207,13 @@ def test_spheremap_costs_the_articles_four_and_three_for_its_pole(whole_table):
 
 
 def test_storages_cost_what_their_conversion_is(whole_table):
-    """UNORM one multiply-add a number, SNORM nothing, packed words more."""
+    """UNORM one multiply-add a number, SNORM nothing, packed words more: most where bytes are split."""
     for stage, operation in itertools.product(STAGES, ("pack", "unpack")):
         for count in instructions(whole_table, operation, stage).values():
             assert (count["rgba8 8:8"], count["rgba8 8:8:8"]) == (2, 3)
             assert count["rgba8_snorm 8:8"] == count["rgba8_snorm 8:8:8"] == 0
             assert min(count["rgb8_12_12 12:12"], count["rgba8 depth 8:8"]) > 3 * count["rgba8 8:8"]
+            assert count["rgba8 8:8"] < count["r32_uint_12_12 12:12"] < 0.8 * count["rgb8_12_12 12:12"]
             assert count["rgba8 signed depth 8:8:8"] > count["rgba8 depth 8:8:8"]
 
 
