@@ -75,8 +75,8 @@ def by_rule(kind: str, bits: tuple[int, ...]) -> Storage:
 
     Args:
         kind: "unorm", "snorm", "snorm_full", or another word for these; "uint" and "sint" lie in one integer, if they
-            have at most 32 bits together. "centred" for the integers of SNORM in the channels of a UNORM format. "float"
-            and "ufloat" have the bits of exponent and mantissa, with and without a sign, and are all alike: see
+            have at most 32 bits together. "centred" for the integers of SNORM in the channels of a UNORM format.
+            "float" and "ufloat" have the bits of exponent and mantissa, with and without a sign, and are all alike: see
             `of_count`.
 
     Raises:
