@@ -34,6 +34,10 @@ COMPONENTS: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "occlusion": ("occlusion",),
     }
 )
+# What a surface has of an attribute that no G-buffer keeps.
+WITHOUT: Mapping[str, float] = MappingProxyType(
+    {"metalness": 0.0, "specular": DIELECTRIC, "occlusion": 1.0, "emission": 0.0}
+)
 # The curve that leaves numbers as they are.
 ITSELF = "linear"
 

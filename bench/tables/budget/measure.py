@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, suppress
 from dataclasses import replace
 from functools import partial
 from itertools import combinations
+
+import numpy as np
 
 from ....encodings.codecs.depth_codec import DepthEncoding
 from ....gbuffer.gl.device import Device, FormatError
@@ -21,7 +23,7 @@ from ...ground.output.errors import UsageError
 from ...measures.metrics.totals import psnr_db
 from ..table import Row, Tick
 from . import changes
-from .attributes import COMPONENTS, Attribute, usual
+from .attributes import COMPONENTS, WITHOUT, Attribute, Surfaces, usual
 from .bins import webgpu_cost
 from .cost import Slots, least, whole, within
 from .own import Own, own
@@ -134,11 +136,27 @@ class Judged:
     def _finalists(self, asked: Own, count: int) -> list[Solution]:
         return next(filter(None, (self._kept(problem, count) for problem in self._problems(asked))), [])
 
-    def _problems(self, asked: Own) -> Iterator[Problem]:
-        """What nobody sees has its usual bits where there is room for them, and its floor where there is not."""
+    def _problems(self, asked: Own, classes: Sequence[str] = ()) -> Iterator[Problem]:
+        """What nobody sees has its usual bits where there is room for them, and its floor where there is not.
+
+        Args:
+            classes: those that judge; empty for all.
+        """
         usually = self._usual(asked.attributes)
         for held in (usually, *([asked.attributes] if usually != asked.attributes else [])):
-            yield Problem(held, self._errors, self.classes, asked.bins, asked.rules, self._together)
+            yield Problem(held, self._errors, classes or self.classes, asked.bins, asked.rules, self._together)
+
+    def _held_back_db(self, asked: Own) -> float | None:
+        """Return the PSNR of the mean error over scenes: each has the worst of its classes by a layout that the other
+        scenes chose. None if there is one scene."""
+        errors = []
+        for scene in dict.fromkeys(map(_scene_of, self.classes)):
+            inside = [name for name in self.classes if _scene_of(name) == scene]
+            others = [name for name in self.classes if _scene_of(name) != scene]
+            problems = self._problems(asked, others) if others else ()
+            found = next(filter(None, (self._kept(problem, 1) for problem in problems)), [])
+            errors += [solution.worst_of(inside) for solution in found]
+        return psnr_db(float(np.mean(errors))) if len(errors) > 1 else None
 
     def _kept(self, problem: Problem, count: int) -> list[Solution]:
         """Up to so many of the best layouts: of whole numbers only where they gain much."""
@@ -230,6 +248,8 @@ class Judged:
             yield self._empty(PROPOSAL, f"{rules.bytes} bytes") | {"limit": rules.bytes, "skipped": self._why(rules)}
             return
         found, layout, row = best
+        held_back = self._held_back_db(replace(asked, rules=enough))
+        row |= {"held_back_db": row["held_back_db"] if held_back is None else held_back}
         yield row | self._predicted(found, row) | self._next(rules, found) | {"limit": rules.bytes}
         self._tick(layout.name)
 
@@ -281,7 +301,31 @@ class Judged:
             return self._why_too_dear(problem, q.most_instructions)
         bits = sum(min(code.total_bits for code in one.codes) for one in q.attributes)
         few = f"{rules.bytes} bytes are too few"
-        return f"{few}: the attributes need {bits} bits, and by these rules the smallest layout has {least_bytes} bytes"
+        smallest = f"the attributes need {bits} bits, and by these rules the smallest layout has {least_bytes} bytes"
+        return f"{few}: {smallest}{self._dropped(problem)}"
+
+    def _dropped(self, problem: Problem) -> str:
+        """Say without which attributes a layout fits, those that an image loses least by first."""
+        losses = {one.name: self._loss(one) for one in problem.attributes if self._loss(one) is not None}
+        order = sorted(losses, key=lambda name: (losses[name] > HALF_STEP, losses[name]))
+        fits = partial(_fits_without, problem)
+        count = next((count for count in range(1, len(order) + 1) if fits(order[:count])), 0)
+        dropped = order[:count]
+        for name in reversed(order[:count]):
+            dropped = kept if fits(kept := [other for other in dropped if other != name]) else dropped
+        said = [f"{name} ({_loss_text(losses[name])})" for name in dropped]
+        return f". It fits without {' and '.join(said)}" if said else ""
+
+    def _loss(self, attribute: Attribute) -> float | None:
+        """Return the error of the worst class without an attribute: 0 of what no image reads; None of what an image
+        cannot do without."""
+        if not attribute.is_seen:
+            return 0.0
+        if attribute.name not in WITHOUT:
+            return None
+        trip = partial(_constant, attribute.name, WITHOUT[attribute.name])
+        errors = {_class_of(judge, name): e for judge in self._judges for name, e in judge.of(trip).items()}
+        return max(errors[name] for name in self.classes)
 
     def _why_never(self, rules: Rules) -> str:
         """What no target can hold, or that all of it together is too much."""
@@ -348,8 +392,16 @@ class Judged:
             "psnr_db": psnr_db(frame),
             "worst_db": psnr_db(errors[worst]),
             "worst_class": worst,
+            "held_back_db": self._by_scene_db(errors),
             "flip_p99": max(errors_of_scene.flip for _, errors_of_scene in found),
         }
+
+    def _by_scene_db(self, errors: Mapping[str, float]) -> float:
+        """Return the PSNR of the mean over scenes of the error of each one's worst class."""
+        worst: dict[str, float] = {}
+        for name in self.classes:
+            worst[_scene_of(name)] = max(worst.get(_scene_of(name), 0.0), errors[name])
+        return psnr_db(float(np.mean(list(worst.values()))))
 
     def _beside(self, layout: Layout) -> float:
         """Bytes that a layout lacks of what is held, less those of emission that is not."""
@@ -416,6 +468,32 @@ class Judged:
                 yield layout
 
 
+def _fits_without(problem: Problem, names: Sequence[str]) -> bool:
+    """Whether a layout without some attributes keeps to the rules."""
+    rules = problem.rules
+    kept = [attribute for attribute in problem.attributes if attribute.name not in names]
+    left = replace(
+        rules,
+        blended=rules.blended - {*names},
+        together=tuple(group for group in rules.together if not group & {*names}),
+        apart=rules.apart - {*names},
+        read=rules.read - {*names},
+    )
+    least = fewest_bytes(replace(problem, attributes=kept, rules=left))
+    return least is not None and least <= rules.bytes
+
+
+def _constant(name: str, value: float, surfaces: Surfaces) -> Surfaces:
+    """Return surfaces with one value of an attribute everywhere."""
+    return replace(surfaces, **{name: np.full_like(getattr(surfaces, name), value)})
+
+
+def _loss_text(loss: float) -> str:
+    if not loss:
+        return "not measured"
+    return "does not show here" if loss <= HALF_STEP else f"{psnr_db(loss):.0f} dB"
+
+
 def _in_channels(problem: Problem) -> Problem:
     """A problem without targets of whole numbers."""
     return replace(problem, bins=[one for one in problem.bins if not one.fields])
@@ -428,6 +506,11 @@ def _with_depth(layout: Layout, depth: DepthEncoding | None) -> Layout:
 
 def _class_of(judge: Exact, name: str) -> str:
     return f"{judge.stage.maker.name} {name}"
+
+
+def _scene_of(name: str) -> str:
+    """Return the scene of a class."""
+    return name.rpartition(" ")[0]
 
 
 def in_order(rows: Sequence[Row]) -> list[Row]:

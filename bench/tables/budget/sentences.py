@@ -72,6 +72,8 @@ def _code(text: str) -> str:
 def _errors(row: Row) -> str:
     scene, _, name = row["worst_class"].rpartition(" ")
     said = [f"Worst are {name} surfaces of {scene}, {row['worst_db']:.1f} dB; the frame has {row['psnr_db']:.1f} dB."]
+    if "," in row["scene"] and row["held_back_db"] is not None:
+        said.append(f"Scenes that did not choose it have {row['held_back_db']:.1f} dB in their worst class.")
     said.append(f"FLIP's 99th percentile is {row['flip_p99']:.3f}; up to {INVISIBLE:g} we call invisible.")
     if row["error_from"]:
         parts = [_code(one) for one in row["error_from"].split(", ")[:NAMED]]

@@ -152,6 +152,13 @@ COLUMNS = (
         better="more",
     ),
     Column("worst_class", "That class, and its scene.", HOW),
+    Column(
+        "held_back_db",
+        "The worst class of each scene, as the mean error over scenes. A proposal is chosen anew for each of them, on "
+        "the other scenes alone.",
+        unit="dB",
+        better="more",
+    ),
     Column("psnr_db", "The displayed image over all covered pixels.", unit="dB", better="more"),
     Column("flip_p99", "FLIP's 99th percentile over the covered pixels.", better="less", drops=6),
     Column("predicted_worst_db", "`worst_db` as the sum of the codes' own errors.", unit="dB", drops=7),

@@ -2,18 +2,22 @@
 
 import itertools
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from typed import attributes_held
 
 from normalbench.bench.door.run import chosen_tables, options_of
+from normalbench.bench.measures.metrics.totals import psnr_db
 from normalbench.bench.tables.budget import attributes as held
 from normalbench.bench.tables.budget import changes
 from normalbench.bench.tables.budget.bins import BINS, WEBGPU, WEBGPU_BYTES, webgpu_cost
 from normalbench.bench.tables.budget.contract import KNOWN
-from normalbench.bench.tables.budget.own import own
+from normalbench.bench.tables.budget.measure import Judged
+from normalbench.bench.tables.budget.own import Own, own
 from normalbench.bench.tables.budget.solve import Placed, Problem, Rules, Solution, enough_bytes, finalists, solved
 from normalbench.bench.tables.budget.table import TABLE, BudgetOptions
 from normalbench.bench.tables.budget.written import layout_of
@@ -223,6 +227,29 @@ def test_what_the_worst_class_leaves_goes_to_the_others():
     )
 
 
+def test_a_scene_judges_layouts_that_the_others_chose():
+    """Two scenes that show other attributes: each has the error of the layout that the other one would take."""
+    rates = falling()
+    errors = {key: {"first mirror": of["class 0"], "second mirror": of["class 1"]} for key, of in rates.items()}
+    for (name, _), of in errors.items():
+        of["first mirror" if name == "normal" else "second mirror"] *= 1e-6
+    judged = object.__new__(Judged)
+    judged._question = SimpleNamespace(judging=("mirror",), most_instructions=None, rules=[USUAL])
+    judged._errors, judged._together = errors, {}
+    asked = Own(DEFAULT, [BINS[name] for name in ("rgba8", "rg16", "rg16f", "rgb10a2")], replace(USUAL, bytes=16))
+    names = ("first mirror", "second mirror")
+
+    def worst(judge: str, chosen: Sequence[str]) -> float:
+        whole = Problem(judged._usual(DEFAULT), errors, chosen, asked.bins, asked.rules)
+        return solved(whole).worst_of([judge])
+
+    held_back = [worst(name, [other]) for name, other in zip(names, reversed(names), strict=True)]
+    assert judged._held_back_db(asked) == pytest.approx(psnr_db(np.mean(held_back)))
+    assert max(held_back) > 1.2 * max(worst(name, names) for name in names), "else nothing is held back"
+    judged._errors = {key: {"first mirror": of["first mirror"]} for key, of in errors.items()}
+    assert judged._held_back_db(asked) is None, "one scene"
+
+
 def test_two_codes_that_are_worse_together_are_not_taken_together():
     """What they make beyond their own errors is in the prediction, and 20 dB of it moves one of them."""
     asked = problem(USUAL)
@@ -309,7 +336,8 @@ def test_the_usual_reflectance_lies_on_a_code():
     [
         (
             ["--bytes", "8"],
-            "8 bytes are too few: the attributes need 96 bits, and by these rules the smallest layout has 12 bytes",
+            "8 bytes are too few: the attributes need 96 bits, and by these rules the smallest layout has 12 bytes. It "
+            "fits without motion (not measured)",
         ),
         (["--hold", "normal,basecolor,roughness,metalness,specular,occlusion,id:17"], "takes 2 to 16 bits"),
         (["--read-alone", "normal,colour"], "--read-alone colour: not held"),
