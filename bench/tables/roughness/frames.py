@@ -18,10 +18,10 @@ from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.pipelines import PIPELINES
 from ....gbuffer.render import Rendering, rendering
 from ....gbuffer.scenes.scene import View
-from .objects import METAL, Shown
+from .objects import OBJECTS, WHITE, Shown
 
 PIPELINE = "deferred"
-# The pass that reads the G-buffer: there is no light but what lies around.
+# The pass that reads the G-buffer: a metal has no light but what lies around.
 SHADES = "screen"
 # The noise that is added to a code before it is rounded: none; one for all frames; one for each.
 NONE, STILL, MOVING = DITHERS = ("none", "still", "moving")
@@ -63,6 +63,7 @@ class Frames:
         layout = layout_of(codec) if codec else LAYOUTS["fp32"]
         plan = Plan(size, 1, layout, LIGHT_BUFFERS["rgba32f"], 1, False, 1.0, antialiased=False)
         self.made: list[Rendering] = []
+        self._what = what
         for frame, view in enumerate(views(what.view, size, seen.frames)):
             if codec and seen.dither != NONE:
                 plan = replace(plan, dither=codec.dither(frame if seen.dither == MOVING else 0))
@@ -77,7 +78,11 @@ class Frames:
         """The mean of all frames at a roughness: linear light, float64 of shape (height, width, 3), black around."""
         total = np.zeros((*self.covered.shape, 3))
         for one, covered in zip(self.made, self._covered, strict=True):
-            draw_again(one, roughness)
+            if OBJECTS[self._what.name].is_metal:
+                draw_again(one, roughness)
+            else:
+                one.frame.show(replace(self._what, view=one.frame.scene.view).scene(roughness))
+                one.draw()
             total += np.where(covered[..., None], one.image(), 0.0)
         return total / len(self.made)
 
@@ -88,10 +93,11 @@ def layout_of(codec: Codec) -> Layout:
 
 
 def draw_again(made: Rendering, roughness: float) -> None:
-    """The picture of another roughness, in a fifth of the time: of the G-buffer one target changes, to a constant."""
+    """Draw the picture of another roughness of a metal, in a fifth of the time: of the G-buffer one target changes, to
+    a constant."""
     number = next(w.target for w in made.frame.plan.layout.words if w.component == "power")
     # Reflectance head on, and the roughness, which a metal/rough surface has in place of a power.
-    made.frame.framebuffer([made.frame.textures(GBUFFER)[number]]).clear(*METAL, roughness)
+    made.frame.framebuffer([made.frame.textures(GBUFFER)[number]]).clear(*WHITE, roughness)
     made.passes[SHADES]()
 
 

@@ -33,23 +33,30 @@ STEP = 0.01
 TONE_MAPPING, PERCENTILE = "aces", 99.0
 # The roughness at which an object's exposure is measured.
 EXPOSED_AT = 0.3
+# The light of what is no metal.
+SUN = "sun"
 UNMEASURABLE = (ShaderError, FormatError, LayoutError)
 
 
 @dataclass(frozen=True)
 class RoughnessCase:
-    """An object under an environment, the codes whose reflections are looked at, and how."""
+    """An object under an environment or a sun, the codes whose reflections are looked at, and how."""
 
     codecs: tuple[Codec, ...]
     object: str
-    environment: Environment
+    environment: Environment | None
     thresholds: tuple[float, ...]
     size: tuple[int, int]
     seen: tuple[Accumulation, ...] = (Accumulation(),)
 
     @property
+    def light(self) -> str:
+        """What it lies in."""
+        return self.environment.name if self.environment else SUN
+
+    @property
     def name(self) -> str:
-        return f"{self.object} in {self.environment.name}"
+        return f"{self.object} in {self.light}"
 
 
 class Pictures:
@@ -99,9 +106,10 @@ def measure(device: Device, case: RoughnessCase) -> list[Row]:
     """Of each code a row for each threshold, then one for each roughness."""
     with ExitStack() as stack:
         pictures = Pictures(device, stack, case)
-        about: Row = {"object": case.object, "environment": case.environment.name, "tone_mapping": TONE_MAPPING}
+        about: Row = {"object": case.object, "environment": case.light, "tone_mapping": TONE_MAPPING}
         about |= {"exposure": pictures.display.exposure, "size": "x".join(map(str, case.size))}
-        about |= {"environment_size": ", ".join((size_of(case.environment), *case.environment.changes))}
+        if around := case.environment:
+            about |= {"environment_size": ", ".join((size_of(around), *around.changes))}
         empty = TABLE.empty() | about | {"device": device.renderer}
         looked = [(codec, seen) for codec in case.codecs for seen in case.seen]
         return [empty | row for codec, seen in looked for row in _rows_of(pictures, codec, seen, case.thresholds)]

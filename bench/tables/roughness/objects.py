@@ -13,45 +13,62 @@ from ....gbuffer.environment.environment import Environment, directions
 from ....gbuffer.scenes.built_in.studio import panel
 from ....gbuffer.scenes.mesh import Mesh, sphere
 from ....gbuffer.scenes.metal_rough import MetalRough
-from ....gbuffer.scenes.scene import Scene, ScenePart, View
+from ....gbuffer.scenes.scene import Light, Scene, ScenePart, View
 
 # From so far the rays of a picture are nearly parallel; all objects are two wide and two high.
 DISTANCE = 57.0
-# The colour of a metal that reflects all light.
-METAL = (1.0, 1.0, 1.0)
+WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
+# The sun that lights what is dull: from beside the camera, so that the sphere has all angles to it.
+SUN_COLOUR, SUN_FROM = (3.0, 3.0, 3.0), (1.0, 1.0, 1.0)
 # A window of so many degrees is what the flattest panel reflects.
 WINDOW = 8.0
 # Beyond this latitude, in degrees, a picture of all directions is drawn out.
 HIGHEST = 60.0
 
-OBJECTS: Mapping[str, Callable[[], Mesh]] = MappingProxyType(
+
+@dataclass(frozen=True)
+class Kind:
+    """What is looked at.
+
+    Attributes:
+        mesh: makes its surface.
+        is_metal: of a metal that reflects all of its environment; else white and dull, in the light of a sun alone.
+    """
+
+    mesh: Callable[[], Mesh]
+    is_metal: bool = True
+
+
+OBJECTS: Mapping[str, Kind] = MappingProxyType(
     {
-        "sphere": lambda: sphere(1.0, 96, 48),
-        "panel20": lambda: panel(2.0, 2.0, 20.0, 10.0, 32),
-        "panel4": lambda: panel(2.0, 2.0, 4.0, 2.0, 32),
+        "sphere": Kind(lambda: sphere(1.0, 96, 48)),
+        "panel20": Kind(lambda: panel(2.0, 2.0, 20.0, 10.0, 32)),
+        "panel4": Kind(lambda: panel(2.0, 2.0, 4.0, 2.0, 32)),
+        "plaster": Kind(lambda: sphere(1.0, 96, 48), is_metal=False),
     }
 )
 
 
 @dataclass(frozen=True)
 class Shown:
-    """An object under an environment, before a camera that sees nothing else."""
+    """An object before a camera that sees nothing else, under an environment; without one in the light of a sun."""
 
     name: str
-    environment: Environment
+    environment: Environment | None
     part: ScenePart
     view: View
 
     def scene(self, roughness: float) -> Scene:
-        """It, of a metal that reflects all light."""
-        metal = MetalRough(METAL, 1.0, roughness)
-        none = (0.0, 0.0, 0.0)
-        return Scene((self.part,), (metal,), (), none, self.view, self.view, environment=self.environment)
+        """Return it, of a roughness."""
+        material = MetalRough(WHITE, float(OBJECTS[self.name].is_metal), roughness)
+        direction = tuple(-float(x) / np.sqrt(3) for x in SUN_FROM)
+        lights = () if self.environment else (Light("sun", SUN_COLOUR, direction=direction),)
+        return Scene((self.part,), (material,), lights, BLACK, self.view, self.view, environment=self.environment)
 
 
-def shown(name: str, environment: Environment) -> Shown:
-    """An object whose middle reflects the busiest direction of an environment to the camera."""
-    back = busiest(environment)
+def shown(name: str, environment: Environment | None) -> Shown:
+    """Return an object whose middle reflects the busiest direction of an environment to the camera."""
+    back = busiest(environment) if environment else np.array([0.0, 0.0, 1.0])
     right = np.cross((0.0, 1.0, 0.0), back)
     right /= np.linalg.norm(right)
     model = np.eye(4)
@@ -59,7 +76,7 @@ def shown(name: str, environment: Environment) -> Shown:
     x, y, z = map(float, back * DISTANCE)
     fov = float(np.degrees(2 * np.arctan(1 / DISTANCE)))
     view = View((x, y, z), (0.0, 0.0, 0.0), fov, DISTANCE - 2, DISTANCE + 2)
-    return Shown(name, environment, ScenePart(OBJECTS[name](), model[None], np.array([0]), casts=False), view)
+    return Shown(name, environment, ScenePart(OBJECTS[name].mesh(), model[None], np.array([0]), casts=False), view)
 
 
 def busiest(environment: Environment) -> np.ndarray:

@@ -22,7 +22,9 @@ class RoughnessOptions(SourceOptions):
     encoding: Encodings = ("octahedral",)
     storage: StorageNames = ("rg8", "rgb10a2", "rgb8_12_12", "rg16")
     rounding: Roundings = ("nearest",)
-    object: Annotated[Names, Option("--object", "sphere, panel20, panel4; comma-separated, or all.")] = ("all",)
+    object: Annotated[Names, Option("--object", "sphere, panel20, panel4, plaster; comma-separated, or all.")] = (
+        "all",
+    )
     environment: Annotated[
         Names,
         Option("--environment", "studio, strips, lamp, sky, or .hdr and .exr files; comma-separated.", files=True),
@@ -72,10 +74,11 @@ COLUMNS = (
     ),
     Column(
         "object",
-        "What fills the picture: a sphere; panels whose normal turns by 20 or by 4 degrees across it.",
+        "What fills the picture: a metal sphere; metal panels whose normal turns by 20 or by 4 degrees across it; a "
+        "sphere of white plaster.",
         KEY,
     ),
-    Column("environment", "What it reflects.", KEY),
+    Column("environment", "What it reflects; plaster lies in the light of a sun.", KEY),
     Column(
         "roughness",
         "Perceptual roughness, 0 for a mirror; of a least roughness, to 0.01. Empty there: none is enough.",
@@ -109,9 +112,9 @@ TABLE = Table(
     package=__package__ or "",
     help="From which roughness on a normal code carries reflections: a mirror shows each step of a code, a dull "
     "surface none.\n\nA sphere and two panels of a metal that reflects all light fill the picture one by one, under "
-    "three environments. A code carries a roughness where FLIP's 99th percentile is at most --threshold there and at "
-    "every greater roughness, on the worst of objects and environments. 0.1 is what we call acceptable and 0.05 "
-    "invisible: both are conventions.",
+    "three environments, and a sphere of white plaster in the sun. A code carries a roughness where FLIP's 99th "
+    "percentile is at most --threshold there and at every greater roughness, on the worst of objects and environments. "
+    "0.1 is what we call acceptable and 0.05 invisible: both are conventions.",
     example="normalbench roughness --storage rg8,rgb10a2 --environment studio",
     step_s=2.5,
     options=RoughnessOptions,
@@ -119,8 +122,8 @@ TABLE = Table(
     columns=COLUMNS,
     single={"storage": "rg8", "object": "panel20", "environment": "studio", "threshold": "0.1"},
     group=Group.MEASURE,
-    # Of objects and environments those that decide: each other one needs less of every code.
-    usual=({"object": "panel20,panel4", "environment": "studio,lamp"},),
+    # Of metals and environments those that decide, and plaster: each other one needs less of every code.
+    usual=({"object": "panel20,panel4,plaster", "environment": "studio,lamp"},),
     section=Section(
         title="What reflections need",
         short="Roughness",
@@ -128,7 +131,8 @@ TABLE = Table(
         intro="A mirror shows each step of a normal's code as a band; a dull surface hides them. From which roughness "
         "on does a code carry reflections?",
         method="A sphere and two slowly turning panels of a perfect metal fill the picture one by one, under each "
-        "environment. The picture with the code's normals is compared with the one of exact normals, as displayed, at "
-        "24 roughnesses. The least roughness of a code is found to 0.01 by drawing at the crossing.",
+        "environment, and a sphere of white plaster (F0 0.04) in the light of one sun. The picture with the code's "
+        "normals is compared with the one of exact normals, as displayed, at 24 roughnesses. The least roughness of a "
+        "code is found to 0.01 by drawing at the crossing.",
     ),
 )

@@ -37,7 +37,10 @@ def _steps(options: RoughnessOptions, _: RoughnessOutputs) -> list[Step]:
     objects = tuple(choose("object", options.object, {name: name for name in OBJECTS}))
     around = _environments(options.environment)
     codecs, _left_out = fitting(codecs_named(options.encoding, options.storage, options.rounding))
-    made = [RoughnessCase(tuple(codecs), name, one, thresholds, size, seen) for one in around for name in objects]
+    metals = [name for name in objects if OBJECTS[name].is_metal]
+    pairs = [(name, environment) for environment in around for name in metals]
+    pairs += [(name, None) for name in objects if name not in metals]
+    made = [RoughnessCase(tuple(codecs), *pair, thresholds, size, seen) for pair in pairs]
     return [Step(_key(case), case, case.name) for case in made]
 
 
@@ -63,7 +66,8 @@ def _environments(words: Names) -> tuple[Environment, ...]:
 def _key(case: RoughnessCase) -> Row:
     key: Row = {"codecs": [codec.name for codec in case.codecs], "object": case.object, "size": list(case.size)}
     key |= {"seen": [[one.dither, one.frames] for one in case.seen]}
-    return key | {"environment": key_of(case.environment.radiance), "thresholds": list(case.thresholds)}
+    radiance = key_of(case.environment.radiance) if case.environment else None
+    return key | {"environment": radiance, "thresholds": list(case.thresholds)}
 
 
 def _shown(done: Measured) -> Iterator[Sheet]:
@@ -85,13 +89,14 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
         part = [row for row in found if row["threshold"] == threshold]
         for encoding in dict.fromkeys(row["encoding"] for row in part):
             where = ", ".join(_from(row) for row in part if row["encoding"] == encoding)
-            yield f"{encoding}: banding in reflections is {word} (FLIP {threshold:g}) from roughness {where}."
+            yield f"{encoding}: banding is {word} (FLIP {threshold:g}) {where}."
 
 
 def _from(row: Row) -> str:
-    least = "none" if row["roughness"] is None else f"{row['roughness']:.2f}"
+    least = row["roughness"]
+    when = "at no roughness" if least is None else f"from roughness {least:.2f}" if least else "at any roughness"
     dithered = "" if row["dither"] == NONE else f" with {row['dither']} dither"
-    return f"{least} in {row['storage']}{dithered}"
+    return f"{when} in {row['storage']}{dithered}"
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:

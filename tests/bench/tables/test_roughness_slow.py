@@ -12,6 +12,7 @@ from normalbench.bench.tables.roughness.frames import MOVING, NONE, STILL, Accum
 from normalbench.bench.tables.roughness.measure import Pictures, RoughnessCase
 from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.rules import by_rule
 from normalbench.encodings.storages.storage import STORAGES
 from normalbench.encodings.vec import from_array
 
@@ -56,6 +57,21 @@ def test_noise_lowers_what_is_seen_of_steps(gl):
         worst = {one: pictures.figures(made, 0.3, True)["flip_p99"] for one, made in opened.items()}
     assert worst[MOVING, 8] < 0.6 * worst[MOVING, 1] and worst[MOVING, 1] < 0.6 * worst[NONE, 1], worst
     assert worst[NONE, 8] == pytest.approx(worst[NONE, 1], rel=0.1), worst
+
+
+def test_plaster_shows_the_steps_of_a_code_at_every_roughness(gl):
+    """By FLIP: 7:7 is above 0.05 wherever it is measured, 8:8 and 10:10 are not. A highlight depends on roughness."""
+    codecs = [Codec(ENCODINGS["octahedral"], by_rule("unorm", (bits, bits))) for bits in (7, 8, 10)]
+    case = RoughnessCase(tuple(codecs), "plaster", None, (0.05,), (256, 256))
+    assert case.name == "plaster in sun"
+    with ExitStack() as stack:
+        pictures = Pictures(gl, stack, case)
+        for roughness in (0.1, 0.6, 1.0):
+            figures = [pictures.figures(pictures.opened(stack, c, Accumulation()), roughness, True) for c in codecs]
+            coarse, usual, fine = (row["flip_p99"] for row in figures)
+            assert coarse > 0.05 > usual > 2 * fine, (roughness, coarse, usual, fine)
+        exact = [pictures.exact(1).light(roughness) for roughness in (0.2, 0.6)]
+    assert exact[0].max() > 2 * exact[1].max() and np.median(exact[0]) == pytest.approx(np.median(exact[1]), rel=0.05)
 
 
 def test_an_index_is_not_dithered_and_says_so_in_a_line(run):
