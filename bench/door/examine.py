@@ -85,14 +85,16 @@ def examine_encoding(
     codec = Codec(found.encoding, kept)
     if storage and codec.misfit:
         raise UsageError(f"{codec.name}: {codec.misfit}")
-    worse = _compared(found, codec) if found.is_measurable and not codec.misfit else []
+    is_measured = found.is_measurable and not codec.misfit
+    row = _row(codec) if is_measured else {}
+    worse = _compared(found, codec, row) if is_measured else []
     rounded = _rounded_for(found, codec) if worse else ""
     worse = [f"{line}; {rounded}" if rounded else line for line in worse]
-    halves = _half_note(codec) if found.is_measurable and not codec.misfit else []
+    halves = _half_note(codec, row) if is_measured else []
     # What is wasted is meant where the domain is, or where another storage is; it is said all the same.
     is_meant = bool(domain or rounded)
     wrong, notes = ([*found.wrong], [*worse, *found.notes]) if is_meant else ([*found.wrong, *worse], found.notes)
-    notes = [*notes, *halves]
+    wrong, notes = [*wrong, *_no_numbers(codec, row)], [*notes, *halves]
     about = {
         "file": shader.path.name,
         "encoding": found.encoding.name,
@@ -162,29 +164,46 @@ def _domain(found: Examined) -> str:
     return found.domain.name + (f", {found.domain.text}" if found.domain.is_turned else "")
 
 
-def _compared(found: Examined, codec: Codec) -> list[str]:
-    """How much worse it is than the encoding of the catalogue that it is; nothing where it is as good."""
+def _no_numbers(codec: Codec, row: Mapping[str, Any]) -> list[str]:
+    """Count the codes that are no numbers once they are rounded, whatever exact ones are."""
+    if not row.get("invalid"):
+        return []
+    share = f"{row['invalid']} of {row['count']} rounded codes ({100 * row['invalid'] / row['count']:.2g} %)"
+    remedy = "rounding may move a code beyond what decode expects; write for example sqrt(max(0.0, ...))"
+    return [f"in {codec.storage.name}, {share} decode to NaN or infinity: {remedy}"]
+
+
+def _compared(found: Examined, codec: Codec, row: Mapping[str, Any]) -> list[str]:
+    """Say how much worse it is than the encoding of the catalogue that it is; nothing where it is as good."""
     if not found.like:
         return []
-    like = replace(ENCODINGS[found.like], is_unit=codec.encoding.is_unit)
-    own, its = (_means(Codec(encoding, codec.storage)) for encoding in (codec.encoding, like))
+    # Codes in [0, 1] fill a storage without a sign, and half of one that has a sign.
+    is_half_used = codec.storage.holds_unit
+    like = replace(ENCODINGS[found.like], is_unit=codec.encoding.is_unit and not is_half_used)
+    own, its = _means(row), _means(_row(Codec(like, codec.storage if not is_half_used else _signed(codec.storage))))
     if not WORSE < own[0] / its[0] < ANOTHER:
         return []
     how = f"{own[0]:.3g} degrees on average for {its[0]:.3g}, {own[1]:.3g} at most for {its[1]:.3g}"
-    return [f"in {codec.storage.name} this is {found.like}, {100 * (own[0] / its[0] - 1):.0f} % worse: {how}"]
+    why = "; codes in [0, 1] use half of its range: store s = 2 c - 1 and decode (s + 1) / 2" if is_half_used else ""
+    return [f"in {codec.storage.name} this is {found.like}, {100 * (own[0] / its[0] - 1):.0f} % worse: {how}{why}"]
 
 
-def _half_note(codec: Codec) -> list[str]:
+def _signed(storage: Storage) -> Storage:
+    """Return a storage whose sign is used."""
+    return replace(storage, holds_unit=False)
+
+
+def _half_note(codec: Codec, row: Mapping[str, Any]) -> list[str]:
     """What half arithmetic makes of a code whose file declares it; nothing of others."""
     if not codec.encoding.is_also_half:
         return []
     half = Codec(in_half(codec.encoding), codec.storage)
     if half.misfit:
         return [f"it declares numbers of 16 bits, but {half.misfit}"]
-    row, own = _row(half), _means(codec)
-    if row["skipped"]:
-        return [f"it declares numbers of 16 bits, and is computed in 32: {row['skipped']}"]
-    said = f"{row['angle_mean_deg']:.3g} degrees on average and {row['angle_max_deg']:.3g} at most"
+    in_half_row, own = _row(half), _means(row)
+    if in_half_row["skipped"]:
+        return [f"it declares numbers of 16 bits, and is computed in 32: {in_half_row['skipped']}"]
+    said = "{:.3g} degrees on average and {:.3g} at most".format(*_means(in_half_row))
     said += f"; in 32 bits {own[0]:.3g} and {own[1]:.3g}"
     return [f"in the half arithmetic that it declares, {codec.storage.name} has {said}"]
 
@@ -199,9 +218,8 @@ def _rounded_for(found: Examined, codec: Codec) -> str:
     return f"encode rounds to 1/{lattice.steps} itself" + (f": try --storage {named.name}" if named else "")
 
 
-def _means(codec: Codec) -> tuple[float, float]:
-    """The mean and the largest angle that were met of a codec, in degrees."""
-    row = _row(codec)
+def _means(row: Mapping[str, Any]) -> tuple[float, float]:
+    """Return the mean and the largest angle of a row, in degrees."""
     return row["angle_mean_deg"], row["angle_max_deg"]
 
 

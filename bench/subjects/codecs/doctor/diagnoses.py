@@ -146,6 +146,7 @@ def _inexact(held: Trip, probe: Probe) -> Iterator[str]:
     """Why directions come back nearly. The steps of a code that is packed are not those of its halves."""
     found = [] if probe.is_packed else list(nearly.mistakes(held, probe))
     rounds_itself = probe.is_packed or nearly.lattice_of(held.codes)
+    found = found or (list(nearly.scaled_angles(held)) if rounds_itself else [])
     yield from found or (cut_off(held, probe) if rounds_itself else ())
 
 

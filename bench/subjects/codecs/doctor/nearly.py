@@ -34,6 +34,9 @@ NEAR_A_POINT = 0.05
 UNTOLD, OF_A_FRACTION = 1e-7, 0.003
 # By how much a mistake that is named makes the error smaller at least.
 FEWER = 8.0
+# Of an angle: how far from its axis it is looked at, how near its slope must be to a step of a turn, and what is left
+# of the error at most without that.
+TURN, WIDE, OF_A_STEP, LEFT = 2 * np.pi, 0.3, 0.05, 0.75
 # The sizes of steps that codes may be rounded to.
 BITS = range(5, 17)
 # Of half a step, as a share of a step: how near a shift must be to it; and of a step, how near a code to a whole one.
@@ -282,6 +285,29 @@ def _lattice_scale(x: np.ndarray, off: np.ndarray, lattice: Lattice) -> Iterator
     if (np.abs(np.abs(steps) - 1) < 0.2).all() and np.ptp(np.sign(steps)) == 0:
         used = lattice.steps - 1 if steps.mean() > 0 else lattice.steps + 1
         yield f"encode gives {used}/{lattice.steps} times the code that decode takes: it rounds to {used} steps"
+
+
+def scaled_angles(held: Trip) -> Iterator[str]:
+    """Say that an angle comes back a step of a whole turn too large or too small, as where 256 steps meet 255.
+
+    Args:
+        held: directions that the encoding is made for, and what comes back of them.
+    """
+    for axis, name in enumerate("xyz"):
+        across = [(axis + 1) % 3, (axis + 2) % 3]
+        wide = np.hypot(*held.n[:, across].T) > WIDE
+        given, back = (np.arctan2(*part[wide][:, across[::-1]].T) % TURN for part in (held.n, unit(held.decoded)))
+        off = (back - given + TURN / 2) % TURN - TURN / 2
+        slope = _slope(given, off)
+        left = float(np.std(off - slope * given)) / (float(np.std(off)) or 1.0)
+        steps = next((2**bits for bits in BITS if abs(abs(slope) * (2**bits - 0.5) - 1) < OF_A_STEP), 0)
+        if steps and left < LEFT:
+            takes = (steps, steps - 1) if slope > 0 else (steps - 1, steps)
+            yield (
+                f"the angle about {name} comes back {takes[0]}/{takes[1]} times as large: encode takes {takes[0]} "
+                f"steps per turn, decode {takes[1]}"
+            )
+            return
 
 
 def _slope(x: np.ndarray, off: np.ndarray) -> float:
