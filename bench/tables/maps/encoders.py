@@ -12,8 +12,9 @@ import numpy as np
 
 from ...ground.output.errors import MissingError
 
-# How hard encoders try: etcpak's BC7 from 0 to 4, quicktex' BC5 from 0 to its largest search, astcenc from 0 to 100.
-BC7_EFFORT, ASTC_EFFORT = 4, 60
+# How hard encoders try: etcpak's BC7 from 0 to 4, quicktex' BC5 from 0 to its largest search and its BC3 from 0 to 18,
+# astcenc from 0 to 100.
+BC7_EFFORT, ASTC_EFFORT, BC3_EFFORT = 4, 60, 5
 
 
 @dataclass(frozen=True)
@@ -99,6 +100,11 @@ def _bc5_bytes(modules: Sequence[Any], given: Texels) -> bytes:
     return bc5.BC5Encoder().encode(quicktex.RawTexture.frombytes(given.texels, *given.size)).tobytes()
 
 
+def _bc3_bytes(modules: Sequence[Any], given: Texels) -> bytes:
+    quicktex, bc3 = modules
+    return bc3.BC3Encoder(BC3_EFFORT).encode(quicktex.RawTexture.frombytes(given.texels, *given.size)).tobytes()
+
+
 def _bc7_bytes(modules: Sequence[Any], given: Texels) -> bytes:
     (etcpak,) = modules
     effort = etcpak.BC7CompressBlockParams()
@@ -136,6 +142,7 @@ def _astc_texels(modules: Sequence[Any], blocks: bytes, size: tuple[int, int]) -
 
 NONE = Encoder("", (), "uncompressed", _as_it_is, _as_it_was)
 QUICKTEX = Encoder("quicktex", ("quicktex", "quicktex.s3tc.bc5"), "rgbcx, default search", _bc5_bytes)
+BC3 = Encoder("quicktex", ("quicktex", "quicktex.s3tc.bc3"), f"rgbcx, level {BC3_EFFORT} of 18", _bc3_bytes)
 BC7 = Encoder("etcpak", ("etcpak",), f"bc7enc, effort {BC7_EFFORT} of 4", _bc7_bytes)
 RG11 = Encoder("etcpak", ("etcpak",), "EAC", _rg11_bytes)
 ASTC = Encoder("astc-encoder-py", ("astc_encoder",), f"astcenc, effort {ASTC_EFFORT} of 100", _astc_bytes, _astc_texels)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from types import MappingProxyType
 
 import numpy as np
@@ -12,7 +13,7 @@ from PIL import Image
 from ....encodings.storages.blocks.bits import SIDE, TEXELS
 from ....encodings.storages.blocks.eac import decode_rg11
 from ....encodings.storages.blocks.rgtc import decode_bc5
-from .encoders import ASTC, BC7, NONE, QUICKTEX, RG11, Encoder
+from .encoders import ASTC, BC3, BC7, NONE, QUICKTEX, RG11, Encoder
 
 # Blocks that are decoded at once, for memory's sake.
 TOGETHER = 2**14
@@ -66,6 +67,7 @@ class BlockFormat:
         decode: from blocks, uint8 of shape (count, 16), to texels in [0, 1], (count, 16, channels), as the
             specification says; None where the encoder's package does that.
         internal_format: the GL enum.
+        swizzles: those that it is used with.
     """
 
     name: str
@@ -74,6 +76,7 @@ class BlockFormat:
     encoder: Encoder
     decode: Callable[[np.ndarray], np.ndarray] | None = None
     internal_format: int = 0
+    swizzles: tuple[str, ...] = ("rg", "rrrg", "rgb")
 
     @property
     def is_compressed(self) -> bool:
@@ -99,8 +102,9 @@ class BlockFormat:
         return texels.transpose(0, 2, 1, 3, 4).reshape(height, width, self.channels)
 
 
-def _bc7_texels(blocks: np.ndarray) -> np.ndarray:
-    image = Image.frombytes("RGBA", (SIDE, SIDE * len(blocks)), blocks.tobytes(), "bcn", (7,))
+def _bc_texels(number: int, blocks: np.ndarray) -> np.ndarray:
+    """Return the texels of BC3 or BC7 as Pillow decodes them: BC3's interpolated ends in whole numbers."""
+    image = Image.frombytes("RGBA", (SIDE, SIDE * len(blocks)), blocks.tobytes(), "bcn", (number,))
     return np.asarray(image, np.float32).reshape(-1, TEXELS, len(CHANNELS)) / np.float32(ONE)
 
 
@@ -108,7 +112,8 @@ FORMATS: Mapping[str, BlockFormat] = MappingProxyType(
     {
         "none": BlockFormat("none", "8 bits", 4, NONE),
         "bc5": BlockFormat("bc5", "BC5", 2, QUICKTEX, decode_bc5, 0x8DBD),
-        "bc7": BlockFormat("bc7", "BC7", 4, BC7, _bc7_texels, 0x8E8C),
+        "bc3": BlockFormat("bc3", "BC3", 4, BC3, partial(_bc_texels, 3), 0x83F3, ("dxt5nm", "rgb")),
+        "bc7": BlockFormat("bc7", "BC7", 4, BC7, partial(_bc_texels, 7), 0x8E8C),
         "eac_rg11": BlockFormat("eac_rg11", "EAC RG11", 2, RG11, decode_rg11, 0x9272),
         "astc_4x4": BlockFormat("astc_4x4", "ASTC 4x4", 4, ASTC, None, 0x93B0),
     }
@@ -116,9 +121,14 @@ FORMATS: Mapping[str, BlockFormat] = MappingProxyType(
 
 
 def swizzles_of(made: BlockFormat, components: int, asked: list[Swizzle]) -> list[Swizzle]:
-    """The swizzles to measure a code of so many numbers by; none where it has no room."""
+    """Return the swizzles to measure a code of so many numbers by; none if it has no room.
+
+    Args:
+        asked: what somebody named; empty for those that the format is used with.
+    """
     if made.channels < components:
         return []
+    asked = asked or [SWIZZLES[name] for name in made.swizzles]
     fit = [swizzle for swizzle in asked if len(swizzle.read) == components]
     # Where there is nothing to choose, the numbers lie in the channels in their order.
     is_plain = not made.is_compressed or made.channels == components

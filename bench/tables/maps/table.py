@@ -19,6 +19,7 @@ BLOCKS: Mapping[str, str] = MappingProxyType(
     {
         "none": "8 bits a channel, uncompressed: RG8 or RGBA8",
         "bc5": "two channels of BC4, also called RGTC2, ATI2 and 3Dc",
+        "bc3": "RGB of 5:6:5 bits and alpha of 8, also called DXT5: `dxt5nm`",
         "bc7": "RGBA in one of eight modes, also called BPTC",
         "eac_rg11": "two channels of EAC, of 11 bits",
         "astc_4x4": "RGBA in one of many modes, LDR",
@@ -51,11 +52,12 @@ class MapsOptions(Reading, SourceOptions):
 
     encoding: Encodings = ("xy", "hemi_octahedral", "octahedral", "xyz")
     block: Annotated[Names, Option("--block", f"{', '.join(BLOCKS)}; comma-separated, or all.")] = ("all",)
-    swizzle: Annotated[Names, Option("--swizzle", f"{', '.join(SWIZZLES)}; those with room for the code are used.")] = (
-        "rg",
-        "rrrg",
-        "rgb",
-    )
+    swizzle: Annotated[
+        Names,
+        Option(
+            "--swizzle", f"{', '.join(SWIZZLES)}; comma-separated, or all. Default: those that a format is used with."
+        ),
+    ] = ()
     normals: Annotated[
         Names,
         Option(

@@ -36,7 +36,7 @@ def cases(options: MapsOptions) -> list[MapCase]:
         UsageError: unknown names, a file that cannot be read, no image, or nothing that fits.
         MissingError: an encoder that is asked for is not installed, or there is no GL device to decode by.
     """
-    blocks, asked = _blocks(options.block), choose("swizzle", options.swizzle, SWIZZLES)
+    blocks, asked = _blocks(options.block), choose("swizzle", options.swizzle, SWIZZLES) if options.swizzle else []
     decoders = choose("decoder", options.decoder, {name: name for name in measure.DECODERS})
     encodings = encodings_named(options.encoding)
     require_jax()
@@ -123,8 +123,8 @@ def _key(case: MapCase) -> Row:
 def _verdict(rows: Sequence[Row]) -> Iterator[str]:
     """Say each format's best encoding, the most accurate first."""
     known = having(rows, "angle_rms_deg")
-    for normals, decoder in dict.fromkeys(map(group_of, known)):
-        part = [row for row in known if group_of(row) == (normals, decoder)]
+    for normals in dict.fromkeys(row["normals"] for row in known):
+        part = [row for row in known if row["normals"] == normals]
         best: dict[str, str] = {}
         for row in sorted(part, key=lambda row: row["angle_rms_deg"]):
             block = f"in {row['block']}" if FORMATS[row["block"]].is_compressed else "uncompressed"

@@ -62,6 +62,7 @@ def test_two_channels_leave_nothing_to_choose():
     rrrg = [SWIZZLES["rrrg"]]
     assert [s.name for s in swizzles_of(FORMATS["bc5"], 2, rrrg)] == ["rg"]
     assert [s.name for s in swizzles_of(FORMATS["bc7"], 2, rrrg)] == ["rrrg"]
+    assert [s.name for s in swizzles_of(FORMATS["bc3"], 2, [])] == ["dxt5nm"]
     assert not swizzles_of(FORMATS["eac_rg11"], 3, rrrg) and not swizzles_of(FORMATS["astc_4x4"], 3, rrrg)
 
 

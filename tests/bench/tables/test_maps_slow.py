@@ -70,7 +70,7 @@ def test_the_command_measures_a_file_and_names_its_rows(run, tmp_path):
     rows = json.loads(out)
     assert (status, err.count("left out")) == (0, 0), "of all formats, those with room are meant"
     assert all(tuple(row) == tuple(TABLES["maps"].empty()) for row in rows)
-    assert len(rows) == 10 == len({TABLES["maps"].name_of(row) for row in rows})
+    assert len(rows) == 12 == len({TABLES["maps"].name_of(row) for row in rows})
     rms = [row["angle_rms_deg"] for row in rows]
     assert rms == sorted(rms) and {row["count"] for row in rows} == {660}
     (bc5,) = [row for row in rows if row["block"] == "bc5"]
@@ -90,14 +90,15 @@ def test_a_missing_encoder_is_named(run, monkeypatch):
     status, out, err = run("maps", "--block", "bc5")
     assert (status, out, err.count("\n")) == (3, "", 1) and "pip install quicktex" in err
     status, out, err = run("maps", "--encoding", "xy", "--normals", "bumps", "--format", "json")
-    assert status == 0 and "left out: bc5: it needs quicktex" in err
-    assert {row["block"] for row in json.loads(out)} == set(FORMATS) - {"bc5"}
+    assert status == 0 and "bc5: it needs quicktex" in err
+    assert {row["block"] for row in json.loads(out)} == set(FORMATS) - {"bc3", "bc5"}
     monkeypatch.setattr(encoders, "import_module", lambda name: there("no_such_module_as_" + name))
     assert "pip install normalbench[maps]" in TABLES["maps"].work.missing()
 
 
 # Each format with the swizzle that suits two numbers, and what an independent tool decodes its blocks by.
 TOOLS = {
+    "bc3": ("dxt5nm", texture2ddecoder.decode_bc3),
     "bc5": ("rg", texture2ddecoder.decode_bc5),
     "bc7": ("rrrg", texture2ddecoder.decode_bc7),
     "eac_rg11": ("rg", texture2ddecoder.decode_eacrg),
