@@ -65,7 +65,7 @@ CURVE_NAMES = (
 )
 
 # The last ones are of rotations alone, which have no handedness.
-FRAME_NAMES = ("smallest_three", "octahedral_angle", "hexadecachoral", "qtangent")
+FRAME_NAMES = ("smallest_three", "octahedral_angle", "hexadecachoral", "qtangent", "axis_angle")
 FRAME_NAMES += ("rotation_smallest_three", "rotation_vector", "rotation_rodrigues", "rotation_xyz")
 
 
