@@ -1,5 +1,7 @@
 """Lights of glTF files, by KHR_lights_punctual."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from written import TRIANGLE, Document
@@ -7,6 +9,7 @@ from written import TRIANGLE, Document
 from normalbench.gbuffer.scenes.files.gltf_lights import ROUNDED_OFF
 from normalbench.gbuffer.scenes.files.read import file_scene, read_mesh_file
 from normalbench.gbuffer.scenes.files.source import SceneFileError
+from normalbench.gbuffer.scenes.scene import Material
 from normalbench.gbuffer.scenes.setting import Setting
 
 NAME = "KHR_lights_punctual"
@@ -62,13 +65,13 @@ def test_a_spot_without_cones_has_those_of_the_extension_and_a_rim(tmp_path):
     assert (lights[1].inner, lights[1].outer) == pytest.approx((np.degrees(0.5) - 0.1, np.degrees(0.5)))
 
 
-def test_files_without_lights_get_a_sun_and_lamps(tmp_path):
+def test_files_without_lights_get_a_sun_and_surroundings_or_lamps(tmp_path):
+    """What is metal/rough has surroundings, which light it; other surfaces have lamps in their place."""
     file = read(lit({"type": "point", "intensity": 0}), tmp_path)
-    assert file.lights == () and [x.kind for x in file_scene(file, Setting(lights=2)).lights] == [
-        "sun",
-        "point",
-        "point",
-    ]
+    dull = replace(file, materials=(Material(),) * len(file.materials))
+    scenes = [file_scene(one, Setting(lights=2)) for one in (file, dull)]
+    assert file.lights == () and [scene.environment is None for scene in scenes] == [False, True]
+    assert [[light.kind for light in scene.lights] for scene in scenes] == [["sun"], ["sun", "point", "point"]]
 
 
 def test_of_several_suns_the_brightest_is_drawn_and_it_is_said(tmp_path):

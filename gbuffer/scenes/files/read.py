@@ -76,7 +76,8 @@ def _float_triple(values: np.ndarray) -> tuple[float, float, float]:
 
 
 def file_scene(file: MeshFile, setting: Setting) -> Scene:
-    """The file's meshes under its own lights, else under a sun and `setting.lights` point lights that circle around."""
+    """Return the file's meshes under its own lights, else under a sun. What surrounds metal/rough surfaces lights them,
+    too; others have no surroundings, and `setting.lights` point lights circle around them."""
     view = file_view(file)
     aside = 0.01 * file.radius
     moved = (_float_triple(np.add(point, (aside, 0.0, 0.0))) for point in (view.eye, view.target))
@@ -115,7 +116,12 @@ def _material_indices(file: MeshFile, pieces: list[Piece]) -> np.ndarray:
 
 
 def _made_up_lights(file: MeshFile, setting: Setting) -> tuple[Light, ...]:
-    """A sun, and point lights in a box half again as large as the scene's, on their way around its middle."""
+    """Return a sun; for surfaces without surroundings also point lights in a box half again as large as the scene's, on
+    their way around its middle."""
+    direction = np.array(SUN) / np.linalg.norm(SUN)
+    sun = Light("sun", (0.8, 0.77, 0.7), direction=_float_triple(direction))
+    if file.is_metal_rough:
+        return (sun,)
     rng = np.random.default_rng(setting.seed)
     low, high = file.bounds
     middle, half = (low + high) / 2, np.maximum(0.75 * (high - low), 0.3 * file.radius)
@@ -127,8 +133,7 @@ def _made_up_lights(file: MeshFile, setting: Setting) -> tuple[Light, ...]:
         Light("point", tuple(colour), _float_triple(place), 0.9 * file.radius)
         for colour, place in zip(colours, middle + around * half, strict=True)
     ]
-    sun = np.array(SUN) / np.linalg.norm(SUN)
-    return Light("sun", (0.8, 0.77, 0.7), direction=_float_triple(sun)), *lamps
+    return (sun, *lamps)
 
 
 @dataclass(frozen=True)
