@@ -60,7 +60,6 @@ class Found:
         agreement: how far the figures of two back ends are apart, in a sentence; empty where no codec has both.
         fronts: cost against error.
         listings: disassemblies, by name.
-        order: where costs are in another order than the article's, and why, in lines.
         choices: the questions that a reader may ask otherwise; empty where a run answers none.
         cards: what is known of codecs and encodings; empty without any.
         code: the code of codecs that the run keeps; empty where it keeps none.
@@ -80,7 +79,6 @@ class Found:
     agreement: str = ""
     fronts: Sequence[Front] = ()
     listings: Mapping[str, Listing] = field(default_factory=dict)
-    order: Sequence[str] = ()
     choices: Mapping[str, Any] = field(default_factory=dict)
     cards: Mapping[str, Any] = field(default_factory=dict)
     code: Mapping[str, Any] = field(default_factory=dict)

@@ -26,8 +26,6 @@ _RULES = (
     ("scalar", r"s_"),
     ("full_rate", r"v_"),
 )
-# What compares, chooses between two numbers or keeps one within bounds; v_cmpx masks lanes, as the kernel's own does.
-GUARDS = ("v_cmp_", "v_cndmask", "v_min", "v_max", "v_med")
 # Instructions of a fused multiply-add that Polaris computes at a quarter of the rate; usual ones are v_mad there.
 _SLOW = {"polaris10": r"v_fma_"}
 _INSTRUCTION = re.compile(r"^\s+([a-z][a-z0-9_]+)\b(?:\s+(BB\d+))?")

@@ -14,8 +14,6 @@ from typing import NamedTuple
 
 # The columns that add up to the count; Radeons have others.
 KINDS = ("other_alu", "conversion", "transcendental", "scalar", "memory", "control_flow", "waiting")
-# What compares or chooses between two numbers: `sel` is the smaller and the larger one, too.
-GUARDS = ("cmp", "csel", "sel")
 
 _CONTROL_FLOW = {"if", "else", "endif", "while", "do", "break", "cont", "halt", "jmpi", "brd", "brc", "call", "ret"}
 _SENDS = {"send", "sendc", "sends", "sendsc"}

@@ -306,7 +306,7 @@ class Judged:
 
     def _dropped(self, problem: Problem) -> str:
         """Say without which attributes a layout fits, those that an image loses least by first."""
-        losses = {one.name: self._loss(one) for one in problem.attributes if self._loss(one) is not None}
+        losses = {one.name: loss for one in problem.attributes if (loss := self._loss(one)) is not None}
         order = sorted(losses, key=lambda name: (losses[name] > HALF_STEP, losses[name]))
         fits = partial(_fits_without, problem)
         count = next((count for count in range(1, len(order) + 1) if fits(order[:count])), 0)

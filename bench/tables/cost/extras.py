@@ -25,10 +25,9 @@ from ...ground.output.writing import files_of
 from ...ground.user_files import CHAIN
 from ..quality.table import TABLE as QUALITY
 from ..render.table import TABLE as RENDER
-from ..table import UNEXPECTED, Row
+from ..table import Row
 from .codec_costs import Costs, LeftOutError, Where
-from .measure import OPERATIONS, listing
-from .sheets import article_rows, order_notes
+from .measure import OPERATIONS
 from .table import TABLE
 
 # Of disassemblies: which kernels, and how many bytes of them a page holds.
@@ -49,7 +48,6 @@ def extras(folder: Path, tables: Mapping[str, Sequence[Row]], remarks: list[str]
     return {
         "fronts": list(_fronts(tables, family, remarks)),
         "listings": _listings(kernels, family),
-        "order": _order_lines(kernels, family, tables.get(TABLE.name, ())),
     }
 
 
@@ -170,18 +168,6 @@ def _kernels(folder: Path, family: str) -> Mapping[str, Path]:
     """The files that hold a GPU family's kernels, by name."""
     known = {path.name: path for path in folder.iterdir()} if folder.is_dir() else {}
     return files_of(known[family]) if family in known else {}
-
-
-def _order_lines(folder: Path, family: str, rows: Sequence[Row]) -> list[str]:
-    """Where a GPU family's order by instructions is not that of the article's slots, and why, by its kernels."""
-    there = _kernels(folder, family)
-    try:
-        chosen = [row for row in rows if (row["family"], row["stage"]) == (family, STAGE) and row["encoding"]]
-        paths = [(row, there.get(listing(row, "")[0].name)) for row in chosen]
-        listed = [(row, path.read_text(encoding="utf-8", errors="replace")) for row, path in paths if path]
-        return order_notes(listed, article_rows(ENCODINGS, OPERATIONS))
-    except UNEXPECTED:
-        return []
 
 
 def _listings(folder: Path, family: str) -> dict[str, Listing]:

@@ -309,7 +309,7 @@ def _executed_slots(case: CostCase, row: Row, assembly: str) -> float | None:
 
 
 def listings_of(family: str) -> Any:
-    """What reads the listings of a family's vendor: `names`, `kinds`, `jumps`, `issue_slots`, `rates` and GUARDS, and
+    """What reads the listings of a family's vendor: `names`, `kinds`, `jumps`, `issue_slots`, `rates`, and
     of some `packed`, and `loops` with `kinds_in_order`."""
     known = FAMILIES.get(family)
     return READERS[known.vendor] if known else disassembly

@@ -207,8 +207,6 @@ def _shown(done: Measured) -> Iterator[Sheet]:
         part = [row for row in listed if row["stage"] == stage]
         rows = sheets.isa_sheet(part, article) if len(families) > 1 else TABLE.without_hidden(part)
         yield Sheet("", rows, TABLE.drops(rows))
-    if families and article:
-        yield Sheet("", (), notes=tuple(sheets.order_notes(_texts(done), article)))
     for rows in (by_measure["time"], sheets.article_sheet(article)):
         if rows:
             shown = TABLE.without_hidden(rows)

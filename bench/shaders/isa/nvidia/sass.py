@@ -16,8 +16,6 @@ from typing import NamedTuple
 
 # The columns that add up to the count.
 KINDS = ("other_alu", "conversion", "transcendental", "scalar", "memory", "control_flow", "waiting")
-# What compares or chooses between two numbers; a minimum and a maximum are one instruction.
-GUARDS = ("FSETP", "FSET", "FSEL", "FMNMX", "SEL", "ISETP", "IMNMX", "VIMNMX")
 # Bytes of an instruction.
 SIZE = 16
 

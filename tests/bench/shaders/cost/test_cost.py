@@ -114,36 +114,6 @@ def test_spills_are_of_both_sorts_of_registers():
     assert (found["spills"], found["vgprs"], found["sgprs"], found["kernel_vgprs"]) == (8, 4, 0, 12)
 
 
-LISTINGS = {
-    "xy": (4, "v_min_f32 v0, v1, v2"),
-    "spherical": (9, "v_rcp_f32 v0, v1"),
-    "spheremap": (7, "v_cmp_lt_f32 vcc, v0, v1"),
-    "stereographic": (6, "v_cmpx_ne_u32 exec, v0, v1"),
-}
-
-
-def test_notes_say_which_change_places_and_what_their_listings_hold():
-    """By slots xy, spheremap, stereographic, spherical; by these instructions stereographic comes before spheremap. Not
-    only neighbours are compared, and the kernel's own mask is no guard."""
-    listed = []
-    for name, (count, line) in LISTINGS.items():
-        row = TABLES["cost"].empty() | {"encoding": name, "operation": "encode", "instructions": count}
-        listed.append(
-            (row | {"stage": "fragment", "family": "navi21", "transcendental": name.count("r")}, f"\t{line}\n")
-        )
-    article = cost_sheets.article_rows(LISTINGS, ["encode"])
-    first, turned, *rows = cost_sheets.order_notes(listed, article)
-    assert first.endswith("xy 1/4, spheremap 4/7, stereographic 5/6, spherical 26/9")
-    assert turned == "  the other way round: spheremap and stereographic"
-    assert rows == [
-        "  spheremap: 7 instructions for 4 slots, of them 1 to compare, choose or clamp, 1 transcendental",
-        "  stereographic: 6 instructions for 5 slots, of them 0 to compare, choose or clamp, 2 transcendental",
-    ]
-    listed[0][0]["instructions"] = 8
-    _, turned, *rows = cost_sheets.order_notes(listed, article)
-    assert turned.endswith("xy and spheremap, xy and stereographic, spheremap and stereographic") and len(rows) == 3
-
-
 def test_no_runner_knows_an_encoding():
     """Whatever is in the catalogue is measured: nothing is listed by hand."""
     for module in (cost, work, isa, kernels):

@@ -250,4 +250,4 @@ def test_disassembly_is_written(run, tmp_path):
     assert listing.startswith("; octahedral encode, fragment, navi21\n") and "v_rcp_f32" in listing
     assert (out / "source" / "octahedral.glsl").read_text() == ENCODINGS["octahedral"].glsl.read_text()
     assert len(list(out.rglob("*.asm"))) == 2 * 2 * 2 * 4
-    assert "ps_3_0 slots / navi10 fragment instructions: xy 1/0" in text and "Radeon HD 2400" in text
+    assert "Radeon HD 2400" in text
