@@ -20,7 +20,7 @@ from ...ground.output.errors import tell
 from ...measures.images import turns
 from ...measures.images.orientations import POLES, rotations, yaws
 from ...measures.images.sampled import SampledImage
-from ...measures.images.whole import Trip, Turn, WholeImage, whole_images
+from ...measures.images.whole import SIZE, Trip, Turn, WholeImage, whole_images
 from ...shaders.code.twin import has_twin
 from .. import shots
 from ..motion.trips import trip_of
@@ -55,7 +55,7 @@ class Images:
 
     def first(self, case: PickCase) -> Row:
         """Return the columns of images by a few yaws: enough to tell what is far from the best."""
-        return columns(self._errors(case, 0, turns.FIRST, _poles(case)))
+        return _with_conditions(columns(self._errors(case, 0, turns.FIRST, _poles(case))), case)
 
     def of(self, case: PickCase) -> Row:
         """Return the columns of images: PSNRs over covered pixels that the encoding is made for, at each power in each
@@ -72,7 +72,7 @@ class Images:
                 _, pole = _frames_and_pole(found)
                 _extend(found, self._errors(case, count, count, [pole]))
                 count *= 2
-        row = columns(found)
+        row = _with_conditions(columns(found), case)
         if case.codec.encoding.domain != "sphere":
             lost = {maker.name: self._lost_percent(case, maker) for maker in case.makers}
             row["image_lost_scene"] = max(lost, key=lambda name: lost[name], default=None)
@@ -151,6 +151,16 @@ class Images:
         (turn,) = _turns(pole, 0, 1, case.setting.seed)
         trip = self._trip(case.codec)
         return {power: (whole.shown(trip, turn), whole.exact) for power, whole in self._images(case, maker).items()}
+
+
+def _with_conditions(row: Row, case: PickCase) -> Row:
+    """Return columns of images, if there are any, with their size, exposure and display in words."""
+    said = []
+    for maker in case.makers:
+        exposure = "a measured exposure" if maker.exposure is None else f"{maker.exposure:g} stops"
+        shown = f"{maker.tone_mapping} with specular antialiasing" if maker.is_metal_rough else "clipped"
+        said.append(f"{maker.name} at {'x'.join(map(str, maker.within(SIZE)))}, {exposure}, {shown}")
+    return row and row | {"image_conditions": "; ".join(said)}
 
 
 def _poles(case: PickCase) -> Sequence[str]:

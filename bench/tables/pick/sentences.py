@@ -94,6 +94,7 @@ def told(group: Sequence[Row]) -> list[str]:
     made += list(filter(None, [_images_text(best), _mixing_text(best)]))
     made += [WOBBLES] if best["needs"] in ("hemisphere", "view") else []
     made += [*rungs(group, best), *_hangs_on(group, best)]
+    made += [f"Images: {best['image_conditions']}."] if best.get("image_conditions") and images(best) else []
     return made + [_rival_sentence(row, best) for row in group if row["against"] and row is not best]
 
 

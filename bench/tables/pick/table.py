@@ -177,6 +177,7 @@ COLUMNS = (
         better="more",
         drops=6,
     ),
+    Column("image_conditions", "Size, exposure and display of each image.", HOW, shown=False),
     Column(
         "image_se_db",
         "The standard error of the lowest of these, by leaving out one yaw after the other (jackknife).",
