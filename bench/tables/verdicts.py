@@ -22,7 +22,7 @@ def best_by_bits(rows: Iterable[Row], figure: str, bits: str = "bits") -> list[l
         bits: the column of the bit count.
     """
     groups: dict[float, list[Row]] = {}
-    for row in sorted(rows, key=lambda row: (row[bits], row[figure])):
+    for row in sorted((row for row in rows if row[bits]), key=lambda row: (row[bits], row[figure])):
         groups.setdefault(row[bits], []).append(row)
     best: list[list[Row]] = []
     smallest = math.inf
