@@ -151,13 +151,10 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
     for space, moves in dict.fromkeys((row["space"], row["moves"]) for row in measured):
         part = [row for row in measured if (row["space"], row["moves"]) == (space, moves)]
         worst = max(part, key=lambda row: row["wobble_deg"])
-        where = f"in {space} space, turning the {moves},"
-        if worst["wobble_deg"] < STILL_DEG:
-            said.append(f"{where} it does not change")
-        else:
-            said.append(f"{where} it changes by up to {worst['wobble_deg']:.2g}° RMS ({codec_name(worst)})")
+        largest = f"up to {worst['wobble_deg']:.2g}° RMS ({codec_name(worst)})"
+        said.append(f"{'none' if worst['wobble_deg'] < STILL_DEG else largest} in {space} space as the {moves} turns")
     if said:
-        yield f"Error from one frame to the next: {'; '.join(said)}."
+        yield f"Change of the error from frame to frame: {'; '.join(said)}."
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:

@@ -192,11 +192,8 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
     measured = one_backend(having(rows, "bits", "angle_rms_deg"))
     for normals in dict.fromkeys(row["normals"] for row in measured):
         part = [row for row in measured if row["normals"] == normals]
-        yield f"Most accurate on {normals}: {by_bits(part, 'angle_rms_deg', _angles)}."
-
-
-def _angles(row: Row) -> str:
-    return f"mean {row['angle_mean_deg']:.3g}°, largest {row['angle_max_deg']:.3g}°"
+        best = by_bits(part, "angle_rms_deg", lambda row: f"{row['angle_mean_deg']:.2g}°")
+        yield f"Most accurate on {normals}, mean error: {best}."
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:

@@ -41,10 +41,7 @@ MAX_FRAMES = 1000
 MOSTLY_BLACK = 95.0
 MUCH_CLIPPED = 5.0
 # What `pick` measures of studio: an encoding's figures with each axis up, over many orientations.
-ONE_ORIENTATION = (
-    " This is one orientation: turning an encoding's axes changes its image by several dB, often more than encodings "
-    "differ. pick compares them over many orientations."
-)
+ONE_ORIENTATION = " in one orientation; others move an encoding by several dB, so compare encodings with pick"
 
 
 def layouts(options: RenderOptions) -> list[Layout]:
@@ -210,7 +207,7 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
         worst, best = (chosen(part, key=lambda row: row["psnr_db"]) for chosen in (min, max))
         figures = [f"{row['psnr_db']:.1f} dB ({_called(row)})" for row in (worst, best)]
         caution = ONE_ORIENTATION if len({row["encoding"] for row in part}) > 1 else ""
-        yield f"Image of {scene} by {pipeline}: {' to '.join(dict.fromkeys(figures))}.{caution}"
+        yield f"Image of {scene} by {pipeline}: {' to '.join(dict.fromkeys(figures))}{caution}."
 
 
 def _called(row: Row) -> str:

@@ -89,14 +89,13 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
         part = [row for row in found if row["threshold"] == threshold]
         for encoding in dict.fromkeys(row["encoding"] for row in part):
             where = ", ".join(_from(row) for row in part if row["encoding"] == encoding)
-            yield f"{encoding}: banding is {word} (FLIP {threshold:g}) {where}."
+            yield f"{encoding}: banding is {word} (FLIP {threshold:g}) from roughness: {where}."
 
 
 def _from(row: Row) -> str:
-    least = row["roughness"]
-    when = "at no roughness" if least is None else f"from roughness {least:.2f}" if least else "at any roughness"
+    least = "none" if row["roughness"] is None else f"{row['roughness']:.2f}"
     dithered = "" if row["dither"] == NONE else f" with {row['dither']} dither"
-    return f"{when} in {row['storage']}{dithered}"
+    return f"{row['storage']}{dithered} {least}"
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
