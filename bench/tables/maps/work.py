@@ -126,7 +126,7 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
     for normals in dict.fromkeys(row["normals"] for row in known):
         part = [row for row in known if row["normals"] == normals]
         best: dict[str, str] = {}
-        for row in sorted(part, key=lambda row: row["angle_rms_deg"]):
+        for row in sorted(part, key=lambda row: row["angle_mean_deg"]):
             block = f"in {row['block']}" if FORMATS[row["block"]].is_compressed else "uncompressed"
             best.setdefault(row["block"], f"{row['encoding']} {block} {row['angle_mean_deg']:.2g}°")
         yield f"Mean error on {normals} by format: {', '.join(best.values())}."

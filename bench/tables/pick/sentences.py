@@ -70,7 +70,11 @@ ELSEWHERE_DEG = 30.0
 FREE_SLOTS, ENOUGH = (8, 32), (0.5, 1.5)
 # How far the mirror's image is, in metres, and the map that it shows.
 FAR, MAP = 10.0, "a 1k environment map"
-WOBBLES = "A code in view space wobbles when the camera turns; one in world space must hold every direction."
+OF_SPACE = {
+    "hemisphere": "For tangent space, terrain and maps, where z >= 0. In world space a G-buffer's code must hold every "
+    "direction.",
+    "view": "A code in view space wobbles when the camera turns; one in world space must hold every direction.",
+}
 
 
 def sentences(group: Sequence[Row]) -> list[str]:
@@ -92,7 +96,7 @@ def told(group: Sequence[Row]) -> list[str]:
         f"{_price_sentence(best)} {_bits_sentence(best)}{_reservation_sentence(best)}",
     ]
     made += list(filter(None, [_images_text(best), _mixing_text(best)]))
-    made += [WOBBLES] if best["needs"] in ("hemisphere", "view") else []
+    made += [OF_SPACE[best["needs"]]] if best["needs"] in OF_SPACE else []
     made += [*rungs(group, best), *_hangs_on(group, best)]
     made += [f"Images: {best['image_conditions']}."] if best.get("image_conditions") and images(best) else []
     return made + [_rival_sentence(row, best) for row in group if row["against"] and row is not best]
@@ -132,7 +136,7 @@ def _instead(group: Sequence[Row]) -> Iterator[str]:
             yield f"{RUNGS[INSIDE]}: {found}. Across an edge: {row['mixed_across']}."
         yield f"Decode each texel and mix normals instead ({UPSAMPLE}): no code minds that."
         if group[0]["needs"] not in ("hemisphere", "view"):
-            yield "Or ask for another storage, or for half of the sphere (--domain hemisphere), which has no seam."
+            yield "Or ask for another storage, or for half of the sphere (--domain tangent), which has no seam."
         return
     priced = [row for row in group if not row["beside"] and not why_unfit(row) and row["slots_once"] is not None]
     if priced and (most := group[0]["most_instructions"]) is not None:

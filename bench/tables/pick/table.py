@@ -97,8 +97,8 @@ class PickOptions(Reading, SourceOptions):
         str | None,
         Option(
             "--domain",
-            "What the code must hold and is measured on: sphere, hemisphere (z >= 0), view (facing the viewer). "
-            "Default: your normals.",
+            "What the code must hold and is measured on: sphere; tangent, terrain or map (z >= 0); view (facing the "
+            "viewer). Default: your normals.",
         ),
     ] = None
     needs: Annotated[

@@ -22,6 +22,7 @@ from ...ground.machine.devices import found_device, require_jax
 from ...ground.options.counts import MAX_POWER, MOST_INSTRUCTIONS, check_seed, checked_count, checked_numbers, in_range
 from ...ground.output.errors import UsageError, by_reason, leave_out, tell
 from ...ground.output.writing import check_folder
+from ...ground.spelling import spelled
 from ...subjects.codecs.names import as_declared, check_twin, codecs_named
 from ...subjects.names.effects import effects_named, lacking, name_of, pipeline_with
 from ...subjects.names.storages import roundings_named, storages_named
@@ -32,7 +33,7 @@ from ..families_named import families_named
 from ..mix.table import USES
 from ..table import COMPILERS, GL, Measured, Row, Sheet, Step, Tick, Work
 from . import measure, pictures
-from .answer import AIMS, HOLDS, answered, asked_of, groups, largest
+from .answer import AIMS, answered, asked_of, groups, largest
 from .charts import charts
 from .choices import extras
 from .sentences import left_out, told
@@ -41,6 +42,12 @@ from .table import TABLE, PickOptions, PickOutputs
 MOST_READERS, MOST_WORTH, MOST_ENOUGH = 64, 100.0, 360.0
 # By the domain that is asked for, the set that is measured.
 SETS = {None: "sphere", "sphere": "sphere", "hemisphere": "hemisphere", "view": "playground"}
+# Where normals have all directions, z >= 0, or face the viewer.
+SPACES = {"sphere": "sphere", "tangent": "hemisphere", "terrain": "hemisphere", "map": "hemisphere", "view": "view"}
+WHICH_SPACE = (
+    "--domain hemisphere: of which space? tangent, terrain or map, where z >= 0; a G-buffer's normals in view space "
+    "are of view, and those in world space of sphere"
+)
 # Below so many random normals, chance decides between codes.
 FEW = 4096
 # What people see of the front.
@@ -81,7 +88,7 @@ def questions(options: PickOptions) -> list[list[measure.PickCase]]:
     _say_if_few(sets)
     powers, makers = (
         checked_numbers("--power", options.power, float, 1, MAX_POWER),
-        tuple(scene_makers_named(options.scene)),
+        _scenes(options, said["needs"]),
     )
     effects = effects_named(options.effects) if options.effects else []
     setting = Setting(seed=options.seed)
@@ -117,6 +124,12 @@ def questions(options: PickOptions) -> list[list[measure.PickCase]]:
     for line in dict.fromkeys(lacking) if "all" not in options.encoding else ():
         leave_out(line)
     return [cases for cases in made if cases]
+
+
+def _scenes(options: PickOptions, needs: str | None) -> tuple[SceneMaker, ...]:
+    """Return the scenes that are drawn: none for normals with z >= 0, which no G-buffer has, unless they are named."""
+    is_usual = options.scene == PickOptions().scene and options.aim != "image" and not options.effects
+    return () if needs == "hemisphere" and is_usual else tuple(scene_makers_named(options.scene))
 
 
 def _say_if_few(sets: Iterable[NormalSet]) -> None:
@@ -182,7 +195,9 @@ def _question(options: PickOptions) -> Row:
     in_range("--readers", options.readers, 0, MOST_READERS)
     if not 0 < options.worth <= MOST_WORTH:
         raise UsageError(f"--worth {options.worth:g}: above 0 to {MOST_WORTH:g} decibels")
-    needs = None if options.domain is None else choose_one("domain", options.domain, HOLDS)
+    if options.domain and spelled("domain", options.domain, ["hemisphere"]):
+        raise UsageError(WHICH_SPACE)
+    needs = None if options.domain is None else SPACES[choose_one("domain", options.domain, SPACES)]
     aim, family = (
         choose_one("aim", options.aim, {name: name for name in AIMS}),
         ",".join(families_named(options.family)),

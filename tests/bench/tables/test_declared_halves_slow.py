@@ -12,7 +12,7 @@ FORMS = ROOT / "tests" / "inputs" / "encoders"
 
 
 # A file is answered with one code of the catalogue, of few normals.
-SMALL_ANSWER = ("--domain", "hemisphere", "--encoding", "hemi_octahedral", "--count", "4096", "--format", "json")
+SMALL_ANSWER = ("--domain", "tangent", "--encoding", "hemi_octahedral", "--count", "4096", "--format", "json")
 
 
 GLSL = """mediump vec2 dir_encode(highp vec3 n) { return n.xy; }

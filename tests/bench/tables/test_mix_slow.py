@@ -160,7 +160,7 @@ def test_pick_leaves_out_what_does_not_survive(run):
     text = " ".join(out.split())
     assert status == 1 and "no code qualifies (that survives filter)" in text, text
     assert "(cannot be filtered; octahedral: normals 1 degree apart on axes" in text, text
-    status, out, _ = run(*words, "--needs", "filter", "--domain", "hemisphere")
+    status, out, _ = run(*words, "--needs", "filter", "--domain", "tangent")
     text = " ".join(out.split())
     assert (
         status == 1 and "Inside a surface only: octahedral" in text and "octahedral (does not survive an edge)" in text

@@ -58,7 +58,8 @@ def test_where_nothing_qualifies_it_is_said_with_status_1(run):
     [
         (("--aim", "beauty"), "unknown aim 'beauty'; known: angle, worst, image, cost"),
         (("--family", "navi99"), "unknown family 'navi99'; known: all, polaris10"),
-        (("--domain", "cube"), "unknown domain 'cube'; known: sphere, hemisphere, view"),
+        (("--domain", "cube"), "unknown domain 'cube'; known: sphere, tangent, terrain, map, view"),
+        (("--domain", "hemisphere"), "--domain hemisphere: of which space? tangent, terrain or map, where z >= 0"),
         (("--power", "47,none"), "--power 47,none: numbers from 1 to 2048"),
         (("--most-instructions", "-1"), "--most-instructions -1: from 0 to 1000000"),
         (("--readers", "65"), "--readers 65: from 0 to 64"),
