@@ -23,6 +23,7 @@ from ....gbuffer.scenes.metal_rough import DIELECTRIC
 
 # What a channel holds.
 UNORM, SRGB, FLOAT, RGB9E5 = "unorm", "srgb", "float", "rgb9e5"
+NORMAL = "normal"
 # The words of a layout that what an image shows lies in.
 COMPONENTS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {

@@ -17,14 +17,20 @@ MOST, LEAST_DB = 3, 0.1
 NUMBERS = ("metalness", "specular", "roughness", "occlusion")
 
 
+def holds_other_quantities(layout: Layout) -> bool:
+    """Whether a layout keeps a diffuse colour and an F0, or a specular power, in place of what metal/rough surfaces
+    have."""
+    words = {word.component for word in layout.words}
+    return "metalness" not in words and bool(words & {"specular.r", "power"})
+
+
 def completed(layout: Layout) -> Layout:
-    """A layout with what it lacks of a metal/rough surface in floats beside it."""
-    if "metalness" not in layout.components:
+    """Return a layout with what it lacks of a metal/rough surface in floats next to it."""
+    if holds_other_quantities(layout):
         return layout
     lacks = [COMPONENTS[name][0] for name in NUMBERS if COMPONENTS[name][0] not in layout.components]
-    if not lacks:
-        return layout
-    return replace(layout, targets=(*layout.targets, Target("rgba32f", " ".join(lacks))))
+    words = [" ".join(lacks), "" if COMPONENTS["basecolor"][0] in layout.components else "albedo -"]
+    return replace(layout, targets=(*layout.targets, *(Target("rgba32f", holds) for holds in words if holds)))
 
 
 def alone(layout: Layout, attribute: str) -> Layout:

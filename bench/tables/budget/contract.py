@@ -9,7 +9,7 @@ from types import MappingProxyType
 from ...ground.options.words import Names, Word
 from ...ground.output.errors import UsageError
 from ...ground.spelling import spelled
-from .attributes import EMISSION, MOST_PART, SEEN, Attribute, exact_bits, motion
+from .attributes import EMISSION, MOST_PART, NORMAL, SEEN, Attribute, exact_bits, motion
 
 # Attributes of bits that come back as they are, with the word that a layout has for them.
 EXACT: Mapping[str, str] = MappingProxyType(
@@ -46,16 +46,15 @@ def attributes_held(words: Names, speed: float) -> list[Attribute]:
     """Return the attributes that words stand for, motion up to a speed in pixels a frame.
 
     Raises:
-        UsageError: an unknown one, two of one name, or one is missing that images need.
+        UsageError: an unknown one, two of one name, or no normal.
     """
     found = [_attribute(str(word), speed) for word in words]
     held = [one for one in found if one]
     names = [one.name for one in held]
     if twice := next((name for name in names if names.count(name) > 1), None):
         raise UsageError(f"--hold: {twice} is named twice")
-    for needed in SEEN:
-        if needed not in names:
-            raise UsageError(f"--hold: {needed} is missing; the images that judge need {', '.join(SEEN)}")
+    if NORMAL not in names:
+        raise UsageError(f"--hold: {NORMAL} is missing; name for example {NORMAL},roughness")
     return held
 
 

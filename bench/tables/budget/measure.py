@@ -262,7 +262,7 @@ class Judged:
     def mine(self, layout: Layout) -> Iterator[Row]:
         """The row of somebody's layout, and that of a proposal that holds the same in targets of the same formats."""
         row = self.row_of(MINE, layout)
-        if layout.reflects_by == DIFFUSE_F0 or "metalness" not in layout.components:
+        if changes.holds_other_quantities(layout):
             said = "it keeps no metalness: its materials are other quantities than these codes are for"
             yield row | {"changes": said}
             return

@@ -86,7 +86,7 @@ def question(options: BudgetOptions) -> Question:
     """What is asked for. Raises UsageError for what cannot be asked."""
     device = require_device()
     named = {name: as_known(getattr(options, name)) for name in OF_ATTRIBUTES if getattr(options, name)}
-    options = replace(options, **named)
+    options = _of_held(replace(options, **named))
     sizes = checked_numbers("--bytes", options.bytes, int, 1, MOST_BYTES)
     in_range("--targets", options.targets, 1, MOST_TARGETS)
     in_range("--overdraw", options.overdraw, 0.0, MOST)
@@ -135,6 +135,16 @@ def question(options: BudgetOptions) -> Question:
         families=families,
         most_instructions=options.most_instructions,
     )
+
+
+def _of_held(options: BudgetOptions) -> BudgetOptions:
+    """Return options whose usual passes read nothing that is not held."""
+    usual, held = BudgetOptions(), {str(word).partition(":")[0] for word in options.hold}
+    if options.read_alone == usual.read_alone:
+        options = replace(options, read_alone=tuple(name for name in usual.read_alone if name in held) or ("none",))
+    if options.readers == usual.readers and not {*usual.read_alone} <= held:
+        options = replace(options, readers=usual.readers[:1])
+    return options
 
 
 def _read_alone(said: Names, names: Sequence[str]) -> frozenset[str]:

@@ -8,11 +8,9 @@ from typing import Any
 from ....encodings.catalogue import ENCODINGS
 from ....gbuffer.layouts.layout import Layout
 from ....gbuffer.layouts.words import FREE, Target
-from .attributes import SRGB, UNORM, Code
+from .attributes import NORMAL, SRGB, UNORM, Code
 from .bins import SHARED, Bin
 from .solve import Placed, Solution
-
-NORMAL = "normal"
 
 
 def layout_of(name: str, solution: Solution) -> Layout:

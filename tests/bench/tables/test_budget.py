@@ -345,7 +345,7 @@ def test_the_usual_reflectance_lies_on_a_code():
         (["--formats", "rgba8"], "no target of these formats holds motion (linear in halves); --formats names others"),
         (["--targets", "8"], "--targets"),
         (["--bytes", "0"], "--bytes"),
-        (["--hold", "normal"], "--hold: basecolor is missing"),
+        (["--hold", "basecolor,roughness"], "--hold: normal is missing; name for example normal,roughness"),
         (["--classes", "shiny"], "shiny"),
         (["--hold", "id:4,id:8"], "--hold: id is named twice"),
         (["--hold", "colour"], f"--hold colour: unknown; known: {', '.join(KNOWN)}"),

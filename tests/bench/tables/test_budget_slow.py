@@ -93,6 +93,26 @@ def test_a_layout_is_drawn_and_is_what_was_predicted(gl, run, tmp_path):
 
 
 @pytest.mark.usefixtures("gl")
+@pytest.mark.parametrize(
+    ("kept", "size", "named"),
+    [
+        ("normal", 4, {"normal"}),
+        ("normal,roughness", 4, {"normal", "roughness"}),
+        ("normal,basecolor", 8, {"normal", "albedo"}),
+    ],
+)
+def test_what_is_not_held_is_exact_and_takes_no_bytes(run, kept, size, named):
+    """Of normal and roughness alone, one word of 32 bits: as drawn, and as was predicted."""
+    asked = ("--scene", "studio", "--size", "160x120", "--bytes", str(size), "--format", "json")
+    status, out, _ = run("budget", "--hold", kept, *asked)
+    (row,) = json.loads(out)
+    assert status == 0 and row["bytes_per_pixel"] <= size, row
+    assert abs(row["predicted_worst_db"] - row["worst_db"]) < 0.5, row
+    words = {"normal", "albedo", "roughness", "metalness", "reflectance", "occlusion"}
+    assert {word for word in words if word in row["targets"]} == named, row["targets"]
+
+
+@pytest.mark.usefixtures("gl")
 def test_integer_targets_are_taken_where_no_others_are_allowed(run):
     """Also where nothing else could hold it, so that there is nothing to gain on."""
     asked = ["--scene", "ramps", "--size", "160x120", "--bytes", "20", "--read-alone", "none", "--format", "json"]
