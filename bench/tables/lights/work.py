@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from ....encodings.catalogue import LIGHT_BUFFERS
 from ....encodings.codecs.light_codec import LightCodec
 from ....gbuffer.display import displayed
 from ....gbuffer.gl.device import Device
@@ -22,10 +24,8 @@ from ..table import Row, Sheet, Step, Work, each
 from ..verdicts import listed
 from . import measure
 from .charts import charts
+from .sums import ORDERS
 from .table import LightsOptions, LightsOutputs
-
-# How far off a sum of lights may be.
-ADDS_UP = 0.01
 
 # Lights in one sum.
 MOST_LIGHTS = 4096
@@ -102,17 +102,24 @@ def _finish(rows: Sequence[Row]) -> list[Row]:
 
 
 def _verdict(rows: Sequence[Row]) -> Iterator[str]:
-    """Say which light buffers add up the most lights, to 1%, in their worst channel."""
-    sums = [row for row in rows if row["experiment"] == "equal" and row["sum"] == 1 and row["model"] is not None]
+    """Say how far off sums of the most random lights are, in buffers that blend and in those that are read first."""
+    sums = [
+        row for row in rows if row["experiment"] == "random" and row["order"] == ORDERS[0] and _rms(row) is not None
+    ]
     most = max((row["lights"] for row in sums), default=0)
-    worst: dict[str, float] = {}
-    for row in sums:
-        if row["lights"] == most:
-            worst[row["light_buffer"]] = max(worst.get(row["light_buffer"], 0.0), abs(row["model"] - 1))
-    if worst:
-        good = listed(name for name, error in worst.items() if error <= ADDS_UP)
-        last = max(worst, key=lambda name: worst[name])
-        yield f"{most} lights add up to within {ADDS_UP:.0%} in {good}; {last} is off by {worst[last]:.0%}."
+    errors: dict[str, list[str]] = {}
+    for row in sorted(sums, key=_rms):
+        if row["lights"] == most and row["sum"] == sums[0]["sum"]:
+            known = LIGHT_BUFFERS.get(row["light_buffer"])
+            how = "read before they are written" if known and known.blend == "read" else "blended"
+            errors.setdefault(how, []).append(f"{row['light_buffer']} {_rms(row):.1%}")
+    if errors:
+        yield f"RMS error of {most} random lights, {'; '.join(f'{how}: {listed(of)}' for how, of in errors.items())}."
+
+
+def _rms(row: Row) -> Any:
+    """Return the error on the device, else that of the model."""
+    return row["model_rms"] if row["gl_rms"] is None else row["gl_rms"]
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:

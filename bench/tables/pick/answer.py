@@ -167,14 +167,14 @@ def order(row: Row) -> tuple[float, ...]:
 
     Of codes that are enough and cost little the one of fewest bits is first, then the cheapest, to a doubling. The
     others follow by loss + worth log2(price / floor), to half a decibel, and then by the price. Images are not rounded:
-    which of them are equal is a matter of pairs.
+    which of them are equal is a matter of pairs. Nor are largest angles, which no choice of normals moves.
     """
     ties = (price(row), _bits(row), row["slots"] or 0.0)
     if row["aim"] == "cost":
         return (price(row), not is_enough(row), loss_db(row), *ties)
     if is_enough(row) and price(row) <= AFFORDABLE * floor(row):
         return (0, bool(row["table"]), _bits(row), round(doublings(row)), _to_a_tenth(loss_db(row)), *ties)
-    first = score(row) if row["aim"] == "image" else to_a_step(score(row))
+    first = score(row) if row["aim"] in ("image", "worst") else to_a_step(score(row))
     return (1, first, price(row), loss_db(row), *ties)
 
 
@@ -245,8 +245,7 @@ def why_left_out(row: Row) -> str:
         return TABLE_SAID
     if row.get("cannot_mix"):
         return str(row["cannot_mix"]).partition(":")[0]
-    # Decals have edges, and surfaces end.
-    if row.get("mixed_across"):
+    if row.get("mixed_across") and edges_decide(row["needs"]):
         return EDGE_SAID
     most, once = row["most_instructions"], row["slots_once"]
     if most is not None and once is None:
@@ -256,6 +255,11 @@ def why_left_out(row: Row) -> str:
     if loss_db(row) == math.inf:
         return f"{NO_FIGURE} {row['aim']}"
     return ""
+
+
+def edges_decide(needs: str | None) -> bool:
+    """Whether neighbours may be of two surfaces: decals have edges, and surfaces end. Texels of a map are of one."""
+    return needs != "hemisphere"
 
 
 def lost(row: Row) -> str:

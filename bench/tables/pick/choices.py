@@ -82,6 +82,10 @@ def _needs_text(first: Row) -> Sequence[str]:
     return constraints({**first, "most_instructions": None, "mixing": None})
 
 
+def _edge_text(row: Row) -> str:
+    return answer.EDGE_SAID if row["mixed_across"] and answer.edges_decide(row["needs"]) else ""
+
+
 def _code(row: Row) -> dict[str, Any]:
     fixed = {**row, "accept_lengths": True}
     is_long = not why_unfit(fixed) and bool(why_unfit({**row, "accept_lengths": False}))
@@ -92,7 +96,7 @@ def _code(row: Row) -> dict[str, Any]:
         "storage": row["storage"],
         "unfit": why_unfit(fixed),
         "long": is_long,
-        "cannot": str(row["cannot_mix"] or "").partition(":")[0] or (answer.EDGE_SAID if row["mixed_across"] else ""),
+        "cannot": str(row["cannot_mix"] or "").partition(":")[0] or _edge_text(row),
         "uses": _read(row.get("by_use")),
         "families": _read(row.get("by_family")),
         "plain": [row["angle_mean_deg"], largest(row)],

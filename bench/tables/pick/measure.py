@@ -33,6 +33,7 @@ from .answer import (
     AFFORDABLE,
     EDGE_SAID,
     answered,
+    edges_decide,
     floor,
     image_loss,
     image_name,
@@ -277,14 +278,14 @@ def _case_name(row: Row) -> str:
 
 def _by_use(case: PickCase) -> Row:
     """What each use does to a code: why it cannot be used so, and the sum, the number and the largest of its errors."""
-    domain = _mixed_domain(case)
-    key = figures_key("each use", case.codec, domain, _normals_key(case))
+    domain, at_edges = _mixed_domain(case), edges_decide(case.said["needs"])
+    key = figures_key("each use", case.codec, domain, at_edges, _normals_key(case))
 
     def judged() -> Row:
         found = judge.judgements(case.codec, list(USES), case.normal_set, domain)
         return {
             use: {
-                "cannot": f"cannot be {DONE[use]}" if one.inside else EDGE_SAID if one.across else "",
+                "cannot": f"cannot be {DONE[use]}" if one.inside else EDGE_SAID if one.across and at_edges else "",
                 "count": one.count,
                 "sum": (one.mean_deg or 0.0) * one.count,
                 "max": one.max_deg,

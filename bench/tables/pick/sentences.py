@@ -134,9 +134,13 @@ def _instead(group: Sequence[Row]) -> Iterator[str]:
         for row in (row for row in group if INSIDE in places_of(row)):
             found = f"{called(row)}, mean error {degrees(mean(row))}"
             yield f"{RUNGS[INSIDE]}: {found}. Across an edge: {row['mixed_across']}."
-        yield f"Decode each texel and mix normals instead ({UPSAMPLE}): no code minds that."
-        if group[0]["needs"] not in ("hemisphere", "view"):
-            yield "Or ask for another storage, or for half of the sphere (--domain tangent), which has no seam."
+        uses = group[0]["mixing"].split(",")
+        if {*uses} & {"blend", "resolve"}:
+            yield "What the hardware blends or resolves needs three numbers: in rgb10a2 xyz_renormalised survives both."
+        if "filter" in uses:
+            yield f"Decode each texel and mix normals instead ({UPSAMPLE}): no code minds that."
+            if group[0]["needs"] not in ("hemisphere", "view"):
+                yield "In tangent space (--domain tangent) half of the sphere has no seam."
         return
     priced = [row for row in group if not row["beside"] and not why_unfit(row) and row["slots_once"] is not None]
     if priced and (most := group[0]["most_instructions"]) is not None:
@@ -325,7 +329,8 @@ def _mixing_text(row: Row) -> str:
     upsampled = "Upsampling decodes each texel before it weighs it, which no code minds. "
     said = upsampled if UPSAMPLE in row["mixing"].split(",") else ""
     left = f"mean error {degrees(mean(row))}, largest {degrees(largest_mixed(row))}"
-    return f"{said}It survives {_uses_text(row)}, inside a surface ({left}) and across an edge."
+    edges = f". Across an edge: {row['mixed_across']}" if row["mixed_across"] else " and across an edge"
+    return f"{said}It survives {_uses_text(row)}, inside a surface ({left}){edges}."
 
 
 def _uses_text(row: Row) -> str:
@@ -369,7 +374,7 @@ def _price_text(row: Row, best: Row) -> str:
     if ratio <= 1 or gain <= 0 or is_enough(best):
         return said
     rate = gain / math.log2(ratio)
-    tie = f", where {row['worth']:g} are asked: a tie, and the cheaper code is taken" if rate >= row["worth"] else ""
+    tie = f", about the {row['worth']:g} that --worth asks: the cheaper code is taken" if rate >= row["worth"] else ""
     return f"{said}: {rate:.1f} dB a doubling{tie}"
 
 

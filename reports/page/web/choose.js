@@ -58,7 +58,7 @@ function answerOf(question, asked, { hidden, affordable, step, same, least, much
   const ties = (code) => [price(code), bits(code), code.priced ? (code.encode || 0) + asked.readers * (code.decode || 0) : 0];
   const order = (code, count) => {
     const isEnough = code.largest !== null && 2 * code.largest <= asked.enough && price(code) <= affordable * hidden * (1 + asked.readers);
-    const first = isEnough ? [0, Number(code.table), bits(code), even(doublings(code)), tenth(loss(code))] : [1, isImage ? score(code) : even(score(code) / step) * step, price(code), loss(code)];
+    const first = isEnough ? [0, Number(code.table), bits(code), even(doublings(code)), tenth(loss(code))] : [1, isImage || question.aim === "worst" ? score(code) : even(score(code) / step) * step, price(code), loss(code)];
     return [...first, ...ties(code)].slice(0, count);
   };
   const unfit = (code) => code.unfit || (code.long && !asked.accept_lengths ? said.length : "");

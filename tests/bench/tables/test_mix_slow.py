@@ -162,9 +162,8 @@ def test_pick_leaves_out_what_does_not_survive(run):
     assert "(cannot be filtered; octahedral: normals 1 degree apart on axes" in text, text
     status, out, _ = run(*words, "--needs", "filter", "--domain", "tangent")
     text = " ".join(out.split())
-    assert (
-        status == 1 and "Inside a surface only: octahedral" in text and "octahedral (does not survive an edge)" in text
-    )
+    assert status == 0 and "take octahedral" in text and "It survives filter, inside a surface" in text, text
+    assert "Across an edge: an edge of 60 degrees" in text, text
     status, out, _ = run(*words, "--needs", "upsample")
     assert status == 0 and "take octahedral" in out and "no code minds" in " ".join(out.split())
 
