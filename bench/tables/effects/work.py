@@ -28,6 +28,7 @@ from ...subjects.codecs.layout_names import layouts_named
 from ...subjects.codecs.names import codecs_named
 from ...subjects.names.effects import effects_named, lacking, pipeline_with
 from ...subjects.scenes.scene_names import scene_makers_named
+from ..charts import having
 from ..plans import attempt, with_codecs
 from ..shots import by_shots, checked_device, shot_steps
 from ..table import Row, Sheet, Step, Work
@@ -151,11 +152,12 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
     said = []
     for effect, pipeline, scene in dict.fromkeys(map(group_of, measured)):
         part = [row for row in measured if group_of(row) == (effect, pipeline, scene)]
-        worst, best = (chosen(part, key=lambda row: row["effect_psnr_db"]) for chosen in (min, max))
-        ends = [f"{row['effect_psnr_db']:.1f} dB ({codec_name(row)})" for row in (worst, best)]
-        moved = max((row["moved_percent"] for row in part if row["moved_percent"] is not None), default=0.0)
-        rays = f", up to {moved:.0f}% of the rays hit something else" if moved >= 1 else ""
-        said.append(f"{effect} in {scene} {' to '.join(dict.fromkeys(ends))}{rays}")
+        # What a ray hits is light of any size; how many hit something else says more than its decibels.
+        moved = having(part, "moved_percent")
+        figure, form = ("moved_percent", "{:.2g}% of the rays moved") if moved else ("effect_psnr_db", "{:.1f} dB")
+        ranked = sorted(moved or part, key=lambda row: row[figure])
+        ends = [f"{form.format(row[figure])} ({codec_name(row)})" for row in (ranked[0], ranked[-1])]
+        said.append(f"{effect} in {scene} {' to '.join(dict.fromkeys(ends))}")
     if said:
         yield f"Effects against those of exact normals: {'; '.join(said)}."
 

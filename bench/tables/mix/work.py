@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from ....encodings.catalogue import ENCODINGS
 from ....encodings.codecs.codec import Codec
 from ...ground.choose import choose
 from ...ground.machine.devices import found_device, require_device, require_jax
@@ -163,7 +164,14 @@ def _surviving(made: Sequence[Row], column: str) -> str:
     """Return the codes that a verdict holds for by every backend."""
     failing = {codec_name(line) for line in made if line[column] != "yes"}
     surviving = {codec_name(line): line for line in made if codec_name(line) not in failing}
-    return codecs(list(surviving.values()), listed) if surviving else "none of them"
+    halves = [line["encoding"] for line in surviving.values() if _is_of_half(line["encoding"])]
+    of_half = f" ({listed(halves)} for z >= 0 alone)" if halves else ""
+    return codecs(list(surviving.values()), listed) + of_half if surviving else "none of them"
+
+
+def _is_of_half(name: str) -> bool:
+    """Whether an encoding of the catalogue holds a hemisphere alone."""
+    return name in ENCODINGS and ENCODINGS[name].domain == "hemisphere"
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:

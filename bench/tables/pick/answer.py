@@ -46,6 +46,8 @@ LEAST_DB = 0.25
 MOST_RUNGS = 2
 # Another storage of the same bytes is named where it is better by a bit of each component.
 MUCH_BETTER_DB = 6.0
+# How many times more exact than what is asked for an answer is, before nothing else is worth a word.
+NEEDLESS = 10.0
 NO_FIGURE = "no figure for --aim"
 # Why codes are left out that an option may take.
 HOLE_SAID = f"a hole: the largest error is over {HOLE:g} times the least; --accept-holes takes it"
@@ -426,9 +428,11 @@ def _rungs_apart(chosen: Sequence[int], fit: Sequence[Row]) -> list[int]:
 
 
 def is_much_better(row: Row, best: Row) -> bool:
-    """Whether a code of another storage is worth a word: by a bit of each component, and not worse at its worst."""
-    is_worse = (largest_mixed(row) or math.inf) > (largest_mixed(best) or math.inf)
-    return loss_db(best) - loss_db(row) >= MUCH_BETTER_DB and not is_worse
+    """Whether a code of another storage is worth a word: by a bit of each component, not worse at its worst, and where
+    the answer itself is not far more exact than what is asked for."""
+    worst = largest_mixed(best) or math.inf
+    is_worse, is_needless = (largest_mixed(row) or math.inf) > worst, 2 * worst * NEEDLESS <= best["enough"]
+    return loss_db(best) - loss_db(row) >= MUCH_BETTER_DB and not is_worse and not is_needless
 
 
 def _elsewhere_rows(judged: Sequence[Row], fit: Sequence[Row]) -> list[Row]:

@@ -31,6 +31,7 @@ CONSTANTS = {
     "same": answer.SAME_PRICE,
     "least": answer.LEAST_DB,
     "much": answer.MUCH_BETTER_DB,
+    "needless": answer.NEEDLESS,
     "hole": answer.HOLE,
     "errors": answer.ERRORS,
     "equal": INDISTINGUISHABLE_DB,

@@ -164,7 +164,7 @@ def _with_conditions(row: Row, case: PickCase) -> Row:
 
 
 def _poles(case: PickCase) -> Sequence[str]:
-    is_of_world = engines_space(case.codec.encoding) == WORLD
+    is_of_world = engines_space(case.codec.encoding) == WORLD and case.said["needs"] != "view"
     return list(POLES) if is_of_world else [turns.VIEW_SPACE]
 
 

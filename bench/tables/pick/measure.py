@@ -22,6 +22,7 @@ from ....gbuffer.scenes.setting import Setting
 from ...ground.options.gpu_families import CHOICES
 from ...ground.output import cache as kept
 from ...measures.images.turns import NEAR_DB
+from ...measures.worst_case.recorded import SUPREMA, name_of
 from ...shaders.code.twin import has_twin
 from ...subjects.normals.normal_sets import NORMAL_SETS, NormalSet, from_arrays
 from ..mix import judge
@@ -201,7 +202,7 @@ class Question:
             for row in self._placed_rows():
                 self._rows[_case_name(row)] |= images.of(self._cases[_case_name(row)])
         placed = self._placed_rows()
-        self._find_suprema(placed)
+        self._find_suprema([*placed, *self._recorded_front()])
         self._measure_axes([self._cases[_case_name(row)] for row in placed])
 
     def _draw_near_the_best(self, images: Images) -> None:
@@ -231,6 +232,11 @@ class Question:
         has_images = any(row.get("image_errors") for row in rows)
         aim = "angle" if self._aim == "image" and not has_images else self._aim
         return [row for row in answered([row | {"aim": aim} for row in rows]) if row["place"]]
+
+    def _recorded_front(self) -> list[Row]:
+        """Rows that people are shown next to those with a place, whose suprema come with the package."""
+        cases = ((row, self._cases[_case_name(row)]) for row in self.answered() if row["front"])
+        return [row for row, case in cases if SUPREMA.find(name_of(case.codec, _is_half(case)), case.codec)]
 
     def _qualified_rows(self, aim: str) -> list[Row]:
         answer = answered([row | {"aim": aim} for row in self._rows.values()])

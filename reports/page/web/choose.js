@@ -48,7 +48,7 @@ function gapError(one, other, equal) {
 }
 
 // What qualifies, in its order, and why the others do not.
-function answerOf(question, asked, { hidden, affordable, step, same, least, much, hole, errors, equal }) {
+function answerOf(question, asked, { hidden, affordable, step, same, least, much, needless, hole, errors, equal }) {
   const { said } = question, isImage = question.aim === "image", codes = question.codes.map((code) => codeAs(code, question, asked));
   const price = ({ encode, decode }) => Math.max(encode || 0, hidden) + asked.readers * Math.max(decode || 0, hidden);
   const doublings = (code) => Math.log2(price(code) / (hidden * (1 + asked.readers)));
@@ -80,7 +80,7 @@ function answerOf(question, asked, { hidden, affordable, step, same, least, much
   const best = fit[0], out = codes.filter((code) => why.get(code) && !code.beside);
   if (!best) return { codes, best, fit, out, why, others: [] };
   // Another storage of the same bytes is worth a word where it is much better, and not worse at its worst.
-  const gain = (code) => loss(best) - loss(code), isMuchBetter = (code) => gain(code) >= much && (code.largest || Infinity) <= (best.largest || Infinity);
+  const gain = (code) => loss(best) - loss(code), isMuchBetter = (code) => gain(code) >= much && (code.largest || Infinity) <= (best.largest || Infinity) && 2 * (best.largest || Infinity) * needless > asked.enough;
   const elsewhere = codes.filter((code) => code.beside && !why.get(code) && isMuchBetter(code)).sort((a, b) => before(order(a, -3), order(b, -3))).slice(0, 1);
   const figures = (code) => [tenth(loss(code)), price(code), bits(code)];
   const beats = (one, other) => figures(one).every((x, i) => x <= figures(other)[i]) && figures(one).some((x, i) => x < figures(other)[i]);
