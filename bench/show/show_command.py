@@ -6,7 +6,7 @@ from pathlib import Path
 
 from ..ground.choose import choose
 from ..ground.options.words import Names
-from ..ground.output.errors import UsageError
+from ..ground.output.errors import UsageError, tell
 from ..keep.runs import read_to_show
 from ..tables.registry import TABLES
 from ..tables.table import UNEXPECTED
@@ -23,6 +23,8 @@ def show_command(folder: Path, tables: Names) -> None:
         UsageError: the folder is not a run's, it has no such table, or its rows are of another version.
     """
     done = read_to_show(folder, needs_rows=True)
+    if not done.facts.get("finished", True):
+        tell(f"{folder} is not finished, and verdicts are of the rows so far; the command that began it goes on")
     here = {name: table for name, table in TABLES.items() if name in done.tables}
     say = show_summary if tables else say_verdict
     for table in choose("table of the run", tables or ("all",), here):

@@ -154,10 +154,10 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
         part = [row for row in measured if group_of(row) == (effect, pipeline, scene)]
         # What a ray hits is light of any size; how many hit something else says more than its decibels.
         moved = having(part, "moved_percent")
-        figure, form = ("moved_percent", "{:.2g}% of the rays moved") if moved else ("effect_psnr_db", "{:.1f} dB")
+        figure, form = ("moved_percent", "{:.2g}%") if moved else ("effect_psnr_db", "{:.1f} dB")
         ranked = sorted(moved or part, key=lambda row: row[figure])
         ends = [f"{form.format(row[figure])} ({codec_name(row)})" for row in (ranked[0], ranked[-1])]
-        said.append(f"{effect} in {scene} {' to '.join(dict.fromkeys(ends))}")
+        said.append(f"{effect} in {scene} {' to '.join(dict.fromkeys(ends))}{' of the rays moved' * bool(moved)}")
     if said:
         yield f"Effects against those of exact normals: {'; '.join(said)}."
 

@@ -84,7 +84,7 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
     for kind, is_handed in {"with handedness": True, "without handedness": False}.items():
         part = [row for row in measured if (row["hands_lost"] is not None) is is_handed]
         if part:
-            best = by_bits(part, "rotation_rms_deg", lambda row: f"{row['rotation_mean_deg']:.2g}°")
+            best = by_bits(part, "rotation_mean_deg", lambda row: f"{row['rotation_mean_deg']:.2g}°")
             yield f"Most accurate {kind}, mean rotation: {best}."
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -21,11 +20,13 @@ from ...ground.output.writing import check_folder, whole_file
 from ...subjects.codecs.kinds.named import light_codecs_named
 from ...subjects.names.light_buffers import MOST_LIGHT
 from ..table import Row, Sheet, Step, Work, each
-from ..verdicts import listed
 from . import measure
 from .charts import charts
 from .sums import ORDERS
 from .table import LightsOptions, LightsOutputs
+
+# How many of the best light buffers a verdict names, next to the worst.
+NAMED = 3
 
 # Lights in one sum.
 MOST_LIGHTS = 4096
@@ -103,23 +104,29 @@ def _finish(rows: Sequence[Row]) -> list[Row]:
 
 def _verdict(rows: Sequence[Row]) -> Iterator[str]:
     """Say how far off sums of the most random lights are, in buffers that blend and in those that are read first."""
-    sums = [
-        row for row in rows if row["experiment"] == "random" and row["order"] == ORDERS[0] and _rms(row) is not None
-    ]
+    sums = _random(rows)
     most = max((row["lights"] for row in sums), default=0)
     errors: dict[str, list[str]] = {}
-    for row in sorted(sums, key=_rms):
-        if row["lights"] == most and row["sum"] == sums[0]["sum"]:
+    for row in sorted(sums, key=lambda row: _errors(row)[-1]):
+        if row["lights"] == most:
             known = LIGHT_BUFFERS.get(row["light_buffer"])
             how = "read before they are written" if known and known.blend == "read" else "blended"
-            errors.setdefault(how, []).append(f"{row['light_buffer']} {_rms(row):.1%}")
+            ends = dict.fromkeys(f"{error:.1%}" for error in _errors(row))
+            errors.setdefault(how, []).append(f"{row['light_buffer']} {' to '.join(ends)}")
     if errors:
-        yield f"RMS error of {most} random lights, {'; '.join(f'{how}: {listed(of)}' for how, of in errors.items())}."
+        parts = "; ".join(f"{how} {', '.join([*of[:NAMED], *of[NAMED:][-1:]])}" for how, of in errors.items())
+        yield f"RMS error of {most} random lights by the model and this device: {parts}."
 
 
-def _rms(row: Row) -> Any:
-    """Return the error on the device, else that of the model."""
-    return row["model_rms"] if row["gl_rms"] is None else row["gl_rms"]
+def _random(rows: Sequence[Row]) -> list[Row]:
+    """Return sums of random lights in the order in which they were drawn, the darkest."""
+    drawn = [row for row in rows if row["experiment"] == "random" and row["order"] == ORDERS[0] and _errors(row)]
+    return [row for row in drawn if row["sum"] == min(row["sum"] for row in drawn)]
+
+
+def _errors(row: Row) -> list[float]:
+    """Return the errors of the model and of the device, as far as they are known, the smaller one first."""
+    return sorted(row[name] for name in ("model_rms", "gl_rms") if row[name] is not None)
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
@@ -130,6 +137,9 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
             equal.setdefault((row["light_buffer"], row["channel"]), line)[f"{row['lights']}_lights"] = row["model"]
     if equal:
         yield Sheet("lights that sum to 1, what is left of it by the model", list(equal.values()))
+    names = ("light_buffer", "sum", "lights", "model_rms", "gl_rms", "model_max", "gl_max", "rounds")
+    if sums := [{name: row[name] for name in names} for row in _random(rows)]:
+        yield Sheet("random lights in the order in which they were drawn, relative errors", sums)
 
 
 WORK = Work(

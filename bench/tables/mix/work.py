@@ -157,7 +157,11 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
         if any(line[column] is not None for line in made):
             by_codecs.setdefault(_surviving(made, column), []).append(use)
     if by_codecs:
-        yield "Codes that survive " + "; ".join(f"{listed(uses)}: {them}" for them, uses in by_codecs.items()) + "."
+        yield (
+            "Codes that survive inside a surface "
+            + "; ".join(f"{listed(uses)}: {them}" for them, uses in by_codecs.items())
+            + "."
+        )
 
 
 def _surviving(made: Sequence[Row], column: str) -> str:

@@ -192,7 +192,7 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
     measured = one_backend(having(rows, "bits", "angle_rms_deg"))
     for normals in dict.fromkeys(row["normals"] for row in measured):
         part = [row for row in measured if row["normals"] == normals]
-        best = by_bits(part, "angle_rms_deg", lambda row: f"{row['angle_mean_deg']:.2g}°")
+        best = by_bits(part, "angle_mean_deg", lambda row: f"{row['angle_mean_deg']:.2g}°")
         yield f"Most accurate on {normals}, mean error: {best}."
 
 

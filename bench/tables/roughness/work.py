@@ -93,7 +93,8 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def _from(row: Row) -> str:
-    least = "none" if row["roughness"] is None else f"{row['roughness']:.2f}"
+    known = row["roughness"]
+    least = "none" if known is None else f"{known:.2f}" if known else "any"
     dithered = "" if row["dither"] == NONE else f" with {row['dither']} dither"
     return f"{row['storage']}{dithered} {least}"
 

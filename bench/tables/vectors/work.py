@@ -123,7 +123,8 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
     seen = [row | {"at_least_px": max(row["error_mean_px"], UNNOTICED_PX)} for row in still]
     if seen:
         best = by_bits(seen, "at_least_px", lambda row: f"{row['error_mean_px']:.2g} px")
-        yield f"Most accurate at {speed:g} px per frame, errors up to {UNNOTICED_PX:g} px alike: {best}."
+        how = f"still pixels exact, up to {UNNOTICED_PX:g} px alike"
+        yield f"Most accurate at {speed:g} px per frame, {how}: {best}."
     elif measured:
         yield "No encoding keeps still pixels still; use a storage whose code for 0 is exact (_centred or _snorm)."
 

@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -198,6 +199,12 @@ def test_show_names_the_tables_that_a_run_has(run, results, tmp_path):
     assert (status, err) == (2, "normalbench: unknown table of the run 'depth'; known: all, quality\n")
     status, _, err = run("show", str(tmp_path))
     assert status == 2 and err.count("\n") == 1, err
+    facts = json.loads((results[0] / "run.json").read_text())
+    for name in ("run.json", "rows.jsonl"):
+        shutil.copy(results[0] / name, tmp_path)
+    (tmp_path / "run.json").write_text(json.dumps(facts | {"finished": False}))
+    status, out, err = run("show", str(tmp_path))
+    assert status == 0 and "is not finished" in err and out.startswith("quality: "), err
 
 
 def test_run_leaves_a_results_folder(results):
