@@ -49,6 +49,8 @@ from .pictures import write
 from .prices import Costs
 from .table import TABLE
 
+# The angles of all codes take about this share of the time, images the rest.
+OF_ANGLES = 4
 SUPREMUM, AXES = "angle_sup_deg", "angle_axes_deg"
 # The GPU families that a survey counts for: Mesa has their compilers, which take a second for each.
 SURVEYED = (*CHOICES["radeon"], "tgl", "dg2")
@@ -121,7 +123,7 @@ def rows(
             question.measure(tick)
         with Images(device) if device else nullcontext() as drawn:
             for chosen, question in zip(asked, questions, strict=True):
-                question.draw(drawn)
+                question.draw(drawn, tick)
                 rows = question.rows()
                 if drawn and images:
                     write(images, chosen, answered(rows), drawn)
@@ -159,8 +161,8 @@ class Question:
         angles = {case.name: row for case, row in measured}
         for name in self._rows:
             self._rows[name] |= angles[name]
-            if not self._cases[name].is_beside:
-                tick(f"{self._cases[name].codec.name} {self._cases[name].normal_set.name}")
+        for case in self._own[: len(self._own) // OF_ANGLES]:
+            tick(f"{case.codec.name} {case.normal_set.name}")
         # Also of codes with a hole, which has none where the codes without it do not survive.
         for row in list(self._rows.values()):
             if row["mixing"] and not row["beside"] and not why_left_out(row | {"aim": "angle"}):
@@ -192,15 +194,28 @@ class Question:
                 judged.add(_case_name(row))
                 self._rows[_case_name(row)] |= _mixing_columns(self._cases[_case_name(row)])
 
-    def draw(self, images: Images | None) -> None:
+    @property
+    def _own(self) -> list[PickCase]:
+        """The cases that progress counts: those of the storage that was asked for."""
+        return [case for name, case in self._cases.items() if name in self._rows and not case.is_beside]
+
+    def draw(self, images: Images | None, tick: Callable[[str], None]) -> None:
         """Images, if there is what draws them, and the suprema of codes that have a place then."""
+        left = self._own[len(self._own) // OF_ANGLES :]
         if self._aim == "worst":
             self._take_suprema()
         if images:
             if self._aim == "image":
                 self._draw_near_the_best(images)
-            for row in self._placed_rows():
-                self._rows[_case_name(row)] |= images.of(self._cases[_case_name(row)])
+            drawn = self._placed_rows()
+            for number, row in enumerate(drawn, 1):
+                case = self._cases[_case_name(row)]
+                self._rows[case.name] |= images.of(case)
+                while left and len(left) > len(self._own) * (1 - number / len(drawn)):
+                    left.pop()
+                    tick(f"images of {case.codec.name}")
+        for case in left:
+            tick(case.codec.name)
         placed = self._placed_rows()
         self._find_suprema([*placed, *self._recorded_front()])
         self._measure_axes([self._cases[_case_name(row)] for row in placed])
