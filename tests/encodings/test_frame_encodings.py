@@ -47,7 +47,9 @@ OF_A_ROOT, BY_A_ROOT_DEG = "rotation_xyz", np.degrees(2.0**-10)
 
 # What a frame of a code is off at most, in steps of its widest number. At four equal components the sum of their
 # absolutes is 2, and half a step of three numbers moves the fourth by three halves: 2 x 2 x sqrt(3/4 + 9/4) = sqrt(48).
-STEPS = {"hexadecachoral": np.sqrt(48), "rotation_rodrigues": np.sqrt(12)}
+# The axis of a half turn is off by 2.12 steps, as octahedral normals are, which turns by twice that; the angle is off
+# by half a step of half turns: sqrt((2 x 2.12)^2 + (pi / 2)^2) = sqrt(20.5).
+STEPS = {"hexadecachoral": np.sqrt(48), "rotation_rodrigues": np.sqrt(12), "axis_angle": np.sqrt(20.5)}
 
 
 def most(codec: FrameCodec) -> float:

@@ -82,8 +82,8 @@ def test_a_captured_frame_has_a_base_colour_however_it_is_spelled(tmp_path, key)
 @pytest.mark.parametrize("option", ["--hold", "--blend", "--read-alone", "--readers"])
 def test_options_of_attributes_take_base_color(run, option):
     """What is wrong is said after the names were read."""
-    words = {"--hold": "normal,base_color,roughness,metalness,specular", "--readers": "base_color+tangent"}
+    words = {"--hold": "normal,base_color,Base-Color", "--readers": "base_color+tangent"}
     status, _, err = run("budget", option, words.get(option, "base_color,tangent"))
-    said = {"--hold": "--hold: occlusion is missing", "--readers": "--readers base_color+tangent: unknown"}
+    said = {"--hold": "--hold: base_color is named twice", "--readers": "--readers base_color+tangent: unknown"}
     wanted = said.get(option, f"{option} tangent: not held")
     assert status == 2 and wanted in err.replace("basecolor", "base_color"), err
