@@ -146,6 +146,9 @@ def test_an_interruption_leaves_rows_and_no_process_and_a_killed_worker_costs_no
     while any(map(is_there, workers)) and time.monotonic() < until:
         time.sleep(0.1)
     assert not [pid for pid in workers if is_there(pid)], "a process is left"
+    # A worker that began a moment ago removes its folder a moment later.
+    while any((tmp_path / "temporary").iterdir()) and time.monotonic() < until:
+        time.sleep(0.1)
     assert not [*(tmp_path / "temporary").iterdir()], "a folder is left"
     kept = kept_in(tmp_path)
     assert kept > 3
