@@ -26,7 +26,7 @@ from .sums import ORDERS
 from .table import LightsOptions, LightsOutputs
 
 # How many of the best light buffers a verdict names, next to the worst.
-NAMED = 3
+NAMED = 2
 
 # Lights in one sum.
 MOST_LIGHTS = 4096
@@ -110,7 +110,7 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
     for row in sorted(sums, key=lambda row: _errors(row)[-1]):
         if row["lights"] == most:
             known = LIGHT_BUFFERS.get(row["light_buffer"])
-            how = "read before they are written" if known and known.blend == "read" else "blended"
+            how = "read first" if known and known.blend == "read" else "blended"
             ends = dict.fromkeys(f"{error:.1%}" for error in _errors(row))
             errors.setdefault(how, []).append(f"{row['light_buffer']} {' to '.join(ends)}")
     if errors:
