@@ -115,7 +115,7 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
             errors.setdefault(how, []).append(f"{row['light_buffer']} {' to '.join(ends)}")
     if errors:
         parts = "; ".join(f"{how} {', '.join([*of[:NAMED], *of[NAMED:][-1:]])}" for how, of in errors.items())
-        yield f"RMS error of {most} random lights by the model and this device: {parts}."
+        yield f"RMS error of {most} random lights, model to device: {parts}."
 
 
 def _random(rows: Sequence[Row]) -> list[Row]:
