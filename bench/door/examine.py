@@ -180,17 +180,12 @@ def _compared(found: Examined, codec: Codec, row: Mapping[str, Any]) -> list[str
     # Codes in [0, 1] fill a storage without a sign, and half of one that has a sign.
     is_half_used = codec.storage.holds_unit
     like = replace(ENCODINGS[found.like], is_unit=codec.encoding.is_unit and not is_half_used)
-    own, its = _means(row), _means(_row(Codec(like, codec.storage if not is_half_used else _signed(codec.storage))))
+    own, its = _means(row), _means(_row(Codec(like, replace(codec.storage, holds_unit=False))))
     if not WORSE < own[0] / its[0] < ANOTHER:
         return []
     how = f"{own[0]:.3g} degrees on average for {its[0]:.3g}, {own[1]:.3g} at most for {its[1]:.3g}"
     why = "; codes in [0, 1] use half of its range: store s = 2 c - 1 and decode (s + 1) / 2" if is_half_used else ""
     return [f"in {codec.storage.name} this is {found.like}, {100 * (own[0] / its[0] - 1):.0f} % worse: {how}{why}"]
-
-
-def _signed(storage: Storage) -> Storage:
-    """Return a storage whose sign is used."""
-    return replace(storage, holds_unit=False)
 
 
 def _half_note(codec: Codec, row: Mapping[str, Any]) -> list[str]:

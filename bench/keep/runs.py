@@ -87,6 +87,11 @@ class Done:
             self.whole[name] = TABLES[name].work.finish(rows) if rows else []
         return self.whole[name]
 
+    @staticmethod
+    def remedy(name: str) -> str:
+        """Return what to do about rows of a table that are not what this version writes."""
+        return f"measure them again: normalbench run --tables {name}"
+
     @property
     def left_out(self) -> str:
         """Which rows `tables` does not have, as a sentence without its end; empty where it has all."""

@@ -248,8 +248,8 @@ def _summary(done: Done, table: Table, remarks: list[str]) -> list[Sheet]:
     try:
         return summary(table, done.finished_rows(table.name))
     except UNEXPECTED:
-        again = f"measure them again: normalbench run --tables {table.name}"
-        remarks.append(f"The rows of {table.name} are not those of this version, and shown as they are; {again}.")
+        remedy = done.remedy(table.name)
+        remarks.append(f"The rows of {table.name} are not those of this version, and shown as they are; {remedy}.")
         return []
 
 

@@ -31,5 +31,5 @@ def show_command(folder: Path, tables: Names) -> None:
         try:
             say(table, done.finished_rows(table.name))
         except UNEXPECTED as error:
-            again = f"measure them again: normalbench run --tables {table.name}"
-            raise UsageError(f"{folder}: the rows of {table.name} are not those of this version; {again}") from error
+            remedy = done.remedy(table.name)
+            raise UsageError(f"{folder}: the rows of {table.name} are not those of this version; {remedy}") from error

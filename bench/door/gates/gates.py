@@ -161,8 +161,9 @@ def _finished(done: Done, gate: Gate, run: Path) -> list[Row]:
     try:
         return done.finished_rows(name)
     except UNEXPECTED as error:
-        again = f"measure them again: normalbench run --tables {name}"
-        raise UsageError(f"{gate.place}: the rows of {name} in {run} are not those of this version; {again}") from error
+        raise UsageError(
+            f"{gate.place}: the rows of {name} in {run} are not those of this version; {done.remedy(name)}"
+        ) from error
 
 
 def _check_was_measured(gate: Gate, limit: Limit, rows: list[Row], run: Path) -> None:

@@ -121,7 +121,8 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
 def _random(rows: Sequence[Row]) -> list[Row]:
     """Return sums of random lights in the order in which they were drawn, the darkest."""
     drawn = [row for row in rows if row["experiment"] == "random" and row["order"] == ORDERS[0] and _errors(row)]
-    return [row for row in drawn if row["sum"] == min(row["sum"] for row in drawn)]
+    darkest = min((row["sum"] for row in drawn), default=None)
+    return [row for row in drawn if row["sum"] == darkest]
 
 
 def _errors(row: Row) -> list[float]:
