@@ -13,6 +13,8 @@ ARGUMENTS = [
     *("--disable-background-networking", "--disable-component-update", "--disable-sync"),
 ]
 DESKTOP, PHONE = (1280, 900), (360, 740)
+# Four browsers that draw by software on two cores: a page may wait longer than five seconds for its first frame.
+expect.set_options(timeout=30_000)
 # What Firefox cannot be asked for by its own protocol.
 no_files = pytest.mark.chromium("its protocol keeps no files that are saved")
 no_paper = pytest.mark.chromium("its protocol does not show a page as on paper, or in the dark")
