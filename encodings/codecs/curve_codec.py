@@ -44,6 +44,7 @@ class CurveEncoding:
             of the range; 0 where the two maps are each other's inverse.
         constants: numbers that both languages need, by their GLSL name.
         functions: what the names of its GLSL functions begin with, of a user's file; empty where that is the name.
+        stores_colours: whether channels of colours are stored on it; other curves have no errors in display steps.
     """
 
     kind: ClassVar[Kind] = CURVE
@@ -60,6 +61,7 @@ class CurveEncoding:
     inverse_error: float = 0.0
     constants: Mapping[str, float | tuple[float, ...]] = field(default_factory=dict)
     functions: str = ""
+    stores_colours: bool = True
 
     @property
     def prefix(self) -> str:

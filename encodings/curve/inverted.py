@@ -28,4 +28,5 @@ ENCODING = CurveEncoding(
     glsl=Path(__file__).with_suffix(".glsl"),
     ulps=(1, 1),
     ulps_reason="a division and a difference; a difference and a product",
+    stores_colours=False,
 )

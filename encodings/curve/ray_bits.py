@@ -37,4 +37,5 @@ ENCODING = CurveEncoding(
     ulps_reason="a power of two and a quotient; a product",
     inverse_error=1.0 / 16.0,
     constants={"RAY_BITS_RAYS": RAYS, "RAY_BITS_BYTE": BYTE},
+    stores_colours=False,
 )

@@ -31,4 +31,5 @@ ENCODING = CurveEncoding(
     ulps=(4, 8),
     ulps_reason="a product and a sum, which GLSL may join; a quotient",
     constants={"REFLECTIVITY_LEAST": DIELECTRIC},
+    stores_colours=False,
 )

@@ -29,4 +29,5 @@ ENCODING = CurveEncoding(
     glsl=Path(__file__).with_suffix(".glsl"),
     ulps=(3, 2),
     ulps_reason="a division and a product; a root and a product",
+    stores_colours=False,
 )

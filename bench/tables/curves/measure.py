@@ -104,7 +104,7 @@ def _figures(case: CurveCase, trip: Trip) -> Row:
         "least": _least(case, trip, ends[0]),
         "zero": float(ends[0]),
         "one": float(ends[1]) / largest,
-        **_display_columns(case, trip, linear),
+        **(_display_columns(case, trip, linear) if case.codec.encoding.stores_colours else {}),
     }
 
 

@@ -31,6 +31,7 @@ class CurvesOptions(SourceOptions):
 
 
 DISPLAY = "on the sRGB curve, in steps of 8 bits, of quantities that are evenly spread there"
+NO_COLOURS = "Empty for curves on which no colours are stored, such as smoothness."
 COLUMNS = (
     Column("encoding", "How a quantity becomes a number.", KEY),
     shared.STORAGE,
@@ -47,8 +48,8 @@ COLUMNS = (
         unit="%",
         better="less",
     ),
-    Column("display_mean", f"Mean distance {DISPLAY}.", better="less", drops=2),
-    Column("display_max", f"Largest distance {DISPLAY}.", better="less"),
+    Column("display_mean", f"Mean distance {DISPLAY}. {NO_COLOURS}", better="less", drops=2),
+    Column("display_max", f"Largest distance {DISPLAY}. {NO_COLOURS}", better="less"),
     Column("least", "The smallest quantity that does not decode to what 0 decodes to.", better="less", drops=3),
     Column("zero", "What 0 decodes to.", drops=1),
     Column("one", "What the range decodes to, as a share of the range.", drops=1),

@@ -52,6 +52,11 @@ def test_eight_bits_on_the_srgb_curve_are_half_a_step_of_what_a_viewer_sees():
     assert row("linear", "r8")["display_max"] == pytest.approx(12.92 / 2, rel=0.01)
 
 
+def test_a_curve_on_which_no_colours_are_stored_has_no_display_steps():
+    names = {name for name in CURVE_ENCODINGS if row(name, "r8")["display_max"] is None}
+    assert names == {"squared", "inverted", "ray_bits", "reflectivity"}
+
+
 def test_a_floats_error_is_a_share_of_the_quantity():
     found = row("linear", "float:5:10")
     assert found["relative_max"] == pytest.approx(100 * 2.0**-11, rel=0.05)
