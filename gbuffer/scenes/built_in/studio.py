@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 
 from ...environment.catalogue import ENVIRONMENTS
+from ...environment.environment import Environment, directions, solid_angles
 from ..mesh import Mesh, grid_triangles, grid_uv, plane, sphere
 from ..metal_rough import Map, MetalRough
 from ..scene import Light, Scene, ScenePart, View, placed
@@ -27,7 +29,13 @@ PLASTIC = MetalRough(base=(0.55, 0.08, 0.06))
 GLOSSY_PAINT = MetalRough(base=(0.03, 0.09, 0.28), roughness=0.12)
 BRUSHED = MetalRough(base=(0.78, 0.78, 0.8), metalness=1.0, roughness=0.3)
 MIRROR = MetalRough(base=(0.98, 0.98, 0.98), metalness=1.0, roughness=0.0)
+FLOOR = MetalRough(base=(0.3, 0.27, 0.24), roughness=0.35)
 WALL = MetalRough(base=(0.42, 0.42, 0.43), roughness=0.6)
+SUN_WAY = np.array([0.45, -0.75, -0.5])
+SUN = Light("sun", (0.5, 0.48, 0.44), direction=tuple(SUN_WAY / np.linalg.norm(SUN_WAY)))
+# The middle of the spheres, and what mirrors see of the room: the floor at the least y, the back wall at the least z.
+MIDDLE, LEAST, MOST = np.array([0.0, 0.8, 1.1]), np.array([-7.0, 0.0, -2.5]), np.array([7.0, 9.0, 6.0])
+NEARLY = 1e-6
 LAMP = MetalRough(base=(0.8, 0.8, 0.8), roughness=1.0, emission=(50.0, 50.0, 50.0))
 
 
@@ -42,18 +50,36 @@ def studio(setting: Setting) -> Scene:
     return Scene(
         parts=(balls, *_panels(first), *_room(first + 2)),
         materials=materials,
-        lights=(_sun(), *_lights(setting)),
+        lights=(SUN, *_lights(setting)),
         ambient=(0.0, 0.0, 0.0),
         view=view,
         previous=View((0.05, 2.1, 8.6), (0.0, 1.45, 0.0), 38.0, 1.0, 40.0),
-        environment=ENVIRONMENTS["studio"].make(),
+        environment=_surroundings(),
     )
+
+
+@cache
+def _surroundings() -> Environment:
+    """The environment `studio` as the spheres see it: behind the scene's floor and back wall."""
+    radiance = ENVIRONMENTS["studio"].make().radiance.copy()
+    ways = directions(len(radiance))
+    before = radiance * solid_angles(len(radiance))[..., None]
+    for axis, material in ((1, FLOOR), (2, WALL)):
+        along = ways[..., axis, None]
+        # L = base E / pi, where a sun of colour c gives E = pi c (n . l)
+        irradiance = np.sum(before * np.maximum(along, 0.0), axis=(0, 1))
+        light = np.array(material.base) * (irradiance / np.pi - np.array(SUN.colour) * SUN.direction[axis])
+        place = MIDDLE + ways * (LEAST - MIDDLE)[axis] / np.minimum(along, -NEARLY)
+        is_seen = np.all((place >= LEAST - NEARLY) & (place <= MOST), axis=-1) & (along[..., 0] < 0)
+        radiance[is_seen] = light
+    radiance.setflags(write=False)
+    return Environment("studio room", radiance)
 
 
 def _materials() -> tuple[MetalRough, ...]:
     """Of the spheres, the panels, then of the room: mirror, floor, wall, lamp."""
     spheres = [MetalRough(kind.base, kind.metalness, roughness) for kind in (PLASTIC, METAL) for roughness in ROUGHNESS]
-    floor = MetalRough((0.3, 0.27, 0.24), roughness=0.35, normal_map=Map(tiles(), wrap=("repeat", "repeat")))
+    floor = replace(FLOOR, normal_map=Map(tiles(), wrap=("repeat", "repeat")))
     return (*spheres, GLOSSY_PAINT, BRUSHED, MIRROR, floor, WALL, LAMP)
 
 
@@ -118,11 +144,6 @@ def tiles(size: int = 512) -> np.ndarray:
     texels = np.full((size, size, 4), 65535, np.uint16)
     texels[..., :3] = np.round((normals * 0.5 + 0.5) * 65535)
     return texels
-
-
-def _sun() -> Light:
-    direction = np.array([0.45, -0.75, -0.5])
-    return Light("sun", (0.5, 0.48, 0.44), direction=tuple(direction / np.linalg.norm(direction)))
 
 
 def _lights(setting: Setting) -> list[Light]:

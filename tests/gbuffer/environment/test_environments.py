@@ -8,6 +8,9 @@ from normalbench.gbuffer.environment.environment import directions, solid_angles
 from normalbench.gbuffer.environment.made import drawn
 from normalbench.gbuffer.environment.sky import SUN, SUN_IRRADIANCE
 from normalbench.gbuffer.environment.sun import without_sun
+from normalbench.gbuffer.scenes.built_in.studio import FLOOR, WALL
+from normalbench.gbuffer.scenes.catalogue import SCENES
+from normalbench.gbuffer.scenes.setting import Setting
 
 
 @pytest.fixture(scope="module", params=ENVIRONMENTS)
@@ -55,6 +58,20 @@ def test_the_studios_grid_is_fine_lines_with_soft_edges():
     peaks = (row[1:-1] > row[:-2]) & (row[1:-1] >= row[2:]) & (row[1:-1] > 0.3)
     assert peaks.sum() >= 8, row
     assert len(np.unique(row.round(3))) > 6
+
+
+def test_mirrors_of_the_scene_studio_show_the_room_that_they_stand_in():
+    """Below its floor, ahead its back wall, each of one light; above and behind what the environment has."""
+    scene, whole = SCENES["studio"].make(Setting()), ENVIRONMENTS["studio"].make().radiance
+    assert scene.environment is not None
+    seen, towards = scene.environment.radiance, directions(256)
+    floor, wall = seen[-1, 0], seen[128 - 20, 256]
+    ahead = (towards[..., 2] < -0.95) & (towards[..., 1] > 0)
+    assert np.all(seen[towards[..., 1] < -0.5] == floor) and np.all(seen[ahead] == wall)
+    # A room of few lamps: between what the darkest and the lightest part of it would light a floor to.
+    assert 0.1 < floor[1] / FLOOR.base[1] < 5 and 0.1 < wall[1] / WALL.base[1] < 5
+    unseen = (towards[..., 1] > 0.95) | (towards[..., 2] > 0.9) & (towards[..., 1] > 0.3)
+    assert np.array_equal(seen[unseen], whole[unseen])
 
 
 def test_the_sun_of_the_sky_is_taken_out_whole():
