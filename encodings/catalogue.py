@@ -36,6 +36,8 @@ PAIRS = (
     "cryengine3",
     "stereographic",
     "per_pixel_view",
+    "view_octahedral",
+    "view_equal_area",
     "octahedral",
     "hemi_octahedral",
     "signed_octahedral",

@@ -21,7 +21,7 @@ from ..ground.output.cache import key_of
 ROOT = Path(__file__).parents[2]
 # What a round trip depends on, besides the module of the encoding.
 OF_CODECS = (
-    *(f"encodings/{name}.py" for name in ("vec", "elementary", "rotation")),
+    *(f"encodings/{name}.py" for name in ("vec", "elementary", "rotation", "shared/view_frame")),
     *(f"encodings/codecs/{name}.py" for name in ("codec", "encoding")),
     *(f"encodings/storages/{name}.py" for name in ("storage", "rounding", "rules")),
 )

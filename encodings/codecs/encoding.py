@@ -56,6 +56,10 @@ class LookUp:
     fit: Callable[[Any, Any, float], Any]
 
 
+def _none(_: Mapping[str, Any]) -> Mapping[str, float]:
+    return {}
+
+
 @dataclass(frozen=True, eq=False)
 class Encoding:
     """A pair of maps between normals and codes, in JAX here and in GLSL in the file beside it.
@@ -77,6 +81,7 @@ class Encoding:
         ulps_reason: why it is that many.
         sign_bits: further components that are 1 or -1 and take one bit, kept in the sign of the depth.
         constants: numbers that both languages need, by their GLSL name.
+        derived: further ones that follow from these.
         levels: for each component how many values it may have, from -1 to 1 evenly spread; 0, as where none are given,
             for a number like any other.
         is_precise: of the codes around, every component rounded down or up, the one that decodes nearest is stored.
@@ -113,6 +118,7 @@ class Encoding:
     is_precise: bool = False
     searches: bool = False
     constants: Mapping[str, float | tuple[float, ...]] = field(default_factory=dict)
+    derived: Callable[[Mapping[str, Any]], Mapping[str, float]] = _none
     tables: Callable[[], Mapping[str, Any]] = dict
     functions: str = ""
     parameters: tuple[Parameter, ...] = ()
@@ -126,6 +132,9 @@ class Encoding:
     packed_bits: int = 0
     declares_half: bool = False
     own: Encoding | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "constants", {**self.constants, **self.derived(self.constants)})
 
     @property
     def is_packed(self) -> bool:
@@ -175,6 +184,11 @@ class Encoding:
     def has_tables(self) -> bool:
         """Whether it reads look-up tables."""
         return self.tables is not dict
+
+    @property
+    def reach_deg(self) -> float:
+        """How far from the line of sight it holds normals, if its domain is "view"."""
+        return self.published.get("cap", 90.0)
 
     @property
     def can_turn(self) -> bool:

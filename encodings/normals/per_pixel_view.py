@@ -3,15 +3,8 @@
 from pathlib import Path
 
 from ..codecs.encoding import Encoding
-from ..vec import Vec2, Vec3, cross, dot, maximum, sqrt, unit
-
-
-def view_frame(view: Vec3) -> tuple[Vec3, Vec3, Vec3]:
-    """Axes of the pixel's frame from its view-space position; a ray straight up or down takes x to the right."""
-    # z = -view, x = normalize(z.z, 0, -z.x), y = cross(z, x)
-    z = -unit(view)
-    x = unit(Vec3(z.z, 0.0 * z.z, -z.x))
-    return x, cross(z, x), z
+from ..shared.view_frame import view_frame
+from ..vec import Vec2, Vec3, dot, maximum, sqrt
 
 
 def encode(n: Vec3, view: Vec3) -> Vec2:

@@ -19,7 +19,7 @@ from ....gbuffer.render import Rendering, rendering
 from ....gbuffer.scenes.catalogue import SceneMaker
 from ....gbuffer.scenes.scene import Scene
 from ....gbuffer.scenes.setting import Setting
-from ...subjects.normals.domains import in_domain
+from ...subjects.normals.domains import in_domain, view_angles
 
 if TYPE_CHECKING:
     from jaxtyping import Bool, Float
@@ -97,6 +97,10 @@ class WholeImage:
     def held_by(self, domain: str) -> Bool[np.ndarray, "height width"]:
         """Return where a surface's normal lies in a domain."""
         return self.covered & in_domain(self.surfaces[0][..., :3], self.places, domain)
+
+    def view_angles(self) -> Float[np.ndarray, " covered"]:
+        """Return how far the covered pixels' normals are from the line of sight, in degrees."""
+        return view_angles(self.surfaces[0][self.covered, :3], self.places[self.covered])
 
     def by_class(self, trip: Trip, turns: Sequence[Turn], domain: str) -> dict[str, Float[np.ndarray, " turns"]]:
         """Return the mean squared error of each class, and as "" that of the frame; as `SampledImage.by_class`."""

@@ -23,3 +23,15 @@ def in_domain(
     if domain == "view":
         return np.sum(normals * views, axis=-1) <= 0
     return np.ones(normals.shape[:-1], bool)
+
+
+def view_angles(
+    normals: Float[np.ndarray, "*shape 3"], views: Float[np.ndarray, "*shape 3"]
+) -> Float[np.ndarray, "*shape"]:
+    """Return the angles between unit normals and the lines of sight back to the viewer, in degrees.
+
+    Args:
+        views: from the viewer to the surface, of any length but 0.
+    """
+    facing = -np.sum(normals * views, axis=-1) / np.linalg.norm(views, axis=-1)
+    return np.degrees(np.arccos(np.clip(facing, -1.0, 1.0)))

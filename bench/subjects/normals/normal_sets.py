@@ -16,7 +16,7 @@ import numpy as np
 
 from ....encodings.codecs.encoding import Encoding
 from ....encodings.elementary import sincos_pi
-from ....encodings.vec import Vec3, from_array, sqrt
+from ....encodings.vec import Vec3, dot, from_array, sqrt
 from ...ground.native.elementwise import NotElementwiseError
 from ...ground.native.library import NoCompilerError
 from ...ground.options.counts import DEFAULT_COUNT
@@ -101,6 +101,15 @@ class NormalSet:
             return ()
         chunks = PART // CHUNK
         return [replace(self, of=range(at, at + chunks)) for at in range(0, len(self.starts), chunks)]
+
+    def facing(self) -> NormalSet:
+        """Return its part that faces the viewer."""
+
+        def chunk(start: int) -> Chunk:
+            whole = self.chunk(start)
+            return whole._replace(covered=np.asarray(whole.covered) & (np.asarray(dot(whole.n, whole.view)) <= 0))
+
+        return replace(self, name=f"{self.name}, facing the viewer", chunk=chunk)
 
     def loads(self) -> Iterator[Callable[[], Chunk]]:
         """For each chunk, in order, a function that gives it."""

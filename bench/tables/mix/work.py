@@ -159,7 +159,7 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
     if by_codecs:
         yield (
             "Codes that survive inside a surface "
-            + "; ".join(f"{listed(uses)}: {them}" for them, uses in by_codecs.items())
+            + "; ".join(f"{listed(survived)}: {names}" for names, survived in by_codecs.items())
             + "."
         )
 

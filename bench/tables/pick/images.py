@@ -77,6 +77,8 @@ class Images:
             lost = {maker.name: self._lost_percent(case, maker) for maker in case.makers}
             row["image_lost_scene"] = max(lost, key=lambda name: lost[name], default=None)
             row["image_lost_percent"] = max(lost.values(), default=0.0)
+        if case.said["needs"] == "view":
+            row["image_view_angles"] = ". ".join(self._view_angles_text(case, maker) for maker in case.makers)
         return row
 
     def _errors(self, case: PickCase, first: int, count: int, poles: Sequence[str]) -> Found:
@@ -137,9 +139,17 @@ class Images:
 
     def _lost_percent(self, case: PickCase, maker: SceneMaker) -> float:
         """The share of covered pixels whose normals the encoding is not made for."""
-        whole = next(iter(self._images(case, maker).values()))
-        held = np.count_nonzero(whole.held_by(case.codec.encoding.domain))
+        whole, encoding = next(iter(self._images(case, maker).values())), case.codec.encoding
+        if encoding.domain == "view":
+            return 100.0 * float(np.mean(whole.view_angles() > encoding.reach_deg))
+        held = np.count_nonzero(whole.held_by(encoding.domain))
         return 100.0 * (1 - held / max(np.count_nonzero(whole.covered), 1))
+
+    def _view_angles_text(self, case: PickCase, maker: SceneMaker) -> str:
+        whole = next(iter(self._images(case, maker).values()))
+        common, rare = np.percentile(whole.view_angles(), (99.0, 99.9))
+        within = f"99 % of visible normals lie within {common:.0f}° of the line of sight, 99.9 % within {rare:.0f}°"
+        return f"In {maker.name} {within}"
 
     def shown(self, case: PickCase, maker: SceneMaker, pole: str) -> dict[float | None, tuple[np.ndarray, np.ndarray]]:
         """Return at each power (None where there is none) the displayed image of the first yaw, and that of exact

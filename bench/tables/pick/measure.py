@@ -24,6 +24,7 @@ from ...ground.output import cache as kept
 from ...measures.images.turns import NEAR_DB
 from ...measures.worst_case.recorded import SUPREMA, name_of
 from ...shaders.code.twin import has_twin
+from ...subjects.normals.domains import view_angles
 from ...subjects.normals.normal_sets import NORMAL_SETS, NormalSet, from_arrays
 from ..mix import judge
 from ..mix.table import USES
@@ -353,7 +354,10 @@ def _case_columns(case: PickCase) -> Row:
             "free_bits": 8 * codec.storage.texel_bytes - codec.bits + encoding.sign_bits,
             "table": encoding.has_tables,
         }
-        | {"seed": case.normal_set.seed, "lost_percent": _lost_percent(case.normal_set, encoding.domain)}
+        | {
+            "seed": case.normal_set.seed,
+            "lost_percent": _lost_percent(case.normal_set, encoding.domain, encoding.reach_deg),
+        }
         | {"code_bits": codec.code_bits}
     )
 
@@ -420,15 +424,15 @@ def _normals_key(case: PickCase) -> list[Any] | None:
 
 
 @cache
-def _lost_percent(normals: NormalSet, domain: str) -> float:
-    """The percentage of normals that lie outside a domain."""
+def _lost_percent(normals: NormalSet, domain: str, reach_deg: float = 90.0) -> float:
+    """The percentage of normals outside a domain: of "view", further than `reach_deg` from the line of sight."""
     if domain == "sphere":
         return 0.0
     lost = count = 0
     for load in normals.loads():
         chunk = load()
-        n, view, covered = ([np.asarray(c) for c in chunk.n], [np.asarray(c) for c in chunk.view], chunk.covered)
-        is_lost = n[2] < 0 if domain == "hemisphere" else sum(a * b for a, b in zip(n, view, strict=True)) > 0
-        covered = np.asarray(covered)
-        lost, count = lost + int(np.count_nonzero(is_lost & covered)), count + int(np.count_nonzero(covered))
+        covered = np.asarray(chunk.covered)
+        n, view = (np.stack([np.asarray(c)[covered] for c in plane], axis=-1) for plane in (chunk.n, chunk.view))
+        is_lost = n[..., 2] < 0 if domain == "hemisphere" else view_angles(n, view) > reach_deg
+        lost, count = lost + int(np.count_nonzero(is_lost)), count + len(n)
     return 100.0 * lost / max(count, 1)

@@ -7,7 +7,6 @@ from collections.abc import Iterator, Sequence
 
 from ....encodings.catalogue import ENCODINGS
 from ....encodings.codecs.codec import fewer_bits
-from ....reports.page.verdict import MADE_FOR
 from ...ground.machine.systems.people import command_line
 from ..table import Row
 from .answer import (
@@ -73,7 +72,8 @@ FAR, MAP = 10.0, "a 1k environment map"
 OF_SPACE = {
     "hemisphere": "For tangent space, terrain and maps, where z >= 0. In world space a G-buffer's code must hold every "
     "direction.",
-    "view": "A code in view space wobbles when the camera turns; one in world space must hold every direction.",
+    "view": "In view space a code that ends 100° from the line of sight gains at most 2.3 dB over one of every "
+    "direction. But its steps crawl when the camera turns: 26.0 dB on a slow mirror panel, 36.6 dB in world space.",
 }
 
 
@@ -96,21 +96,20 @@ def told(group: Sequence[Row]) -> list[str]:
         f"{_price_sentence(best)} {_bits_sentence(best)}{_reservation_sentence(best)}",
     ]
     made += list(filter(None, [_images_text(best), _mixing_text(best)]))
-    made += [OF_SPACE[best["needs"]]] if best["needs"] in OF_SPACE else []
+    made += [_space_sentences(best)] if best["needs"] in OF_SPACE else []
     made += [*rungs(group, best), *_hangs_on(group, best)]
     made += [f"Images: {best['image_conditions']}."] if best.get("image_conditions") and images(best) else []
     return made + [_rival_sentence(row, best) for row in group if row["against"] and row is not best]
 
 
+def _space_sentences(best: Row) -> str:
+    angles = best.get("image_view_angles")
+    return OF_SPACE[best["needs"]] + (f" {angles}." if angles else "")
+
+
 def question(row: Row) -> str:
     """What was asked for, and what was measured on."""
-    return f"{asked_of(row)}, {_on(row)}"
-
-
-def _on(row: Row) -> str:
-    """What was measured, in words; where the set stands for a domain, the domain as well."""
-    on = f"on {row['normals']}"
-    return f"for {MADE_FOR[row['needs']]}, {on}" if row["needs"] == "view" else on
+    return f"{asked_of(row)}, on {row['normals']}"
 
 
 def not_held(best: Row) -> Iterator[str]:

@@ -216,6 +216,7 @@ COLUMNS = (
         shown=False,
     ),
     Column("image_lost_scene", "That scene.", HOW, shown=False),
+    Column("image_view_angles", "How far visible normals lie from the line of sight, in words.", HOW, shown=False),
     Column(
         "slots",
         "The price: issue slots to encode once and to decode for each of `readers`, as they are executed.",

@@ -85,6 +85,8 @@ def questions(options: PickOptions) -> list[list[measure.PickCase]]:
     needs_rays = any(codec.encoding.domain == "view" for codec in fit)
     chosen = options.normals or (SETS[said["needs"]],)
     sets = normal_sets_named(chosen, count, options.seed, options.reading, needs_rays)
+    if said["needs"] == "view":
+        sets = [normals.facing() for normals in sets]
     _say_if_few(sets)
     powers, makers = (
         checked_numbers("--power", options.power, float, 1, MAX_POWER),

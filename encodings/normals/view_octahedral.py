@@ -1,0 +1,66 @@
+"""Octahedral map in the pixel's own frame, of normals up to an angle from the line of sight.
+
+What a camera sees faces it, but for interpolated and mapped normals, which turn a few degrees further. The pyramid of
+the hemi-octahedral map, with its foot at that angle in place of 90 degrees, holds these: at 90 it is that map. The foot
+is a square around the cap's circle, so some codes lie beyond the angle.
+"""
+
+from collections.abc import Mapping
+from math import cos, radians, sin
+from pathlib import Path
+from typing import Any
+
+from ..codecs.encoding import Encoding, Parameter
+from ..shared.view_frame import view_frame
+from ..vec import TINY, Vec2, Vec3, dot, maximum, normalize
+
+# Its angle as published, and those that it may have.
+CAP_DEG, CAPS_DEG = 100.0, (90.0, 150.0)
+
+
+def foot(cap: float) -> tuple[float, float]:
+    """How far the pyramid's foot lies below its tip, and half of its diagonal, of an angle in degrees."""
+    return 1.0 - cos(radians(cap)), sin(radians(cap))
+
+
+def encode(n: Vec3, view: Vec3, cap: float = CAP_DEG) -> Vec2:
+    """Unit normal to the square [-1, 1]^2, the line of sight at its centre; beyond the foot, to its edge."""
+    height, half = foot(cap)
+    x, y, z = view_frame(view)
+    m = Vec3(dot(x, n), dot(y, n), dot(z, n))
+    # s = |m.x| + |m.y|, p = m.xy / max(height s + half m.z, s), e = (p.x + p.y, p.x - p.y)
+    s = abs(m.x) + abs(m.y)
+    p = m.xy * (1.0 / maximum(maximum(height * s + half * m.z, s), TINY))
+    return Vec2(p.x + p.y, p.x - p.y)
+
+
+def decode(e: Vec2, view: Vec3, cap: float = CAP_DEG) -> Vec3:
+    """The unit normal of a point of the square."""
+    height, half = foot(cap)
+    x, y, z = view_frame(view)
+    # p = (e.x + e.y, e.x - e.y) / 2, m = (half p, 1 - height (|p.x| + |p.y|))
+    p = Vec2(e.x + e.y, e.x - e.y) * 0.5
+    m = normalize(Vec3(half * p.x, half * p.y, 1.0 - height * (abs(p.x) + abs(p.y))))
+    return x * m.x + y * m.y + z * m.z
+
+
+def _foot_constants(constants: Mapping[str, Any]) -> dict[str, float]:
+    height, half = foot(constants["VIEW_OCTAHEDRAL_CAP"])
+    return {"VIEW_OCTAHEDRAL_HEIGHT": height, "VIEW_OCTAHEDRAL_HALF": half}
+
+
+ENCODING = Encoding(
+    name="view_octahedral",
+    title="octahedral up to 100 degrees from the line of sight",
+    encode=encode,
+    decode=decode,
+    components=2,
+    domain="view",
+    citation="after Z. Cigolle et al., JCGT 3(2), 2014: their hemi-octahedral map, its foot at another angle",
+    glsl=Path(__file__).with_suffix(".glsl"),
+    ulps=(4, 4),
+    ulps_reason="two normalises, a cross product and three products summed; a normalise more",
+    constants={"VIEW_OCTAHEDRAL_CAP": CAP_DEG},
+    derived=_foot_constants,
+    parameters=(Parameter("cap", "VIEW_OCTAHEDRAL_CAP", *CAPS_DEG),),
+)
