@@ -66,6 +66,8 @@ class DepthEncoding:
             no range.
         constants: numbers that both languages need, by their GLSL name.
         functions: what the names of its GLSL functions begin with, of a user's file; empty where that is the name.
+        bytes: over how many 8-bit channels its code lies; then a number in [0, 1] is encoded, whatever depth that is.
+            0 for a code of one number.
     """
 
     kind: ClassVar[Kind] = DEPTH
@@ -83,6 +85,7 @@ class DepthEncoding:
     own_units: bool = False
     constants: Mapping[str, Any] = field(default_factory=dict)
     functions: str = ""
+    bytes: int = 0
 
     @property
     def prefix(self) -> str:
@@ -92,6 +95,8 @@ class DepthEncoding:
     @property
     def signatures(self) -> tuple[str, str]:
         """What its GLSL file defines."""
+        if self.bytes:
+            return f"vec4 {self.prefix}_encode_bytes(float number)", f"float {self.prefix}_decode_bytes(vec4 texel)"
         return (
             f"float {self.prefix}_encode_depth(float depth, float near, float far)",
             f"float {self.prefix}_decode_depth(float number, float near, float far)",
@@ -115,7 +120,7 @@ class DepthCodec:
         """Why the storage cannot hold what the encoding makes, or not so; None where it can."""
         if self.encoding.signed and not self.storage.is_signed:
             return f"{self.storage.title}: no room for a sign"
-        if self.storage.home == "attachment" and self.rounding != "nearest":
+        if self.storage.home in ("attachment", "bytes") and self.rounding != "nearest":
             return f"{self.storage.title}: the device rounds it, to the nearest"
         return rounding_misfit(self.storage.format, self.rounding)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..vec import jnp, maximum, minimum, select, sign_bit
 from .rounding import rounded, scale_of, store_half, store_unorm
@@ -24,9 +24,10 @@ class DepthStorage:
         name: the catalogue's key.
         title: what a reader calls it.
         format: of the render target, or of the depth attachment.
-        home: "packed", an unsigned integer over the last of a target's 8-bit channels; "channel", a target's first; or
-            "attachment", the depth buffer itself.
+        home: "packed", an unsigned integer over the last of a target's 8-bit channels; "channel", a target's first;
+            "attachment", the depth buffer itself; or "bytes", 8-bit channels as its author's shader fills them.
         bits: of the number.
+        code: a `DepthEncoding` whose two functions make a number in [0, 1] these bytes, and back; None for others.
     """
 
     name: str
@@ -34,6 +35,7 @@ class DepthStorage:
     format: Storage
     home: str
     bits: int
+    code: Any = None
 
     @property
     def scale(self) -> int:
@@ -42,8 +44,8 @@ class DepthStorage:
 
     @property
     def is_signed(self) -> bool:
-        """Whether there is room for a sign: a depth buffer holds 0 to 1."""
-        return self.home != "attachment"
+        """Whether there is room for a sign: a depth buffer, and bytes of somebody's own, hold 0 to 1."""
+        return self.home not in ("attachment", "bytes")
 
     @property
     def is_open(self) -> bool:
@@ -133,6 +135,8 @@ def store_depth(
 ) -> Float[Array | np.ndarray, "*shape"]:
     """The number of a depth (float32, any shape) as it comes back, rounded in one of ROUNDINGS; with a sign where
     `is_signed`. A depth buffer rounds to the nearest."""
+    if storage.home == "bytes":
+        return storage.code.decode(storage.code.encode(c))
     if storage.home == "packed":
         integer = store_bytes(fixed(c, storage.scale, is_signed, rounding), storage.bits)
         return from_fixed(integer, storage.scale, is_signed)

@@ -139,5 +139,7 @@ def _check_written(codec: Any) -> None:
     """Raises UsageError for what is measured alone."""
     if getattr(codec.encoding, "before", None):
         raise UsageError(f"{codec.encoding.name}: a chain of codecs is not written; write each codec of it")
+    if getattr(codec.storage, "code", None):
+        raise UsageError(f"{codec.name}: code over bytes of your own is written already")
     if getattr(codec.storage, "curved", 0):
         raise UsageError(f"{codec.name}: {codec.storage.title} converts colours by itself; write the curve srgb, in r8")

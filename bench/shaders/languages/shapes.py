@@ -94,6 +94,14 @@ SHAPES: Mapping[kinds.Kind, tuple[Shape, ...]] = MappingProxyType(
                 "float Encode(float depth) and float Decode(float code); either may have near and far behind it",
                 (("depth",),),
             ),
+            Shape(
+                (CodeArgument("depth", {1: "n.x"}, ("depth", "z", "d")),),
+                CodeArgument("code", {4: "n", 3: "n.xyz", 2: "n.xy"}, OF_CODE),
+                (),
+                "adapters/depth_bytes.glsl",
+                "float4 Pack(float depth) and float Unpack(float4 texel), over bytes",
+                (("depth",),),
+            ),
         ),
         kinds.CURVE: (
             Shape(

@@ -15,6 +15,7 @@ from ....encodings.catalogue import LIGHT_BUFFERS
 from ....encodings.codecs.depth_codec import REBUILDS, DepthCodec
 from ....encodings.kinds import DEPTH
 from ....encodings.shared.position import Camera
+from ....encodings.storages.depth_storage import DEPTH_STORAGES
 from ....encodings.storages.storage import ROUNDINGS_AND_DITHERED
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device
@@ -50,6 +51,7 @@ NEAREST, FARTHEST = 1e-6, 1e9
 LEAST_RATIO = 1.01
 # Points of one code at all its distances: held at once, at some 200 bytes each.
 MAX_POINTS = 2**22
+BUFFERS = [name for name, storage in DEPTH_STORAGES.items() if storage.home == "attachment"]
 CURVE, CURVE_COUNT = 33, 2**11
 SCENE, SIZE = SCENES["room"], (640, 480)
 USUAL_FOV = 60.0
@@ -180,7 +182,7 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
                 relative = max(row["error_max"] / row["distance"], worst.get(key, {}).get("relative", 0.0))
                 worst[key] = row | {"relative": relative}
         for kind, is_buffer in {"in depth buffers": True, "in other targets": False}.items():
-            part = [row for row in worst.values() if str(row["storage"]).startswith("depth") is is_buffer]
+            part = [row for row in worst.values() if (row["storage"] in BUFFERS) is is_buffer]
             if part:
                 best = by_bits(part, "relative", lambda row: f"{row['relative']:.2g}")
                 yield f"Largest error relative to the distance, {near:g} to {far:g}, {kind}: {best}."

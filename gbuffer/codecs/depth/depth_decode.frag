@@ -20,6 +20,8 @@ float stored_number(vec4 texel) {
     uint integer = 0u;
     for (int c = 0; c < 4; ++c) integer |= part_from(uint(texel[c] * 255.0 + 0.5), FIRST, BITS, c, 8);
     return from_fixed_code(integer, SCALE, DEPTH_SIGNED != 0);
+#elif HOME == 3
+    return BYTES_DECODE(texel);
 #else
     return texel.x;
 #endif

@@ -1,6 +1,6 @@
 #version 430
 // Encodes a texture of depths into the storage under test: HOME 0 packs into the 8-bit channels of the target from the bit
-// FIRST on, 1 writes a channel of its own, 2 the depth buffer. ROUNDING is a way to round of storage.glsl's.
+// FIRST on, 1 writes a channel of its own, 2 the depth buffer, 3 what BYTES_ENCODE makes of it. ROUNDING is a way to round of storage.glsl's.
 #include "depth_code.glsl"
 #include "storage.glsl"
 #include "dither.glsl"
@@ -22,6 +22,8 @@ void main() {
     float whole = round_whole(magnitude, DEPTH_SIGNED != 0 ? floor(SCALE * 0.5) : SCALE, ROUNDING);
     uint integer = signed_code(whole, number, SCALE, DEPTH_SIGNED != 0);
     for (int c = 0; c < 4; ++c) texel[c] = float(part_in(integer, FIRST, BITS, c, 8)) / 255.0;
+#elif HOME == 3
+    texel = BYTES_ENCODE(number);
 #elif HOME == 1
     texel = vec4(ROUNDS != 0 ? round_number(number, KIND, SCALE, 0, ROUNDING) : number);
 #else

@@ -21,7 +21,7 @@ from ...gl.raw import DepthBuffer
 from ..codec_passes import storage_kind
 from ..harness import Passes, Textures, check_functions, dithering, exact, set_uniforms
 
-HOMES = ("packed", "channel", "attachment")
+HOMES = ("packed", "channel", "attachment", "bytes")
 
 
 def depth_defines(encoding: DepthEncoding) -> dict[str, object]:
@@ -51,7 +51,13 @@ def _storage_defines(storage: DepthStorage, rounding: str, shader_rounds: bool) 
         "KIND": storage_kind(storage.format),
         "ROUNDS": int(shader_rounds),
         "OPEN": int(storage.is_open),
+        **({} if storage.code is None else _bytes_defines(storage.code)),
     }
+
+
+def _bytes_defines(code: DepthEncoding) -> dict[str, object]:
+    check_functions(code.glsl, code.signatures)
+    return {"BYTES_ENCODE": f"{code.prefix}_encode_bytes", "BYTES_DECODE": f"{code.prefix}_decode_bytes"}
 
 
 @dataclass(frozen=True)
@@ -81,7 +87,9 @@ class DepthPasses(Passes):
         self.rounded_by = "device" if is_native else "shader"
         added, tables = dithering(codec.dither.added if codec.is_dithered else None)
         defines = depth_defines(codec.encoding) | _storage_defines(codec.storage, rounding, not is_native) | added
-        shaders, names = ("depth_encode.frag", "depth_decode.frag"), {"DEPTH_ENCODING": codec.encoding.glsl}
+        code = codec.storage.code
+        shaders = ("depth_encode.frag", "depth_decode.frag")
+        names = {"DEPTH_ENCODING": [codec.encoding.glsl, *([code.glsl] if code else [])]}
         super().__init__(device, shaders, defines, names, {"texels": codec.storage.format}, tables)
 
     def round_trip(self, points: np.ndarray, camera: Camera, way: int) -> Rebuilt:
@@ -138,8 +146,8 @@ def rounds_by_itself(device: Device, storage: DepthStorage, rounding: str) -> bo
     Raises:
         FormatError: the device cannot render to it.
     """
-    if storage.home == "packed":
-        return True  # bytes are whole numbers of the format's steps
+    if storage.home in ("packed", "bytes"):
+        return True  # bytes are whole numbers of the format's steps, or whatever the device makes of them
     if storage.home == "channel":
         return device.native_rounding(storage.format) == rounding
     # An odd number of steps: no value falls on a tie, where the formats leave devices a choice.

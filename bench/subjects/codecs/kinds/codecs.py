@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from types import MappingProxyType
 from typing import Any
 
-from .....encodings.catalogue import BY_KIND
+from .....encodings.catalogue import BY_KIND, DEPTH_ENCODINGS
 from .....encodings.codecs.curve_codec import CurveCodec, CurveEncoding
-from .....encodings.codecs.depth_codec import DepthCodec
+from .....encodings.codecs.depth_codec import DepthCodec, DepthEncoding
 from .....encodings.codecs.frame_codec import FrameCodec
 from .....encodings.codecs.light_codec import LightCodec
 from .....encodings.codecs.motion_codec import MotionCodec
 from .....encodings.kinds import CURVE, DEPTH, FRAME, LIGHT, MOTION, NORMAL, AnyEncoding, Kind
 from .....encodings.storages.depth_storage import DEPTH_STORAGES, DepthStorage, depth_storage_of
-from .....encodings.storages.storage import CURVE_STORAGES, FRAME_STORAGES, LIGHT_STORAGES, MOTION_STORAGES, Storage
+from .....encodings.storages.storage import (
+    CURVE_STORAGES,
+    FRAME_STORAGES,
+    LIGHT_STORAGES,
+    MOTION_STORAGES,
+    STORAGES,
+    Storage,
+)
 from ....ground.choose import choose, unknown_name
 from ....ground.options.words import Given, Names
 from ....ground.output.errors import UsageError
@@ -129,14 +136,26 @@ def codecs_of_kind(
     encodings: list[AnyEncoding] = own_codes_named(kind, plain, BY_KIND[kind]) if plain or not ranged else []
     chosen = [(encoding, None) for encoding in encodings] + [_with_range(kind, word) for word in ranged]
     storages_of, codec_of = MADE[kind]
+    over_bytes = [encoding for encoding, _ in chosen if isinstance(encoding, DepthEncoding) and encoding.bytes]
+    if over_bytes and storages:
+        raise UsageError(f"{over_bytes[0].name}: its code lies in bytes, as it makes them; leave out --storage")
     made = (
         codec if largest is None else replace(codec, range=largest)
         for encoding, largest in chosen
+        if encoding not in over_bytes
         for storage in storages_of(storages or encoding.storages[usual])  # pyright: ignore[reportAttributeAccessIssue]
         for rounding in roundings
         for codec in [codec_of(encoding, storage, rounding)]
     )
-    return list(dict.fromkeys(made))
+    in_bytes = (codec for encoding in over_bytes for rounding in roundings for codec in _in_bytes(encoding, rounding))
+    return list(dict.fromkeys([*made, *in_bytes]))
+
+
+def _in_bytes(code: DepthEncoding, rounding: str) -> Iterator[DepthCodec]:
+    """A user's code over bytes, of each depth that it may be given."""
+    form = STORAGES["rg8" if code.bytes == 2 else "rgba8"]
+    storage = DepthStorage(code.name, f"{code.bytes} bytes of {code.title}", form, "bytes", 8 * code.bytes, code)
+    return (DepthCodec(DEPTH_ENCODINGS[name], storage, rounding) for name in ("linear", "window", "reversed_window"))
 
 
 def _with_range(kind: Kind, word: str) -> tuple[Any, float | None]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -11,27 +12,39 @@ from .....encodings.kinds import DEPTH
 from .....encodings.storages.depth_storage import DEPTH_STORAGES
 from .....gbuffer.codecs.own.own_passes import Tried
 from .....gbuffer.gl.device import Device
-from .own import COUNT, Own, OwnKind, Values, longest, number, one_number_errors, rows
+from .own import COUNT, SEED, Own, OwnKind, Values, longest, number, one_number_errors, rows
 
 # The planes of functions that are given them; and between which depths functions without them are tried.
 NEAR, FAR, NEAREST, FARTHEST = 0.1, 1000.0, 1e-4, 1e6
+# In place of a far plane, for numbers of which each is as good as another.
+EVEN = -1.0
 # What a depth of floats comes back as by half a step of an encoder's, as a share of the depth.
 DEPTH_NEARLY = 1e-2
 
 
+def _is_over_bytes(own: Own) -> bool:
+    return "bytes" in own.shape.template
+
+
 def _depths(own: Own) -> Values:
-    """Depths between the planes, as many in each power of ten."""
+    """Depths between the planes, as many in each power of ten; of a code over bytes numbers from 0 to 1."""
+    if _is_over_bytes(own):
+        even = (np.arange(COUNT) + np.random.default_rng(SEED).random(COUNT)) / COUNT
+        return Values(rows(even), rows(np.zeros(COUNT), EVEN))
     near, far = own.found.get("planes", (NEAR, FAR))
     return Values(rows(np.geomspace(near, far, COUNT)), rows(np.full(COUNT, near), far))
 
 
 def _depth_errors(values: Values, found: Tried) -> np.ndarray:
-    return one_number_errors(values, found) / values.given[:, 0]
+    """Errors as shares of the depth; of a code over bytes, whose steps are even, of the range."""
+    return one_number_errors(values, found) / np.where(values.more[:, 1] == EVEN, 1.0, values.given[:, 0])
 
 
 def _depth_facts(own: Own, gl: Device) -> dict[str, Any]:
     """`planes`, between which functions that are given none undo each other, and `is_open`, whether codes lead beyond
     1, as depths in the scene's own units do."""
+    if _is_over_bytes(own):
+        return {"wrong": list(_faults_of_bytes(own, gl)), "notes": [OF_BYTES]}
     planes = (NEAR, FAR)
     if not own.settings:
         depths = Values(rows(np.geomspace(NEAREST, FARTHEST, COUNT)), rows(np.zeros(COUNT)))
@@ -47,11 +60,51 @@ def _depth_facts(own: Own, gl: Device) -> dict[str, Any]:
     return facts | {"is_open": is_open, "notes": notes}
 
 
+def _faults_of_bytes(own: Own, gl: Device) -> Iterator[str]:
+    """What is wrong with a code over bytes: a digit that it lacks, or a number that is no whole byte."""
+    values, size = _depths(own), own.made.components
+    x = values.given[:, 0].astype(np.float64)
+    found = own.tried(gl, values.given, values.more)
+    if np.abs(found.back[0][:, 0] - x).max() > DEPTH_NEARLY:
+        same = (digits for digits in range(1, size + 1) if _is_lost(found.back[0][:, 0], x, digits))
+        if digits := next(same, 0):
+            yield LOST.format(256**digits, "byte is" if digits == 1 else f"{digits} bytes are")
+        return
+    bytes_of = np.rint(np.clip(found.codes, 0, 1) * 255) / 255
+    steps = 2.0 ** min(8 * size, 24)
+    errors = []
+    # One number after the other is rounded, the others stay.
+    for channel in [*range(size), slice(0, size)]:
+        codes = found.codes.copy()
+        codes[:, channel] = bytes_of[:, channel]
+        back = own.tried(gl, values.given, values.more, codes).back[0][:, 0]
+        errors.append(float(np.abs(back - x).max() * steps))
+    if errors[-1] > MOST_STEPS:
+        worst = int(np.argmax(errors[:size]))
+        yield NO_BYTE.format(errors[-1], f"{steps:.0f}", worst + 1, errors[worst])
+
+
+def _is_lost(back: np.ndarray, x: np.ndarray, digits: int) -> bool:
+    """Whether what comes back is the depth without its first digits of a byte each."""
+    whole = 256.0**digits
+    return float(np.abs(back - np.modf(x * whole)[0] / whole).max()) < DEPTH_NEARLY / whole
+
+
+OF_BYTES = "its code lies over bytes: `normalbench depth` measures it of linear, window and reversed window depth"
+# Of a code over bytes, how many of its least steps a number may be off once its bytes are rounded.
+MOST_STEPS = 2.0
+LOST = "depths that differ by 1/{} have one code: its most significant {} missing"
+NO_BYTE = (
+    "in bytes it is off by up to {:.0f} steps of 1/{}: number {} of the code alone by {:.0f}, as it is no multiple of "
+    "1/255; take powers of 255 in place of 256"
+)
 OPEN = "its codes lead beyond 1: floats hold them, and nothing else"
 OWN_PLANES = "it undoes itself for depths from {0:.3g} to {1:.3g}: --near and --far say where it is measured"
 
 
 def _depth_encoding(own: Own) -> DepthEncoding:
+    if _is_over_bytes(own):
+        return DepthEncoding(**own.described(), storages=(), bytes=own.made.components)
     is_open = own.found.get("is_open", False)
     storages = tuple(name for name, storage in DEPTH_STORAGES.items() if storage.is_open or not is_open)
     return DepthEncoding(**own.described(), storages=storages)
