@@ -442,6 +442,7 @@ def test_what_rows_are_shown_as_is_said_once():
 ASKING = {
     "bench/door/code_figures.py",
     "bench/door/examine.py",
+    "bench/door/folder.py",
     "bench/show/import_command.py",
     "bench/show/site_command.py",
 }

@@ -18,7 +18,7 @@ import pytest
 from manual import NAMED, PAGES, README, ROOT
 from written import as_document, packed, planes_of, png_bytes, some_normals, write_exr
 
-from normalbench.bench.door import code_command, examine, gbuffer_command, run
+from normalbench.bench.door import code_command, examine, folder, gbuffer_command, run
 from normalbench.bench.door.cli import app as cli
 from normalbench.bench.keep import answers, history_command, machine
 from normalbench.bench.run import measuring
@@ -106,7 +106,8 @@ def test_every_example_is_a_file_and_files_of_one_name_are_the_same():
 
 def test_every_example_is_used():
     for name in FILES:
-        used = any(name in shlex.split(line.replace(",", " ")) for line in (*COMMANDS, *PYTEST))
+        words = [shlex.split(line.replace(",", " ")) for line in (*COMMANDS, *PYTEST)]
+        used = any({name, Path(name).parts[0]} & {*line} for line in words)
         assert used or name.startswith("test_") or Path(name).with_suffix(".glsl").name in FILES, name
 
 
@@ -137,16 +138,23 @@ BEGINNINGS = (
     (history_command, "past_runs"),
     (site_command, "_is_run"),
     (examine, "examined"),
+    (folder, "examined"),
     (machine, "examine"),
 )
+
+
+def write_files(place) -> None:
+    """The files that the manual shows."""
+    for name, text in FILES.items():
+        (place / name).parent.mkdir(exist_ok=True)
+        (place / name).write_text(text)
 
 
 @pytest.fixture
 def readers_folder(tmp_path, monkeypatch):
     """The working folder, with the files that the commands name."""
     monkeypatch.chdir(tmp_path)
-    for name, text in FILES.items():
-        (tmp_path / name).write_text(text)
+    write_files(tmp_path)
     users_files(tmp_path)
     readers_devices(tmp_path)
     return tmp_path

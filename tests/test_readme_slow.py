@@ -9,7 +9,7 @@ from dataclasses import fields
 import pytest
 import test_readme
 from contributing import a_copy_of_the_rooms, normalbench_in
-from test_readme import COMMANDS, FILES, LONG, PYTEST
+from test_readme import COMMANDS, FILES, LONG, PYTEST, write_files
 
 from normalbench.bench.door.cli import app as cli
 from normalbench.bench.tables.registry import TABLES
@@ -52,8 +52,7 @@ def test_every_command_runs_as_written(command, readers_folder, monkeypatch, cap
 @pytest.mark.usefixtures("gl")
 def test_the_tests_it_shows_pass(pytester):
     """With the encoding it shows, by its commands: the one that writes the baseline first."""
-    for name, text in FILES.items():
-        pytester.path.joinpath(name).write_text(text)
+    write_files(pytester.path)
     tests = sum(text.count("def test_") for name, text in FILES.items() if name.startswith("test_"))
     assert len(PYTEST) == 2
     for command in sorted(PYTEST, key=len, reverse=True):

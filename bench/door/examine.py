@@ -51,6 +51,8 @@ def examine_encoding(
     output: Path | None,
     storage: str | None = None,
     domain: str | None = None,
+    diff: Path | None = None,
+    report: Path | None = None,
     sources: Mapping[str, Any] = MappingProxyType({}),
 ) -> int:
     """Write a verdict, findings and notes, and the picture if one is asked for.
@@ -58,6 +60,7 @@ def examine_encoding(
     Args:
         storage: the name of the one that it is measured in; None for STORAGE.
         domain: one of DOMAINS, that it is meant for; None to find out.
+        diff, report: of a folder, where a patch and a page go; None for none.
         sources: how it is read, by options of `Sources`.
 
     Returns:
@@ -68,6 +71,15 @@ def examine_encoding(
     """
     if file is None:
         raise UsageError("doctor examines a file with --plot, --storage and --domain: name it")
+    if file.is_dir():
+        if option := next((name for name, value in {"plot": plot, "domain": domain}.items() if value), ""):
+            raise UsageError(f"{file} is a folder, and --{option} is of one file: name a file")
+        from .folder import examine_folder
+
+        return examine_folder(file, format, output, _storage(storage) if storage else None, diff, report, sources)
+    for option, value in {"diff": diff, "report": report}.items():
+        if value:
+            raise UsageError(f"--{option} is of a folder, and {file} is none: name its folder")
     (word,) = in_names({"encoding": (str(file),), **vars(Sources(**sources))})["encoding"]
     shader = UserFile(str(word))
     check_plot(plot)
@@ -86,7 +98,7 @@ def examine_encoding(
     if storage and codec.misfit:
         raise UsageError(f"{codec.name}: {codec.misfit}")
     is_measured = found.is_measurable and not codec.misfit
-    row = _row(codec) if is_measured else {}
+    row = row_of(codec) if is_measured else {}
     worse = _compared(found, codec, row) if is_measured else []
     rounded = _rounded_for(found, codec) if worse else ""
     worse = [f"{line}; {rounded}" if rounded else line for line in worse]
@@ -138,12 +150,13 @@ def _text(about: Mapping[str, str], wrong: Sequence[str], notes: Sequence[str], 
     """The verdict in a line, findings below it, and notes by themselves."""
     verdict = f"{len(wrong)} finding{'s' * (len(wrong) > 1)}" if wrong else RIGHT
     parts = [verdict, ", ".join(f"{what} {value}" for what, value in about.items())]
-    parts += [_list(wrong, format)] if wrong else []
-    parts += ["notes:", _list(notes, format)] if notes else []
+    parts += [bulleted(wrong, format)] if wrong else []
+    parts += ["notes:", bulleted(notes, format)] if notes else []
     return "\n\n".join(parts) + "\n"
 
 
-def _list(lines: Sequence[str], format: str) -> str:
+def bulleted(lines: Sequence[str], format: str) -> str:
+    """Return lines as a list."""
     if format == "markdown":
         return "\n".join(f"- {tables.markdown_sentence(line)}" for line in lines)
     width = shutil.get_terminal_size((120, 40)).columns
@@ -180,7 +193,7 @@ def _compared(found: Examined, codec: Codec, row: Mapping[str, Any]) -> list[str
     # Codes in [0, 1] fill a storage without a sign, and half of one that has a sign.
     is_half_used = codec.storage.holds_unit
     like = replace(ENCODINGS[found.like], is_unit=codec.encoding.is_unit and not is_half_used)
-    own, its = _means(row), _means(_row(Codec(like, replace(codec.storage, holds_unit=False))))
+    own, its = _means(row), _means(row_of(Codec(like, replace(codec.storage, holds_unit=False))))
     if not WORSE < own[0] / its[0] < ANOTHER:
         return []
     how = f"{own[0]:.3g} degrees on average for {its[0]:.3g}, {own[1]:.3g} at most for {its[1]:.3g}"
@@ -195,7 +208,7 @@ def _half_note(codec: Codec, row: Mapping[str, Any]) -> list[str]:
     half = Codec(in_half(codec.encoding), codec.storage)
     if half.misfit:
         return [f"it declares numbers of 16 bits, but {half.misfit}"]
-    in_half_row, own = _row(half), _means(row)
+    in_half_row, own = row_of(half), _means(row)
     if in_half_row["skipped"]:
         return [f"it declares numbers of 16 bits, and is computed in 32: {in_half_row['skipped']}"]
     said = "{:.3g} degrees on average and {:.3g} at most".format(*_means(in_half_row))
@@ -218,8 +231,8 @@ def _means(row: Mapping[str, Any]) -> tuple[float, float]:
     return row["angle_mean_deg"], row["angle_max_deg"]
 
 
-def _row(codec: Codec) -> dict[str, Any]:
-    """A row of the quality table."""
+def row_of(codec: Codec) -> dict[str, Any]:
+    """Return a row of the quality table."""
     chosen = NORMAL_SETS["sphere" if codec.encoding.domain == "sphere" else "hemisphere"](COUNT, 0)
     return measure(QualityCase(codec, chosen, "glsl"))
 

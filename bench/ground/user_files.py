@@ -25,10 +25,11 @@ GLSL = ".glsl"
 TRANSLATED: Mapping[str, str] = MappingProxyType(
     {
         **dict.fromkeys((".hlsl", ".hlsli", ".fx", ".fxh", ".ush", ".usf", ".cginc", ".azsli", ".shader"), "HLSL"),
-        **dict.fromkeys((".slang", ".sdsl"), "Slang"),
+        **dict.fromkeys((".slang", ".slangh", ".sdsl"), "Slang"),
         **dict.fromkeys((".wgsl", ".wesl"), "WGSL"),
-        **dict.fromkeys((".vert", ".frag", ".comp", ".vsh", ".fsh"), "GLSL"),
-        **dict.fromkeys((".h", ".inc", ".sh"), ""),
+        **dict.fromkeys((".vert", ".frag", ".comp", ".vsh", ".fsh", ".glsllib", ".gdshaderinc"), "GLSL"),
+        **dict.fromkeys((".js", ".mjs", ".ts"), "GLSL"),
+        **dict.fromkeys((".h", ".inc", ".sh", ".chunk", ".fsl"), ""),
     }
 )
 ENDINGS = (GLSL, *TRANSLATED)
@@ -44,14 +45,7 @@ CHAIN = "+"
 _FILE = rf".*?(?:{'|'.join(map(re.escape, ENDINGS))})"
 # A function may have what it is given and gives behind it: see `wiring.py`.
 _FUNCTION = r"(?:\w+::)*\w+(?:\([^()]*\))?(?:->(?:[\w.]+|\([^()]*\)))?"
-DEFINE, PRELUDE, INCLUDE, LANGUAGE, ALL_PAIRS, FORMAT = SETTINGS = (
-    "define",
-    "prelude",
-    "include",
-    "language",
-    "all_pairs",
-    "format",
-)
+DEFINE, PRELUDE, INCLUDE, LANGUAGE, FORMAT = SETTINGS = ("define", "prelude", "include", "language", "format")
 # A colon in front of a slash is of a drive: include=C:\shaders.
 _SETTING = rf":({'|'.join(SETTINGS)})=((?:[^:,]|:(?=[\\/]))*)"
 _WORD = re.compile(
@@ -66,8 +60,32 @@ _TWO = re.compile(
 )
 
 
+_OTHER = re.compile(
+    rf"(?P<file>(?:[A-Z]:(?=[\\/]))?[^:]*\.\w+)(?::(?P<encode>{_FUNCTION}):(?P<decode>{_FUNCTION}))?"
+    rf"(?P<settings>(?:{_SETTING})*)",
+    re.I | re.S,
+)
+# Of text files that are no shaders.
+_NO_SHADERS = frozenset(
+    (".toml", ".json", ".csv", ".md", ".txt", ".py", ".obj", ".gltf", ".ply", ".svg", ".html", ".yaml", ".yml", ".ini")
+)
+
+
 def _match(word: str) -> re.Match[str] | None:
-    return _TWO.fullmatch(word) or _WORD.fullmatch(word)
+    return _TWO.fullmatch(word) or _WORD.fullmatch(word) or _match_of_text(word)
+
+
+def _match_of_text(word: str) -> re.Match[str] | None:
+    """A word for a file that is there and is text, whatever its ending, but for those of other things."""
+    match = _OTHER.fullmatch(word)
+    ending = Path(match["file"]).suffix.lower() if match else ""
+    if not match or ending in _NO_SHADERS or ending in OTHER_LANGUAGES or not is_file(Path(), match["file"]):
+        return None
+    try:
+        with Path(match["file"]).open("rb") as file:
+            return None if b"\0" in file.read(4096) else match
+    except OSError:
+        return None
 
 
 class Settings(NamedTuple):
@@ -78,7 +96,6 @@ class Settings(NamedTuple):
         preludes: files that are put in front.
         roots: folders in which includes are searched, each with what their names begin with; empty for any.
         language: one of LANGUAGES; empty for that of its ending.
-        is_all: whether all its pairs are meant.
         format: that a code of light lies in; empty for what it usually lies in.
     """
 
@@ -86,7 +103,6 @@ class Settings(NamedTuple):
     preludes: tuple[str, ...] = ()
     roots: tuple[tuple[str, str], ...] = ()
     language: str = ""
-    is_all: bool = False
     format: str = ""
 
 
@@ -140,9 +156,7 @@ class UserFile:
         if of[LANGUAGE] and not names:
             raise UsageError(f"--language {of[LANGUAGE][0]}: it is one of {', '.join(LANGUAGES).lower()}")
         roots = tuple(_root(one) for one in of[INCLUDE])
-        return Settings(
-            of[DEFINE], of[PRELUDE], roots, names[0] if names else "", bool(of[ALL_PAIRS]), "".join(of[FORMAT][:1])
-        )
+        return Settings(of[DEFINE], of[PRELUDE], roots, names[0] if names else "", "".join(of[FORMAT][:1]))
 
     @property
     def functions(self) -> tuple[str, str] | None:
@@ -165,15 +179,14 @@ class UserFile:
     def is_translated(self) -> bool:
         """Whether it is in another language than GLSL, or more is said of it than its name."""
         match = _match(self.word)
-        return self.path.suffix.lower() in TRANSLATED or bool(match and (match["encode"] or match["settings"]))
+        return self.path.suffix.lower() != GLSL or bool(match and (match["encode"] or match["settings"]))
 
     def with_pair(self, pair: str) -> UserFile:
         """Return it with two functions, ENCODE:DECODE, that it does not name."""
         match = _match(self.word)
         if not match:
             return UserFile(f"{self.word}:{pair}")
-        settings = re.sub(rf":{ALL_PAIRS}=[^:,]*", "", match["settings"], flags=re.I)
-        return UserFile(f"{match['file']}:{pair}{settings}")
+        return UserFile(f"{match['file']}:{pair}{match['settings']}")
 
     def with_language(self, language: str) -> UserFile:
         """Return it with what it is written in."""
@@ -233,8 +246,9 @@ def parts_of(word: str) -> list[str]:
 
 
 def names_an_encoder(word: str) -> bool:
-    """Whether a word is the file of a user's encoder, by its ending."""
-    return Path(file_of(word)).suffix.lower() in ENDINGS and not _is_only_an_ending(word)
+    """Whether a word is the file of a user's encoder: by its ending, or as it is text."""
+    is_by_ending = Path(file_of(word)).suffix.lower() in ENDINGS and not _is_only_an_ending(word)
+    return is_by_ending or _match_of_text(word) is not None
 
 
 def _is_only_an_ending(word: str) -> bool:

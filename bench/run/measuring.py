@@ -205,7 +205,7 @@ def _fingerprint(word: str) -> str:
         digests = [file_digest(path), *sorted(map(file_digest, companions(word)))]
         settings = shader.settings
         roots = [name for name, _ in settings.roots]
-        how = (shader.functions, settings.defines, settings.language, settings.is_all, settings.format, roots)
+        how = (shader.functions, settings.defines, settings.language, settings.format, roots)
         return hashlib.sha256(b"".join(digests) + repr(how).encode()).hexdigest()[:16]
     except (OSError, ValueError):
         return ""

@@ -25,7 +25,6 @@ SETTINGS = (
     "language=glsl",
     "include=.",
     "include=/",
-    "all_pairs=yes",
 )
 
 

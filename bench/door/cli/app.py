@@ -127,7 +127,7 @@ def list_command(
 
 def doctor(
     file: Annotated[
-        Path | None, typer.Argument(help="A file with an encoding of yours: GLSL, HLSL, Slang or WGSL.")
+        Path | None, typer.Argument(help="Your shader file, or the folder of your engine's: GLSL, HLSL, Slang or WGSL.")
     ] = None,
     plot: Annotated[
         Path | None,
@@ -143,6 +143,11 @@ def doctor(
         str | None,
         typer.Option("--domain", help="The normals it is meant for: sphere, hemisphere or view. Default: found out."),
     ] = None,
+    diff: Annotated[
+        Path | None,
+        typer.Option("--diff", help="Of a folder: write a patch here that puts better codes in. Nothing is applied."),
+    ] = None,
+    report: Annotated[Path | None, typer.Option("--report", help="Of a folder: write its page here, in HTML.")] = None,
     format: FormatOption = None,
     output: PlainOutput = None,
     **sources: Any,
@@ -150,17 +155,17 @@ def doctor(
     """What this machine has; or what is likely wrong with an encoding, with exit status 1 if anything is.
 
     Without a file: versions, cores, the GL device and how it rounds. With one: what its encode and decode do to
-    directions before any storage.
+    directions before any storage. With a folder: a line for each pair below it, with the best code of as many bits.
     """
     require_memory()
-    if file is None and plot is None and not any((storage, domain, *sources.values())):
+    if file is None and plot is None and not any((storage, domain, diff, report, *sources.values())):
         from ...keep.machine import examine
 
         write(examine(), format_of(format, output), output)
         return 0
     from ..examine import examine_encoding
 
-    return examine_encoding(file, plot, format_of(format, output), output, storage, domain, sources)
+    return examine_encoding(file, plot, format_of(format, output), output, storage, domain, diff, report, sources)
 
 
 app.command(rich_help_panel=Group.OWN)(with_options(Sources, doctor))

@@ -131,7 +131,6 @@ class Sources(Options):
         prelude: files that are put in front.
         include: folders in which includes are searched.
         language: what the files are written in, whatever their names end in.
-        all_pairs: whether each encoder of a file whose decoder undoes it has a row.
     """
 
     define: Annotated[
@@ -148,9 +147,6 @@ class Sources(Options):
         str | None,
         Option("--language", "Shader files: hlsl, slang, glsl or wgsl. Default: by the ending.", in_run=True),
     ] = None
-    all_pairs: Annotated[
-        bool, Option("--all-pairs", "Shader files: each encoder that its decoder undoes, not one.", in_run=True)
-    ] = False
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,6 +7,7 @@ import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from typing import Any
 
 # Digits that nobody reads to their end, and how many of them are shown.
 LONG_NUMBER, DIGITS = re.compile(r"\d{25,}"), 6
@@ -63,6 +64,19 @@ class UsageError(Exception):
     """Bad input or usage: one line that says what would have been right. Exit status 2."""
 
     exit_code = 2
+
+
+class SeveralEncodersError(UsageError):
+    """A file has several encoders.
+
+    Attributes:
+        pairs: the names of each and its decoder, ENCODE:DECODE.
+        alone: the file with its only function that is one by its name, translated; None where there is none.
+    """
+
+    def __init__(self, said: str, pairs: list[str], alone: Any = None):
+        super().__init__(said)
+        self.pairs, self.alone = pairs, alone
 
 
 class MissingError(Exception):

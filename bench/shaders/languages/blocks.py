@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import itertools
 import re
 
-from ...ground.compilers.lines import blank
+from .embedded import only
 from .source import Source
 
 _BLOCK = re.compile(r"^[ \t]*(?:HLSL|CG)(PROGRAM|INCLUDE)[ \t]*$(.*?)^[ \t]*END(?:HLSL|CG)[ \t]*$", re.M | re.S)
@@ -21,11 +20,4 @@ def programs_of(source: Source) -> list[Source]:
     common = [match for match in found if match[1] == COMMON]
     alone = [match for match in found if match[1] != COMMON]
     several = [sorted([*common, one], key=re.Match.start) for one in alone] or [common]
-    return [source.with_text(_only(source.text, blocks)) for blocks in several]
-
-
-def _only(text: str, blocks: list[re.Match[str]]) -> str:
-    """A text with blanks for what is in none of some blocks."""
-    edges = [0, *(edge for block in blocks for edge in block.span(2)), len(text)]
-    parts = [text[start:end] for start, end in itertools.pairwise(edges)]
-    return "".join(part if at % 2 else blank(part) for at, part in enumerate(parts))
+    return [source.with_text(only(source.text, [match.span(2) for match in blocks])) for blocks in several]

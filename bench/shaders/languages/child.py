@@ -1,9 +1,10 @@
 """A user's file translated, in a process that may hang or die.
 
-    python -m normalbench.bench.shaders.languages.child FOLDER WORD LANGUAGE KIND
+    python -m normalbench.bench.shaders.languages.child FOLDER WORD LANGUAGE KIND PART
 
 FOLDER is an empty one to work in. WORD names it: see `user_files.py`. LANGUAGE is what reads it, a name of `BY_NAME`;
-empty for its own. KIND is what its code is of: see `encodings.kinds`. Prints a line of JSON: `error`,
+empty for its own. KIND is what its code is of: see `encodings.kinds`. PART is the declarations that are left out, as
+the 3:4 of four equal parts is the last; 0:0 for none. Prints a line of JSON: `left_out`, these; `error`,
 what is wrong with the file, `pairs`, the names of several, and `alone`, what is known of an encoder or a decoder alone;
 `missing`, what to install; else what `Translated` has.
 """
@@ -50,7 +51,7 @@ from .pairs import (
 from .plain import NotPlainError, plain
 from .programs import Read, TranslationError
 from .shaped import shaped_pair
-from .source import Source
+from .source import Part, Source
 from .wiring import Wiring, candidates, wired, wiring_of
 
 _A = {"uint": "a uint", "int": "an int", "float": "a float"}
@@ -69,23 +70,38 @@ def answer(
     by: str = "",
     kind: Kind = kinds.NORMAL,
     once_read: Callable[[Source], None] = lambda _: None,
+    part: Part = (0, 0),
 ) -> dict[str, Any]:
     """Return what there is to say of a file; see above. `once_read` is called before any compiler is."""
-    path = file.path
     try:
         source = Source(file)
-        once_read(source)
+        source.part = part
+    except UsageError as error:
+        return {"error": str(error)}
+    once_read(source)
+    found = _answer(source, folder, by, kind)
+    return found | {"left_out": source.left_out} if any(part) else found
+
+
+def _answer(source: Source, folder: Path, by: str, kind: Kind) -> dict[str, Any]:
+    path = source.path
+    try:
         return _facts_of_a_program(source, folder, by, kind)
     except (UsageError, TranslationError) as error:
-        return {"error": f"{error}{BY_MACRO}" if _UNKNOWN.search(str(error)) else str(error)}
+        may_be_macro = _UNKNOWN.search(str(error)) and not source.missing
+        return {"error": f"{error}{BY_MACRO}" if may_be_macro else str(error)}
     except SeveralPairsError as error:
-        return {"error": f"{path}: {error}", "pairs": list(error.named)}
+        return {"error": f"{path}: {error}", "pairs": list(error.named)} | _alone(error)
     except NoPairError as error:
-        return {"error": f"{path}: {error}"} | ({"alone": dict(error.alone)} if error.alone else {})
+        return {"error": f"{path}: {error}"} | _alone(error)
     except (NotPlainError, ToolError) as error:
         return {"error": f"{path}: {error}"}
     except MissingError as error:
         return {"missing": f"{path}: {error}"}
+
+
+def _alone(error: NoPairError) -> dict[str, Any]:
+    return {"alone": dict(error.alone)} if error.alone else {}
 
 
 def _wall_in(source: Source, folder: Path) -> None:
@@ -121,10 +137,9 @@ def _translation_facts(source: Source, asked: tuple[str, str] | None, folder: Pa
     found = language_of(source.file, by).read(source, folder)
     try:
         pair, text, named = _pair_and_text(found, asked, path)
-    except SeveralPairsError:
-        raise
     except NoPairError as error:
-        _check_refused(found, asked)
+        if not isinstance(error, SeveralPairsError):
+            _check_refused(found, asked)
         if one := alone(found.functions):
             with suppress(TranslationError, NotPlainError, ToolError):
                 error.alone = _pair_facts(found, one, "", folder, by)
@@ -133,7 +148,7 @@ def _translation_facts(source: Source, asked: tuple[str, str] | None, folder: Pa
         *(f"it is read without an include: {line}" for line in found.source.missing),
         *_read_with(source),
         *([WHICH.format(named)] if text or not (asked or speaks_of_normals(pair)) else []),
-        *_others(found.functions, pair),
+        *([] if asked else _others(found.functions, pair)),
     ]
     facts = _pair_facts(found, pair, text, folder, by, asked) | {"named": named}
     by_glslang = f"it is read by {GLSLANG} alone, as {slang.COMPILER} does not read it"
@@ -154,7 +169,7 @@ def _shaped_facts(source: Source, asked: tuple[str, str] | None, folder: Path, b
         raise NoPairError("what a function is given is said of normals alone; name the two functions")
     own = functions_in(found.source.own_text)
     try:
-        pair = shaped_pair(language.placed(found.source, found.functions), kind, asked, source.path.name, own)
+        pair = shaped_pair(language.placed(found.source, found.functions), kind, asked, str(source.path), own)
     except SeveralPairsError:
         raise
     except NoPairError:
@@ -261,7 +276,7 @@ def _pair_and_text(found: Read, asked: tuple[str, str] | None, path: Path) -> tu
         return _wired_pair(wirings, found)
     own = functions_in(found.source.own_text)
     try:
-        pair = pair_of(found.functions, names, path.name, own)
+        pair = pair_of(found.functions, names, str(path), own)
         # The file's own come before those that it includes.
         several = [] if names or {pair.encode.name, pair.decode.name} & set(own) else _own_candidates(found, own)
         if not several:
@@ -274,7 +289,7 @@ def _pair_and_text(found: Read, asked: tuple[str, str] | None, path: Path) -> tu
             raise
     if len(several) == 1:
         return _wired_pair(several[0], found)
-    raise SeveralPairsError(path.name, [":".join(map(str, wirings)) for wirings in several])
+    raise SeveralPairsError(str(path), [":".join(map(str, wirings)) for wirings in several])
 
 
 def _own_candidates(found: Read, own: Collection[str]) -> list[tuple[Wiring, Wiring]]:
@@ -351,6 +366,9 @@ def _function_texts(source: Source, language: Language, pair: Pair, prefix: str,
 
 if __name__ == "__main__":
     children.limit_this_process()
-    work, word, language, name = sys.argv[1:]
-    kind = kinds.BY_NAME[name]
-    print(json.dumps(answer(UserFile(word), Path(work), language, kind, lambda source: _wall_in(source, Path(work)))))
+    work, word, language, name, left = sys.argv[1:]
+    number, count = map(int, left.split(":"))
+    found = answer(
+        UserFile(word), Path(work), language, kinds.BY_NAME[name], lambda s: _wall_in(s, Path(work)), (number, count)
+    )
+    print(json.dumps(found))

@@ -18,7 +18,7 @@ _QUOTED = re.compile(r"\"[^\"\n]*\"|'[^'\n]*'")
 _ATTRIBUTE = re.compile(r"[\]>]\s*$")
 _DIRECTIVE = re.compile(r"^[ \t]*#.*$", re.M)
 # NAME(...) at the end of what stands before a body, with a semantic or not; `cbuffer NAME : register(b0)` is none.
-_NAME = re.compile(r"\b(?!register\b)([A-Za-z_]\w*)\s*\((?:[^()]|\([^()]*\))*\)\s*(?::\s*\w+\s*|->\s*\w+\s*)?$")
+_NAME = re.compile(r"\b(?!register\b)([A-Za-z_]\w*)\s*\((?:[^()]|\([^()]*\))*\)\s*(?::\s*\w+\s*|->\s*[\w<>]+\s*)?$")
 _SPACE, _STRUCTURE = re.compile(r"\bnamespace\s+([\w:]+)\s*$"), re.compile(r"\bstruct\s+(\w+)\s*\{(.*)\}[^{}]*$", re.S)
 _WORD, _PASTED = re.compile(r"\w+"), re.compile(r"(\w*)\s*##\s*(\w*)")
 
@@ -111,6 +111,15 @@ def defined_in(text: str) -> Iterator[str]:
 def heads(text: str) -> str:
     """A text with a semicolon for the body of each of its functions; each line stays where it is."""
     return _rewritten(text, ((item.body, item.end, ";") for item in items(text) if item.function))
+
+
+def marked_heads(text: str, mark: str) -> str:
+    """The same with a mark before the name of each function, so that none is one of the language's own."""
+    functions = [item for item in items(text) if item.function]
+    names = (re.search(rf"\b{item.name}\s*\(", text[item.start : item.body]) for item in functions)
+    places = (item.start + name.start() for item, name in zip(functions, names, strict=True) if name)
+    bodies = ((item.body, item.end, ";") for item in functions)
+    return _rewritten(text, [*((place, place, mark) for place in places), *bodies])
 
 
 def without(text: str, some: Iterable[Item]) -> str:

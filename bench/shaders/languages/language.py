@@ -11,7 +11,7 @@ from types import MappingProxyType
 from ....encodings.codecs.files import file_text
 from ...ground.compilers import tools
 from ...ground.compilers.lines import without_comments
-from ...ground.user_files import TRANSLATED, UserFile
+from ...ground.user_files import GLSL, TRANSLATED, UserFile
 from . import hlsl, slang, wgsl, wiring
 from .pairs import Function
 from .programs import Read
@@ -19,8 +19,12 @@ from .shaped import Adapter
 from .source import Source
 
 GLSL_NAME = "GLSL"
-# What is a type in GLSL, and in no other language that files of its endings have.
-_GLSL = re.compile(r"\b[iub]?vec[234]\b")
+# What stands in no other language that files of several endings have: a type, a function, a module.
+_SIGNS = (
+    (GLSL_NAME, r"\b[iub]?vec[234]\b(?!<)"),
+    ("WGSL", r"\bfn\s+\w+\s*\("),
+    ("Slang", r"^[ \t]*(?:import|module)\s"),
+)
 
 
 @dataclass(frozen=True)
@@ -66,13 +70,15 @@ def language_of(file: UserFile, by: str = "") -> Language:
 def name_of(file: UserFile) -> str:
     """Return what the language of a file is called: as its name says, by its ending, or by its text where the ending is
     of several."""
-    language = file.settings.language or TRANSLATED.get(file.path.suffix.lower(), GLSL_NAME)
+    ending = file.path.suffix.lower()
+    language = file.settings.language or TRANSLATED.get(ending, GLSL_NAME if ending == GLSL else "")
     if language:
         return language
     try:
-        return GLSL_NAME if _GLSL.search(without_comments(file_text(file.path))) else "HLSL"
+        text = without_comments(file_text(file.path))
     except (OSError, ValueError):
         return "HLSL"
+    return next((name for name, sign in _SIGNS if re.search(sign, text, re.M)), "HLSL")
 
 
 def require_language(name: str) -> None:

@@ -185,7 +185,8 @@ class SeveralPairsError(NoPairError):
     """
 
     def __init__(self, file: str, named: Sequence[str]):
-        super().__init__(f"it has several encoders; name one: {', '.join(f'{file}:{one}' for one in named[:6])}")
+        several = "several encoders; name one" if len(named) > 1 else "functions that may be a pair; name them"
+        super().__init__(f"it has {several}: {', '.join(f'{file}:{one}' for one in named[:6])}")
         self.named = named
 
 
@@ -209,14 +210,18 @@ def pair_of(
     if asked:
         return _asked(found, asked, [*pairs, *packed])
     mine = [pair for pair in pairs if pair.encode.name in own and pair.decode.name in own]
-    best = _by_name(mine) or _by_name(pairs) or packed or _by_size(mine) or _by_size(pairs)
+    named = _by_name(mine) or _by_name(pairs) or packed
+    if not named and (other := _of_something_else(found, file, (kinds.FRAME,))):
+        # Of frames whose helpers are of normals.
+        raise NoPairError(other)
+    best = named or _by_size(mine) or _by_size(pairs)
     # Others are of colours or motion.
     best = [pair for pair in best if speaks_of_normals(pair)] or [pair for pair in best if not speaks_of_others(pair)]
     # Overloads differ in the view alone.
     names = list(dict.fromkeys(pair.named for pair in best))
     if names and (meant := _by_parameter(found, best)):
         raise NoPairError(BY_PARAMETER.format(meant))
-    if len(names) == 1:
+    if len(names) == 1 and (named or not _is_half_named(best[0])):
         return best[0]
     if names:
         raise SeveralPairsError(file, names)
@@ -228,6 +233,11 @@ def pair_of(
         raise NoPairError(other)
     wanted = "float2 (or float3) ENCODE(float3 n) and float3 DECODE(float2 code)"
     raise NoPairError(f"{_none_fits(found)}; the two functions must be {wanted}")
+
+
+def _is_half_named(pair: Pair) -> bool:
+    """Whether one name alone says what its function is: the other may be of something else."""
+    return bool(role(pair.encode.name)) != bool(role(pair.decode.name))
 
 
 def _fitting(found: Sequence[Function]) -> Iterator[Pair]:
@@ -351,10 +361,10 @@ def alone(found: Sequence[Function]) -> Pair | None:
     return Pair(*(encoders or [Function("", size, (NORMAL,))]), *(decoders or [Function("", NORMAL, (size,))]))
 
 
-def _of_something_else(found: Sequence[Function], file: str) -> str:
+def _of_something_else(found: Sequence[Function], file: str, among: Collection[kinds.Kind] = kinds.KINDS) -> str:
     """That a file without a pair is of something else, by the names of its functions; else empty."""
     for name in (one.name for one in found if role(one.name)):
-        if kind := kind_spoken_of(name):
+        if (kind := kind_spoken_of(name)) and kind in among:
             return OF_OTHERS.format(name, kind.plural, kinds.NORMAL.plural, kind.command.format(file))
     return ""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from ...ground.compilers.slang import Compiled, api
 from .pairs import PACKED, Function, Parameter, Place
@@ -14,14 +14,14 @@ OUT, INOUT = 9, 10
 FLOATS, NUMBERS = ("half", "float"), ("float", "uint", "int", "bool")
 
 
-def functions_of(compiled: Compiled, names: Sequence[str]) -> list[Function]:
+def functions_of(compiled: Compiled, names: Mapping[str, str]) -> list[Function]:
     """Return the functions of these names, overloads each; a name that only another branch has gives none.
 
     Args:
-        names: what the text itself defines: the library does not bear names of its own.
+        names: what the text defines, by what its functions are called: the library does not bear names of its own.
     """
     reflection = api().reflection(compiled.request)
-    found = [(name, api().find(reflection, name.encode())) for name in names]
+    found = [(name, api().find(reflection, spelled.encode())) for name, spelled in names.items()]
     each = ((name, one) for name, several in found if several for one in _overloads(several))
     return list(dict.fromkeys(_function(name, one) for name, one in each))
 

@@ -10,14 +10,13 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 
 from ...ground.compilers import slang as library
 from ...ground.compilers.lines import blank, with_known_directives
 from ...ground.compilers.text import OTHER_FILES, RefusedError
-from ..translator.builtins import LIKE_GIVEN, OF_FLOATS
-from .items import Item, blanked, defined_in, functions_in, heads, items, without
+from .items import Item, blanked, defined_in, functions_in, heads, items, marked_heads, without
 from .pairs import Function
 from .programs import ENGINE_TYPES, ENTRY, HALVES, Read, TranslationError, macros, program, template
 from .reflection import functions_of
@@ -29,10 +28,8 @@ _LINE = rf"\t[^\t]*{re.escape(library.GIVEN)}\t(\d+)\t(\d+)\t\d+\t\d+\t(.*)$"
 _ERROR, _SPAN = re.compile(rf"^\w+\t(?:error|fatal)[^\t]*{_LINE}", re.M), re.compile(rf"^\w+\tspan{_LINE}", re.M)
 _MIX, MIX = re.compile(r"\bmix(?=\()"), "normalbench_mix_0"
 TYPES: Mapping[str, str] = {**ENGINE_TYPES, **dict.fromkeys(HALVES, "float")}
-# Functions of its own.
-OWN_FUNCTIONS = (
-    LIKE_GIVEN | OF_FLOATS | {"select", "saturate", "lerp", "frac", "rsqrt", "mul", "fmod", "mod", "rcp", "any", "all"}
-)
+# What the names of a text's functions begin with where they are looked up.
+MARK = "normalbench_own_"
 # A directive that begins or ends a branch.
 _CONDITIONAL = re.compile(r"^[ \t]*#[ \t]*(?:if|ifdef|ifndef|else|elif|endif)\b.*$", re.M)
 PART = "normalbench_part_"
@@ -52,6 +49,18 @@ _OF_A_STAGE = re.compile(
 )
 # What GLSL fills as no other language does: a matrix of one number is a diagonal.
 _DIAGONAL = re.compile(r"\bmat[234](?:x[234])?\s*\(")
+
+
+class RefusedWordError(TranslationError):
+    """A text has a word that no compiler is given.
+
+    Attributes:
+        place: its line and column in the text, and what is wrong with it.
+    """
+
+    def __init__(self, said: str, place: tuple[int, int, str]):
+        super().__init__(said)
+        self.place = place
 
 
 def read(source: Source, folder: Path) -> Read:
@@ -94,21 +103,42 @@ def _readable_part(source: Source, first: Callable[[str], str], folder: Path, op
         first: its text to the part of it that is looked at.
     """
     source = source.without_missing()
-    source = _live_part(source.with_text(first(source.text)), folder, options)
+    source = _live_part(source.with_text(first(source.text)), folder, options).without_part()
     refused: dict[str, str] = {}
     lost: dict[str, str] = {}
-    while (made := _compiled(source, heads(source.text) + NO_ENTRY, (*options, *TARGET), folder)).failed:
-        bad = _refused_items(source, made.said)
+    while bad := _refused_now(source, options, folder):
         left = source.with_text(without(source.text, bad))
-        if left.text == source.text:
-            raise TranslationError(_explanation(source, made.said))
         refused |= {name: why for item, why in bad.items() for name in _names_in_head(source.text, item)}
         texts = {source.text[item.start : item.end]: why for item, why in bad.items() if not item.function}
         lost |= {name: why for text, why in texts.items() for name in defined_in(text)}
         source = left
-    # The library ends the process where it is asked for a function of its own; nobody's encoder is called so.
-    names = [name for name in functions_in(source.text) if name not in OWN_FUNCTIONS]
+    # The library ends the process where it is asked for a function that has the name of one of its own.
+    made = _compiled(source, marked_heads(source.text, MARK) + NO_ENTRY, (*options, *TARGET), folder)
+    tops = {item.function for item in items(source.text) if item.function}
+    names = {name: _marked(name) if name in tops else name for name in functions_in(source.text)}
     return Read(source, functions_of(made, names), refused, lost)
+
+
+def _refused_now(source: Source, options: tuple[str, ...], folder: Path) -> dict[Item, str]:
+    """The items of a source that are refused, each with the first message; none where its heads compile. Raises
+    TranslationError where what is refused is none."""
+    try:
+        made = _compiled(source, heads(source.text) + NO_ENTRY, (*options, *TARGET), folder)
+    except RefusedWordError as error:
+        messages, explained = [error.place], error
+    else:
+        if not made.failed:
+            return {}
+        messages, explained = list(_messages(made.said)), TranslationError(_explanation(source, made.said))
+    bad = _items_at(source, messages)
+    if without(source.text, bad) == source.text:
+        raise explained
+    return bad
+
+
+def _marked(name: str) -> str:
+    space, mark, last = name.rpartition("::")
+    return f"{space}{mark}{MARK}{last}"
 
 
 def _live_part(source: Source, folder: Path, options: tuple[str, ...]) -> Source:
@@ -131,12 +161,16 @@ def _names_in_head(text: str, item: Item) -> list[str]:
     return [item.name] if item.function else _CALLED.findall(before) if brace else []
 
 
-def _refused_items(source: Source, said: str) -> dict[Item, str]:
-    """The items that messages are of, each with the first message; what a directive says is of none."""
+def _items_at(source: Source, messages: Iterable[tuple[int, int, str]]) -> dict[Item, str]:
+    """The items that messages are of, each with the first message; what a directive says is of none.
+
+    Args:
+        messages: line, column and what is wrong there.
+    """
     starts = [0, *(match.end() for match in re.finditer("\n", source.text))]
     known = items(source.text)
     found: dict[Item, str] = {}
-    for number, column, what in _messages(said):
+    for number, column, what in messages:
         line = starts[min(number, len(starts)) - 1]
         item = known[bisect_right(known, line + column - 1, key=lambda item: item.start) - 1]
         if item.end > line + column - 1 and not source.text.startswith("#", line):
@@ -178,7 +212,11 @@ def _compiled(source: Source, text: str, options: tuple[str, ...], folder: Path)
         # Lines that mark the parts of a text are none of the user's; before each but the first stands an empty one.
         marks = sum(line.startswith(f"#warning {PART}") for line in text.split("\n")[: error.line])
         error.line -= max(2 * marks - 1, 0)
-        raise TranslationError(refusal(source, error)) from None
+        if not error.line:
+            raise TranslationError(refusal(source, error)) from None
+        line = text.split("\n")[error.line - 1]
+        place = (error.line, line.find(error.word) + 1, error.why)
+        raise RefusedWordError(refusal(source, error), place) from None
 
 
 def refusal(source: Source, error: RefusedError) -> str:

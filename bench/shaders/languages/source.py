@@ -14,10 +14,15 @@ from ....encodings.codecs.files import MOST_TEXT, file_text
 from ...ground.compilers.lines import bare
 from ...ground.output.errors import UsageError
 from ...ground.user_files import ENDINGS, TRANSLATED, UserFile, is_file
-from .items import defined_in
+from .embedded import shader_text
+from .items import defined_in, items, without
 
 # Some engines have no marks around the name; in place of one, a macro is a name of no file.
 _INCLUDE = re.compile(r'[ \t]*#[ \t]*include[ \t]*(?:"([^"]+)"|<([^>]+)>|(?<=[ \t])([\w./\\-]+))[ \t]*')
+# Modules of Slang: the lines of one stand in place of what names it.
+_IMPORT = re.compile(r'[ \t]*(?:__exported[ \t]+)?(?:import|__include)[ \t]+(?:([\w.]+)|"([^"]+)")[ \t]*;[ \t]*')
+_MODULE = re.compile(r"[ \t]*(?:module|implementing)[ \t]+[\w.]+[ \t]*;[ \t]*")
+SLANG = ".slang"
 _CONDITION = re.compile(r"[ \t]*#[ \t]*(if|elif|else|endif)(?:n?def)?\b")
 # What keeps a file from being compiled twice: #pragma once, or all of it in #ifndef NAME and #define NAME.
 _ONCE = re.compile(r"[ \t]*#[ \t]*pragma[ \t]+once[ \t]*")
@@ -37,6 +42,10 @@ class Line(NamedTuple):
     path: Path
     number: int
     wrong: str = ""
+
+
+# Of declarations: the number of one of so many equal parts, counted from 0.
+Part = tuple[int, int]
 
 
 def _homes() -> Iterator[Path]:
@@ -79,7 +88,7 @@ def _read(own: Path, path: Path, language: str) -> _Text:
     """A file, which the user knows by another path. Raises UsageError."""
     is_wgsl = (language or TRANSLATED.get(path.suffix.lower())) == "WGSL"
     try:
-        text = bare(file_text(own), is_wgsl)
+        text = bare(shader_text(file_text(own), path.suffix.lower()), is_wgsl)
     except (OSError, ValueError) as error:
         raise UsageError(f"{path}: {error}") from error
     if "/*" in text:
@@ -91,7 +100,13 @@ def _read(own: Path, path: Path, language: str) -> _Text:
         raise UsageError(f'{path}: an #include is written as #include "FILE", in one line')
     if is_wgsl:
         return _Text(lines, found, _NATURE)
-    return _Text(lines, found, _PRAGMA if any(map(_ONCE.fullmatch, lines)) else _guard(lines))
+    imports: dict[int, str] = {}
+    if (language or TRANSLATED.get(path.suffix.lower())) == "Slang":
+        imports = {at: match[1] or match[2] for at, line in enumerate(lines) if (match := _IMPORT.fullmatch(line))}
+        found |= {at: name.removesuffix(SLANG).replace(".", "/") + SLANG for at, name in imports.items()}
+        lines = ["" if _MODULE.fullmatch(line) else line for line in lines]
+    guard = _PRAGMA if any(map(_ONCE.fullmatch, lines)) else _guard(lines)
+    return _Text(lines, found, guard, frozenset(imports))
 
 
 class _Text(NamedTuple):
@@ -101,11 +116,13 @@ class _Text(NamedTuple):
         lines: without comments.
         includes: by the place of a line, what it includes.
         guard: the places of the lines that keep it from being compiled twice; empty where nothing does.
+        imports: the places of those that import a module, which is read once.
     """
 
     lines: list[str]
     includes: dict[int, str]
     guard: tuple[int, ...]
+    imports: frozenset[int] = frozenset()
 
 
 def _guard(lines: list[str]) -> tuple[int, ...]:
@@ -171,6 +188,9 @@ class Source:
         self.mains = file.paths
         self.path = path = self.mains[0]
         self.settings = file.settings
+        # What is left out of its declarations, and their places.
+        self.part: Part = (0, 0)
+        self.left_out: list[str] = []
         self.files: dict[Path, Path] = {}
         # The one that is read, and where its includes are searched.
         self._main = self.path
@@ -234,7 +254,7 @@ class Source:
         self._open.append(own)
         for at, line in enumerate(text.lines):
             if at in text.includes:
-                yield from self._included(path, at + 1, text.includes[at])
+                yield from self._included(path, at + 1, text.includes[at], at in text.imports)
                 continue
             if at not in text.guard:
                 self._branches.follow(line)
@@ -261,17 +281,23 @@ class Source:
             self._texts[own] = _read(own, path, self.settings.language)
         return self._texts[own]
 
-    def _included(self, path: Path, number: int, name: str) -> Iterator[Line]:
+    def _included(self, path: Path, number: int, name: str, is_module: bool) -> Iterator[Line]:
         there = [target for target in self._targets(path, name) if is_file(Path(), str(target))]
         target = next((one for one in there if self.may_read(_resolved(one))), None)
         if target is None:
             where = f"lies outside the folder of {self._main.name}" if there else f"is not next to {path.name}"
             yield Line("#error not read", path, number, f"{name} {where}; name its folder by {_option_for(name)}")
-        elif not self._is_read(_resolved(target), target):
+        elif not self._is_read(_resolved(target), target, is_module):
             yield from self._expanded(target)
 
     def _targets(self, path: Path, name: str) -> list[Path]:
         """Where a file may lie that another one includes."""
+        if name.endswith(SLANG) and "_" in name:
+            # A module's file may have hyphens for underscores.
+            return [*self._targets(path, name.replace("_", "-")), *self._targets_as_written(path, name)]
+        return self._targets_as_written(path, name)
+
+    def _targets_as_written(self, path: Path, name: str) -> list[Path]:
         own = [folder / name for folder in dict.fromkeys((path.parent, self._main.parent))]
         bare = name.lstrip("/")
         roots = self.settings.roots
@@ -279,11 +305,12 @@ class Source:
         given = [Path(root) / bare[len(virtual) :].lstrip("/") for virtual, root in rooted]
         return [*own, *given, *(folder / name for folder in self._folders)]
 
-    def _is_read(self, own: Path, target: Path) -> bool:
-        """Whether a file need not be read again: it is open, or it guards itself and was read wherever this line is."""
+    def _is_read(self, own: Path, target: Path, is_module: bool) -> bool:
+        """Whether a file need not be read again: it is open, or it guards itself, or is a module, and was read wherever
+        this line is."""
         if own in self._open:
             return True
-        if not self._text_of(own, target).guard:
+        if not (is_module or self._text_of(own, target).guard):
             return False
         now, before = self._branches.now, self._read_in.setdefault(own, [])
         if any(now[: len(one)] == one for one in before):
@@ -312,6 +339,19 @@ class Source:
     def missing(self) -> list[str]:
         """What is wrong with the lines that include what is not there, with their places."""
         return [f"{line.path}:{line.number}: {line.wrong}" for line in self.lines if line.wrong]
+
+    def without_part(self) -> Source:
+        """The same without the part of its declarations that is to be left out."""
+        number, count = self.part
+        if not count:
+            return self
+        every = [item for item in items(self.text) if self.text[item.start : item.end].strip()]
+        some = every[number * len(every) // count : (number + 1) * len(every) // count]
+        for item in some:
+            start = item.start + len(self.text[item.start : item.end]) - len(self.text[item.start : item.end].lstrip())
+            path, line = self.place(self.text.count("\n", 0, start) + 1)
+            self.left_out.append(f"{path}:{line}: {' '.join(self.text[start : item.end].split())[:60]}")
+        return self.with_text(without(self.text, some))
 
     def may_read(self, target: Path) -> bool:
         """Whether a file, whose links are resolved, lies where includes are searched and ends as a shader does."""

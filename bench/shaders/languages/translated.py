@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import signal
 import subprocess
 import tempfile
 from dataclasses import dataclass
@@ -16,27 +17,17 @@ from ....encodings.kinds import Kind
 from ...ground.compilers import tools
 from ...ground.machine import children
 from ...ground.output import cache as kept
-from ...ground.output.errors import MissingError, UsageError
+from ...ground.output.errors import MissingError, SeveralEncodersError, UsageError
 from ...ground.user_files import UserFile
 from ..translator import tree
 from .language import language_of
-from .source import Source
+from .source import Part, Source
 
 # Of one file: a hundred times what it takes.
 TIME_LIMIT = 60.0
 TEXTS = ("", "-unit")
-
-
-class SeveralEncodersError(UsageError):
-    """A file has several encoders.
-
-    Attributes:
-        pairs: the names of each and its decoder, ENCODE:DECODE.
-    """
-
-    def __init__(self, said: str, pairs: list[str]):
-        super().__init__(said)
-        self.pairs = pairs
+# How a process ends that a text kills, and not a limit.
+CRASHES = tuple(-number for number in (signal.SIGABRT, signal.SIGSEGV, signal.SIGILL))
 
 
 @dataclass(frozen=True)
@@ -148,27 +139,56 @@ _KINDS |= {"components": int, "notes": list, "texts": list, "functions": list, "
 
 def _by_child(file: UserFile, by: str, kind: Kind) -> dict[str, Any]:
     """The answer of the child process that translates a file: its fields, as JSON has them."""
-    path = file.path
+    done = _ended_child(file, by, kind)
+    found = _answer(done)
+    if found is None and done.returncode in CRASHES:
+        found = _answer_without_killer(file, by, kind)
+    if found is None:
+        raise UsageError(f"{file.path}: its translation {children.how_it_ended(done)}")
+    if "missing" in found:
+        raise MissingError(_one_line(found["missing"]))
+    one = _translated_or_none(found.get("alone"))
+    if isinstance(pairs := found.get("pairs"), list):
+        raise SeveralEncodersError(_one_line(found.get("error")), [*map(_one_line, pairs)], one)
+    if "error" in found:
+        raise AloneError(_one_line(found["error"]), one) if one else UsageError(_one_line(found["error"]))
+    return found
+
+
+def _ended_child(file: UserFile, by: str, kind: Kind, part: Part = (0, 0)) -> subprocess.CompletedProcess[str]:
     with tempfile.TemporaryDirectory() as folder:
-        command = children.python("normalbench.bench.shaders.languages.child", folder, file.word, by, kind.name)
+        words = (folder, file.word, by, kind.name, ":".join(map(str, part)))
         try:
-            done = children.finished(command, TIME_LIMIT)
+            return children.finished(children.python("normalbench.bench.shaders.languages.child", *words), TIME_LIMIT)
         except subprocess.TimeoutExpired as error:
-            raise UsageError(f"{path}: its translation did not end within {TIME_LIMIT:g} s") from error
+            raise UsageError(f"{file.path}: its translation did not end within {TIME_LIMIT:g} s") from error
+
+
+def _answer(done: subprocess.CompletedProcess[str]) -> dict[str, Any] | None:
+    """What a child printed; None where it died before."""
     try:
         found = json.loads(done.stdout)
     except (ValueError, RecursionError):
-        raise UsageError(f"{path}: its translation {children.how_it_ended(done)}") from None
-    if not isinstance(found, dict):
-        return {}
-    if "missing" in found:
-        raise MissingError(_one_line(found["missing"]))
-    if isinstance(pairs := found.get("pairs"), list):
-        raise SeveralEncodersError(_one_line(found.get("error")), [*map(_one_line, pairs)])
-    if "error" in found:
-        one = _translated_or_none(found.get("alone"))
-        raise AloneError(_one_line(found["error"]), one) if one else UsageError(_one_line(found["error"]))
-    return found
+        return None
+    return found if isinstance(found, dict) else {}
+
+
+def _answer_without_killer(file: UserFile, by: str, kind: Kind) -> dict[str, Any] | None:
+    """The answer without the declaration that kills the compiler, which it names; None where leaving out one does not
+    help."""
+    number, count = 0, 1
+    while True:
+        halves = [(2 * number, 2 * count), (2 * number + 1, 2 * count)]
+        answers = ((half, _answer(_ended_child(file, by, kind, half))) for half in halves)
+        (number, count), found = next(((half, found) for half, found in answers if found is not None), ((0, 0), None))
+        left_out = found.get("left_out") if found else None
+        if not found or not isinstance(left_out, list) or not left_out:
+            return None
+        if len(left_out) == 1:
+            said = f"{_one_line(left_out[0])} kills the compiler"
+            more = {"error": f"{found['error']}; {said}"} if "error" in found else {}
+            notes = {"notes": [f"{said} and is left out", *found["notes"]]} if "notes" in found else {}
+            return {name: value for name, value in found.items() if name != "left_out"} | more | notes
 
 
 def _one_line(said: Any) -> str:

@@ -23,21 +23,9 @@ def encodings_named(names: Names) -> list[Encoding]:
     for word in names:
         if isinstance(word, str):
             check_word(word, ENCODINGS)
-    pairs = [_pairs_meant(word) if isinstance(word, str) else [word] for word in names]
-    words = tuple(word for several in pairs for word in several)
-    settings = [word for word in words if isinstance(word, str) and tuned_names.MARK in word]
+    settings = [word for word in names if isinstance(word, str) and tuned_names.MARK in word]
     tuned = {word: tuned_names.tuned(word) for word in settings if not names_an_encoder(word)}
-    return choose_or_look("encoding", words, {**ENCODINGS, **tuned}, _looked_at, _what_names)
-
-
-def _pairs_meant(word: str) -> list[str]:
-    """Return a word, or in its place one for each pair of its file that round-trips, if all are meant."""
-    file = UserFile(word)
-    if not (names_an_encoder(word) and file.settings.is_all) or file.functions:
-        return [word]
-    from .user_encodings import pairs_of
-
-    return [file.with_pair(pair).word for pair in pairs_of(file)] or [word]
+    return choose_or_look("encoding", names, {**ENCODINGS, **tuned}, _looked_at, _what_names)
 
 
 def _looked_at(file: UserFile) -> Looked[Encoding]:

@@ -39,12 +39,12 @@ from ....gbuffer.gl.device import Device, NoDeviceError, device
 from ....gbuffer.gl.shader import ShaderError, read_shader
 from ...ground.directions import directions
 from ...ground.machine import children
-from ...ground.output.errors import MissingError, UsageError
+from ...ground.output.errors import MissingError, SeveralEncodersError, UsageError
 from ...ground.user_files import UserFile
 from ...shaders.code.twin import NoTwinError
 from ...shaders.languages.language import GLSL_NAME
 from ...shaders.languages.pairs import NO_PAIR
-from ...shaders.languages.translated import AloneError, SeveralEncodersError, Translated
+from ...shaders.languages.translated import AloneError, Translated
 from ...shaders.languages.wiring import Wiring, wiring_of
 from .doctor.diagnoses import bad, diagnosed
 from .doctor.domains import SPHERE, Domain, guessed
@@ -63,6 +63,8 @@ SIDES = ("encode", "decode")
 MOST_BAD = 4000
 # How many pairs of a file are tried, and how near directions come back from one, in degrees.
 MOST_PAIRS, MOST_WIRINGS, OF_A_PAIR_DEG, OF_A_WIRING_DEG = 12, 12, 5.0, 0.1
+# Of pairs that a line gives a reason for.
+MOST_REASONS = 4
 NOT_ASKED = "the twin is looked at by itself"
 # Letters of a compiler's message; what follows the first errors follows from them.
 LONGEST = 1000
@@ -102,18 +104,33 @@ def _first_look(file: UserFile, domain: str, by: str) -> dict[str, Any]:
         return _look_at_one(file, domain, by)
     except SeveralEncodersError as error:
         try:
-            kept = _that_undo_themselves(file, error.pairs, by)
+            kept, failing = _that_undo_themselves(file, error.pairs, by)
         except NoDeviceError as missing:
             named = ", ".join(dict.fromkeys(str(file.with_pair(one)) for one in error.pairs[:MOST_PAIRS]))
             return {"error": f"{file}: name one of its pairs, which none is tried of here ({missing}): {named}"}
         if len(kept) == 1:
             return _look_at_one(file.with_pair(kept[0]), domain, by) | {"pair": kept[0]}
-        how = "name one, or take --all-pairs"
-        said = f"{len(kept)} of its pairs undo themselves; {how}" if kept else "none of its pairs undoes itself"
-        named = ", ".join(str(file.with_pair(one)) for one in kept or error.pairs)
-        tried = len({_functions_of(file.with_pair(pair)) for pair in error.pairs})
-        more = f" (the first {MOST_PAIRS} of {tried} were tried)" if tried > MOST_PAIRS else ""
-        return {"error": f"{file}: {said}{more}: {named}", "pairs": kept}
+        if not kept and error.alone:
+            of_one = _of_one(file, error.alone)
+            return of_one | {"error": f"{file}: {of_one['error']}"}
+        if not kept:
+            return {"error": f"{file}: {_why_none(failing)}"}
+        named = ", ".join(str(file.with_pair(one)) for one in kept)
+        how = f"{len(kept)} of its pairs undo themselves; name one: {named}"
+        return {"error": f"{file}: {how}{_untried(failing)}", "pairs": kept}
+
+
+def _why_none(failing: Mapping[str, str]) -> str:
+    """Why none of a file's pairs can be measured; each is named with its reason."""
+    named = [f"{pair}: {why}" for pair, why in failing.items() if why][:MOST_REASONS]
+    if len(failing) == 1:
+        return named[0]
+    return f"none of its {len(failing)} pairs undoes itself; {'; '.join(named)}{_untried(failing)}"
+
+
+def _untried(failing: Mapping[str, str]) -> str:
+    untried = [pair for pair, why in failing.items() if not why]
+    return f"; not tried: {', '.join(untried)}" if untried else ""
 
 
 def _wirings_of(file: UserFile) -> list[Wiring]:
@@ -126,32 +143,41 @@ def _functions_of(file: UserFile) -> tuple[str, ...]:
     return tuple(one.function for one in _wirings_of(file))
 
 
-def _that_undo_themselves(file: UserFile, pairs: Sequence[str], by: str) -> list[str]:
-    """Those of some pairs that undo themselves; of two functions, as they are called where that holds most normals."""
+def _that_undo_themselves(file: UserFile, pairs: Sequence[str], by: str) -> tuple[list[str], dict[str, str]]:
+    """Those of some pairs that undo themselves, of two functions as they are called where that holds most normals; and
+    by the functions of the others why these do not, empty for those that were not tried."""
     found: dict[tuple[str, ...], tuple[bool, str]] = {}
+    failing: dict[tuple[str, ...], str] = {}
     tries = Counter()
     for pair in pairs:
         word = file.with_pair(pair)
         functions = _functions_of(word)
         is_whole, _ = found.get(functions, (False, ""))
         tries[functions] += 1
-        is_too_many = len(tries) > MOST_PAIRS or tries[functions] > MOST_WIRINGS
-        domain = "" if is_whole or is_too_many else _undone(word, by)
-        if domain == SPHERE.name or (domain and functions not in found):
-            found[functions] = (domain == SPHERE.name, pair)
-    return [pair for _, pair in found.values()]
+        if len(tries) > MOST_PAIRS or tries[functions] > MOST_WIRINGS:
+            failing.setdefault(functions, "")
+        elif not is_whole:
+            domain, why = _undone(word, by)
+            failing.setdefault(functions, why)
+            if domain == SPHERE.name or (domain and functions not in found):
+                found[functions] = (domain == SPHERE.name, pair)
+    others = {":".join(functions): why for functions, why in failing.items() if functions not in found}
+    return [pair for _, pair in found.values()], others
 
 
-def _undone(file: UserFile, by: str) -> str:
-    """The domain on which a decoder undoes its encoder; empty where it does on none."""
+def _undone(file: UserFile, by: str) -> tuple[str, str]:
+    """The domain on which a decoder undoes its encoder; where it does on none, empty, and why."""
     try:
         encoding, gl = read_encoding(file, NOT_ASKED, by=by), device()
         with np.errstate(invalid="ignore"):
             # What lacks a part of its code comes back nearly.
             within = OF_A_WIRING_DEG if any(one.made for one in _wirings_of(file)) else OF_A_PAIR_DEG
-            return guessed(trip_of(probe_of(gl, encoding), directions()), within).name
-    except (UsageError, ShaderError):
-        return ""
+            trip = trip_of(probe_of(gl, encoding), directions())
+            if domain := guessed(trip, within).name:
+                return domain, ""
+            return "", trip.hole or f"what is decoded is {np.median(trip.angles()):.2g} degrees off in the middle"
+    except (UsageError, ShaderError) as error:
+        return "", " ".join(str(error).split())[:LONGEST]
 
 
 def _look_at_one(file: UserFile, domain: str, by: str) -> dict[str, Any]:
@@ -174,22 +200,26 @@ def _look_at_one(file: UserFile, domain: str, by: str) -> dict[str, Any]:
     except SeveralEncodersError:
         raise
     except AloneError as error:
-        return {"error": f"{error}; {_of_one(file, error.made)}"}
+        of_one = _of_one(file, error.made)
+        return of_one | {"error": f"{error}; {of_one['error']}"}
     except UsageError as error:
         return {"error": str(error)}
     except ShaderError as error:
         return {"error": _of_compiler(file, str(error))}
 
 
-def _of_one(file: UserFile, made: Translated) -> str:
-    """What an encoder or a decoder is that has no partner, in words."""
+def _of_one(file: UserFile, made: Translated) -> dict[str, Any]:
+    """What an encoder or a decoder is that has no partner, in words; and as `alone` its side, its name, and the
+    encodings of the catalogue that it is of."""
     side, (name, _) = next((side, one) for side, one in zip(SIDES, made.functions, strict=True) if one[0])
     try:
         gl = device()
         like = names_alone(gl, probe_of(gl, encoding_alone(file, made)), side == SIDES[0])
     except (NoDeviceError, ShaderError) as error:
-        return f"it is not compared with the catalogue: {' '.join(str(error).split())[:300]}"
-    return f"{name} is the {side} of {like[0]}" if like else f"{name} is the {side} of no encoding of the catalogue"
+        like, said = [], f"it is not compared with the catalogue: {' '.join(str(error).split())[:300]}"
+    else:
+        said = f"{name} is the {side} of {like[0] if like else 'no encoding of the catalogue'}"
+    return {"error": said, "alone": [side, name, *like]}
 
 
 def _is_unit(probe: Probe) -> bool:

@@ -11,13 +11,15 @@ from ...ground.choose import choose
 from ...ground.machine.cores import on_all_cores
 from ...ground.machine.systems import forks
 from ...ground.options.words import Names
-from ...ground.output.errors import MissingError, UsageError, leave_out, tell
+from ...ground.output.errors import MissingError, SeveralEncodersError, UsageError, leave_out, tell
 from ...ground.user_files import UserFile, names_an_encoder
 
 T = TypeVar("T", bound=AnyEncoding)
 # A code, and lines that are to be said of it.
 Looked = tuple[T, list[str]]
 TAKEN = "there is a code named {} already; rename {}"
+# Of one file.
+MOST_PAIRS = 8
 TWICE = "another file has a code named {}; rename {}"
 
 
@@ -28,8 +30,8 @@ def choose_or_look(
     look: Callable[[UserFile], Looked[T]],
     what_names: Callable[[T], str] = lambda _: "the file",
 ) -> list[T]:
-    """Return the codes that names stand for: known ones, or users' files. What is wrong with a file is named on
-    standard error, and the file is left out.
+    """Return the codes that names stand for: known ones, or users' files, of each of its pairs that undo themselves, up
+    to MOST_PAIRS. What is wrong with a file is named on standard error, and the file is left out.
 
     Args:
         look: looks at a file, several at once.
@@ -43,13 +45,18 @@ def choose_or_look(
     complaints, notes = list[Exception](), list[str]()
     typed = [word for word in names if isinstance(word, str) and names_an_encoder(word)]
 
-    def tried(word: str) -> Looked[T] | Exception:
+    def tried(word: str) -> list[tuple[str, Looked[T] | Exception]]:
         try:
-            return look(UserFile(word))
+            return [(word, look(UserFile(word)))]
+        except SeveralEncodersError as error:
+            pairs = [UserFile(word).with_pair(pair).word for pair in error.pairs]
+            notes.extend(f"{pair} is measured if it is named" for pair in pairs[MOST_PAIRS:])
+            return [each for pair in pairs[:MOST_PAIRS] for each in tried(pair)]
         except (UsageError, MissingError) as error:
-            return error
+            return [(word, error)]
 
-    for word, looked in zip(typed, on_all_cores(tried, typed, forks.stop), strict=True):
+    looks = dict(zip(typed, on_all_cores(tried, typed, forks.stop), strict=True))
+    for word, looked in (each for several in looks.values() for each in several):
         if isinstance(looked, Exception):
             complaints.append(looked)
             continue
@@ -59,7 +66,10 @@ def choose_or_look(
             complaints.append(UsageError(f"{word}: {taken.format(code.name, what_names(code))}"))
             continue
         files[word], notes = code, notes + said
-    left = [word for word in names if word in files or word not in typed]
+    failed = {pair for several in looks.values() for pair, _ in several} - {*files}
+    pairs = {word: [pair for pair, _ in several] for word, several in looks.items()}
+    meant = [pairs.get(word, [word]) if isinstance(word, str) else [word] for word in names]
+    left = [word for words in meant for word in words if word not in failed]
     if complaints and not left:
         raise complaints[0]
     chosen = choose(what, left, {**known, **files})

@@ -24,7 +24,7 @@ from ....gbuffer.gl.shader import Source as Shader
 from ...ground.compilers.lines import bare
 from ...ground.machine import children
 from ...ground.machine.systems import forks
-from ...ground.output.errors import NO_TWIN, MissingError, UsageError
+from ...ground.output.errors import NO_TWIN, MissingError, SeveralEncodersError, UsageError
 from ...ground.spelling import spelled
 from ...ground.user_files import ENDINGS, UserFile, check_word, names_an_encoder
 from ...shaders.code.twin import NoTwinError, lacking_twin
@@ -50,16 +50,16 @@ IN_32_BITS = "it declares numbers of 16 bits, but its code is an integer: it is 
 UNIT = "{} are in [0, 1]; every storage holds them as they are, signed and float ones as well"
 
 
-def pairs_of(file: UserFile) -> list[str]:
-    """Return the encoder-decoder pairs of a file that round-trip, ENCODE:DECODE each."""
-    facts = _look(file).glsl
-    return facts.get("pairs") or ([facts["pair"]] if "pair" in facts else [])
-
-
 def looked_at(file: UserFile) -> Looked[Encoding]:
-    """Return a file's encoding after the first look, and what is to be said of it. Raises UsageError and MissingError
-    where there is none."""
+    """Return a file's encoding after the first look, and what is to be said of it.
+
+    Raises:
+        UsageError, MissingError: there is none.
+        SeveralEncodersError: it has several pairs that undo themselves.
+    """
     found = _look(file)
+    if pairs := found.glsl.get("pairs"):
+        raise SeveralEncodersError(found.glsl["error"], pairs)
     _check(file, found.glsl)
     encoding = found.encoding()
     # That codes are in [0, 1] is said by doctor, and in rows by a column.
@@ -67,6 +67,20 @@ def looked_at(file: UserFile) -> Looked[Encoding]:
     said = [f"{of}: {line}" for line in (*found.wrong, *found.notes) if line != found.unit_note]
     said += [f"{of}: {DECLARES_HALF if encoding.is_also_half else IN_32_BITS}"] if encoding.declares_half else []
     return encoding, said + ([f"{file.twin}: {found.twin['apart']}"] if "apart" in found.twin else [])
+
+
+class OneFunctionError(UsageError):
+    """A file has an encoder or a decoder without a partner.
+
+    Attributes:
+        side: "encode" or "decode".
+        function: its name.
+        like: the encodings of the catalogue that it is of.
+    """
+
+    def __init__(self, said: str, side: str, function: str, *like: str):
+        super().__init__(said)
+        self.side, self.function, self.like = side, function, like
 
 
 class Examined(NamedTuple):
@@ -115,6 +129,10 @@ def examined(file: UserFile, domain: str = ANY) -> Examined:
     found = _look(file, domain)
     if "missing" in found.glsl:
         raise MissingError(found.glsl["missing"])
+    if pairs := found.glsl.get("pairs"):
+        raise SeveralEncodersError(found.glsl["error"], pairs)
+    if alone := found.glsl.get("alone"):
+        raise OneFunctionError(found.glsl["error"], *alone)
     if "error" in found.glsl:
         raise UsageError(found.glsl["error"])
     broken = [found.glsl["broken"]] if "broken" in found.glsl else []

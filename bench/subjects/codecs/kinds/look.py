@@ -25,9 +25,9 @@ from .....gbuffer.codecs.own.own_passes import Tried
 from .....gbuffer.gl.device import Device, NoDeviceError, device
 from .....gbuffer.gl.shader import ShaderError
 from ....ground.machine import children
-from ....ground.output.errors import MissingError, UsageError
+from ....ground.output.errors import MissingError, SeveralEncodersError, UsageError
 from ....ground.user_files import UserFile
-from ....shaders.languages.translated import SeveralEncodersError, translated
+from ....shaders.languages.translated import translated
 from .own import Own, OwnKind, Values
 from .table import OWN
 

@@ -17,11 +17,11 @@ from .....encodings.storages.storage import LIGHT_STORAGES
 from ....ground.machine import children
 from ....ground.machine.systems import forks
 from ....ground.options.words import Names
-from ....ground.output.errors import MissingError, UsageError, leave_out
+from ....ground.output.errors import MissingError, SeveralEncodersError, UsageError, leave_out
 from ....ground.user_files import UserFile, check_word, names_an_encoder
 from ....shaders.languages.pairs import NORMALS, role
 from ....shaders.languages.programs import has_halves
-from ....shaders.languages.translated import SeveralEncodersError, translated
+from ....shaders.languages.translated import translated
 from ...names.light_buffers import light_buffers_named
 from ..looked_at import choose_or_look
 from .own import Own, OwnKind

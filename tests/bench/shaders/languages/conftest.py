@@ -18,8 +18,9 @@ def in_this_process(monkeypatch):
     test_wall.py hold the process, what limits it, and its wall."""
 
     def finished(command, _):
-        folder, word, by, kind = command
-        facts = child.answer(UserFile(word), Path(folder), by, BY_NAME[kind])
+        folder, word, by, kind, part = command
+        number, count = map(int, part.split(":"))
+        facts = child.answer(UserFile(word), Path(folder), by, BY_NAME[kind], part=(number, count))
         return CompletedProcess(command, 0, json.dumps(facts), "")
 
     children = SimpleNamespace(python=lambda _, *words: words, finished=finished)

@@ -1,0 +1,362 @@
+"""What `doctor FOLDER` does: reads every shader file below a folder once, and says in one table what its pairs lose."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+from ...encodings.codecs.codec import Codec
+from ...encodings.codecs.variants import HALF_NAME
+from ...encodings.storages.storage import BITS_32, STORAGES, Storage
+from ...reports import tables
+from ..ground.compilers.lines import without_comments
+from ..ground.machine.cores import on_all_cores
+from ..ground.machine.systems import forks
+from ..ground.options.option import Sources
+from ..ground.options.source_options import in_names
+from ..ground.options.words import Given
+from ..ground.output.errors import MissingError, SeveralEncodersError, UsageError, tell
+from ..ground.output.writing import check_page, check_writable, whole_file, write_text
+from ..ground.user_files import ENDINGS, UserFile
+from ..keep.row_files import check_rows, write
+from ..shaders.languages.pairs import NO_PAIR, role, stem
+from ..subjects.codecs.user_encodings import ANY, Examined, OneFunctionError, examined
+from ..tables.pick import measure as pick
+from ..tables.pick.answer import BEST, answered, largest, mean, places_of
+from ..tables.pick.prices import Costs
+from ..tables.pick.table import PickOptions
+from ..tables.pick.work import questions
+from ..tables.quality.packed import best_columns
+from ..tables.table import Row
+from .examine import COUNT, FOR_PEOPLE, bulleted, row_of
+
+# Folders that hold no sources of the engine's own.
+SKIPPED = frozenset(("node_modules", "build", "bin", "obj", "Intermediate", "Library"))
+MOST_FILES, MOST_PAIRS = 20_000, 8
+# A function where it is defined.
+_DEFINED = re.compile(r"(?:\bfn\s+|\b\w[\w<>]*\s+)(\w+)\s*\([^;{}]*\)\s*(?:->\s*[\w<>]+\s*|:\s*\w+\s*)?\{")
+# Codes are as good as the best one up to this share of its mean error. Of those that pack themselves the best one is
+# found by its error alone.
+AS_GOOD, AS_GOOD_PACKED = 1.06, 1.26
+FAMILY = "navi21"
+BY_DOMAIN: Mapping[str, str | None] = MappingProxyType({"sphere": None, "hemisphere": "tangent", "view": "view"})
+# A decoder whose texels a sampler has mixed, and a format of normals that converts colours.
+_FILTERED = r"\b{}\s*\(\s*\w+\.Sample(?:Level|Grad|Bias)?\s*\(\s*(\w*(?:linear|aniso)\w*)"
+_SRGB = re.compile(r"\b\w*(?:normal|gbuffer)\w*\b[^;\n]*\b(\w*srgb\w*)", re.I)
+COLUMNS = ("file", "functions", "storage", "mean_deg", "largest_deg", "slots", "best", "best_mean_deg", "best_slots")
+# How a patch begins, so that another one may take its place.
+PATCH = "Codes of normals by normalbench doctor"
+
+
+@dataclass
+class Pair:
+    """An encoder and its decoder.
+
+    Attributes:
+        file: from the folder on; of two, both.
+        word: it, as it is named on the command line.
+        looked: what a close look found.
+        storage: what its code lies in.
+        row: its figures.
+        findings: what is likely wrong, lines.
+    """
+
+    file: str
+    word: str
+    looked: Examined
+    storage: Storage
+    row: Row = field(default_factory=dict)
+    findings: list[str] = field(default_factory=list)
+
+    @property
+    def functions(self) -> str:
+        """ENCODE:DECODE."""
+        return self.looked.functions
+
+
+@dataclass
+class Other:
+    """A file that speaks of a pair and has none that can be measured.
+
+    Attributes:
+        file: from the folder on.
+        why: why not.
+        lone: its encoder or its decoder, where the other one is missing.
+        findings: what is likely wrong, lines.
+    """
+
+    file: str
+    why: str
+    lone: OneFunctionError | None = None
+    findings: list[str] = field(default_factory=list)
+
+    @property
+    def functions(self) -> str | None:
+        """The name of its only function."""
+        return self.lone.function if self.lone else None
+
+
+def examine_folder(
+    folder: Path,
+    format: str,
+    output: Path | None,
+    storage: Storage | None = None,
+    diff: Path | None = None,
+    report: Path | None = None,
+    sources: Mapping[str, Any] = MappingProxyType({}),
+) -> int:
+    """Write the table of a folder's pairs, and what is likely wrong below it.
+
+    Args:
+        storage: what every code lies in; None for what each implies.
+        diff: a file for a patch that puts the catalogue's best codes in place of worse ones; None for none.
+        report: where a page goes; None for none.
+        sources: how files are read, by options of `Sources`.
+
+    Returns:
+        the exit status: 1 where something is likely wrong.
+
+    Raises:
+        UsageError: there is no pair, or something cannot be written.
+    """
+    check_page(report)
+    if diff:
+        check_writable(diff, mark=PATCH.encode())
+    files = list(files_below(folder))
+    candidates = [path for path in files if may_hold_a_pair(path)]
+    if not candidates:
+        raise UsageError(f"{folder}: none of its {len(files)} shader files defines a function that encodes or decodes")
+    look = partial(_looked, folder, storage)
+    looks = on_all_cores(look, [_word(path, sources) for path in candidates], forks.stop)
+    everything = [each for several in looks for each in several]
+    others = [each for each in everything if isinstance(each, Other)]
+    pairs = [each for each in everything if isinstance(each, Pair)]
+    pairs += _across_files(folder, storage, others, pairs)
+    for pair in pairs:
+        pair.findings += _of_target(folder / pair.file, pair.functions)
+    _measure([pair for pair in pairs if pair.looked.is_measurable])
+    patch = _patch(folder, pairs) if diff or report else ""
+    told = Told(folder, len(files), [*pairs, *others])
+    _write(told, format, output)
+    if diff:
+        _save(diff, patch)
+        tell(f"the patch is in {diff}; nothing is applied")
+    if report:
+        from ...reports.page.folder import folder_html
+
+        _save(report, folder_html(str(folder), told.lead, told.measured, told.lines, patch))
+        tell(f"the page is in {report}")
+    return int(any(each.findings for each in (*pairs, *others)))
+
+
+def _patch(folder: Path, pairs: Sequence[Pair]) -> str:
+    from .patch import patch_of
+
+    return patch_of(folder, pairs)
+
+
+def _save(path: Path, text: str) -> None:
+    with whole_file(path) as partial_file:
+        partial_file.write_text(text, encoding="utf-8", newline="")
+
+
+def files_below(folder: Path) -> Iterator[Path]:
+    """The shader files below a folder, in order; hidden folders and those of other people's packages are left out.
+
+    Raises:
+        UsageError: there are too many.
+    """
+    count = 0
+    for path in sorted(folder.rglob("*")):
+        parts = path.relative_to(folder).parts
+        is_left_out = any(part in SKIPPED or part.startswith(".") for part in parts)
+        if path.suffix.lower() in ENDINGS and not is_left_out and path.is_file():
+            count += 1
+            if count > MOST_FILES:
+                raise UsageError(f"{folder}: it has more than {MOST_FILES} shader files; name a folder below it")
+            yield path
+
+
+def may_hold_a_pair(path: Path) -> bool:
+    """Whether a file defines a function that encodes or decodes by its name."""
+    return any(map(role, _DEFINED.findall(_text(path))))
+
+
+def _text(path: Path) -> str:
+    try:
+        return without_comments(path.read_text(encoding="utf-8", errors="replace"))
+    except OSError:
+        return ""
+
+
+def _word(path: Path, sources: Mapping[str, Any]) -> str:
+    (word,) = in_names({"encoding": (str(path),), **vars(Sources(**sources))})["encoding"]
+    return str(word)
+
+
+def _looked(folder: Path, storage: Storage | None, word: str) -> list[Pair | Other]:
+    """The pairs of a file, or why it has none; nothing where it only seemed to have one."""
+    path = UserFile(word).path
+    file = path.relative_to(folder).as_posix()
+    try:
+        return [_pair(file, word, storage)]
+    except SeveralEncodersError as error:
+        words = [UserFile(word).with_pair(pair).word for pair in error.pairs]
+        return [each for pair in words[:MOST_PAIRS] for each in _looked(folder, storage, pair)]
+    except (UsageError, MissingError) as error:
+        why = str(error).removeprefix(f"{path}: ")
+        return [] if NO_PAIR in why else [Other(file, why, error if isinstance(error, OneFunctionError) else None)]
+
+
+def _pair(file: str, word: str, storage: Storage | None) -> Pair:
+    looked = examined(UserFile(word), ANY)
+    # Two files may have codes of one name.
+    named = replace(looked.encoding, name=f"{file}:{looked.functions}", functions=looked.encoding.prefix)
+    looked = looked._replace(encoding=named)
+    return Pair(file, word, looked, storage or implied_storage(looked), findings=list(looked.wrong))
+
+
+def implied_storage(looked: Examined) -> Storage:
+    """What a code lies in, as far as it says: the steps that it rounds to itself, else 8 bits a number."""
+    encoding, lattice = looked.encoding, looked.lattice
+    if encoding.is_packed:
+        return BITS_32
+    size = encoding.components
+    fitting = [each for each in STORAGES.values() if lattice and each.channels >= size and lattice.is_of(each, size)]
+    if fitting:
+        return min(fitting, key=lambda each: each.channels)
+    sign = "" if encoding.is_unit or lattice else "_snorm"
+    return STORAGES[("rg8" if size == 2 else "rgba8") + sign]
+
+
+def _across_files(
+    folder: Path, storage: Storage | None, others: Sequence[Other], pairs: Sequence[Pair]
+) -> Iterator[Pair]:
+    """Pairs of an encoder and a decoder in two files. Readers that are not of their writer's code get a finding."""
+    lone = [(each, each.lone) for each in others if each.lone]
+    writers = {stem(one.function): (other, one) for other, one in lone if one.side == "encode"}
+    for other, reader in ((other, one) for other, one in lone if one.side == "decode"):
+        if stem(reader.function) not in writers:
+            other.findings += _disagreements(reader, pairs)
+            continue
+        writer, wrote = writers[stem(reader.function)]
+        word = f"{folder / writer.file}:{wrote.function},{folder / other.file}:{reader.function}"
+        try:
+            yield _pair(f"{writer.file}, {other.file}", word, storage)
+        except (UsageError, MissingError) as error:
+            other.findings.append(f"{reader.function} does not undo {wrote.function} of {writer.file}: {error}")
+
+
+def _disagreements(reader: OneFunctionError, pairs: Sequence[Pair]) -> Iterator[str]:
+    for pair in pairs:
+        writes, wrote = pair.functions.partition(":")[0], pair.looked.like
+        if stem(writes) == stem(reader.function) and wrote and reader.like and wrote not in reader.like:
+            yield f"{reader.function} reads {reader.like[0]}, but {writes} of {pair.file} writes {wrote}: they disagree"
+
+
+def _of_target(path: Path, functions: str) -> Iterator[str]:
+    """What is likely wrong with how the code's texels are read, in the file itself."""
+    text, decode = _text(path), functions.rpartition(":")[2].partition("(")[0]
+    if match := re.search(_FILTERED.format(re.escape(decode)), text, re.I):
+        line = text.count("\n", 0, match.start()) + 1
+        yield f"line {line}: {match[1]} mixes codes before {decode}; across seams that gives other normals. Load texels"
+    if match := _SRGB.search(text):
+        line = text.count("\n", 0, match.start()) + 1
+        yield f"line {line}: {match[1]} of normals: sRGB converts codes when they are written and read"
+
+
+def _measure(pairs: Sequence[Pair]) -> None:
+    """Errors, prices, and the best code of the catalogue in the same storage."""
+    by_question: dict[tuple[str, str], list[Pair]] = {}
+    for pair in pairs:
+        codec = Codec(pair.looked.encoding, pair.storage)
+        if codec.misfit:
+            pair.findings.append(f"{pair.storage.name} does not hold it: {codec.misfit}")
+        elif codec.encoding.is_packed:
+            pair.row = _packed_figures(codec)
+        else:
+            by_question.setdefault((pair.storage.name, codec.encoding.domain), []).append(pair)
+    for (storage, domain), asked in by_question.items():
+        rows = _picked(storage, BY_DOMAIN[domain], asked)
+        best = next((row for row in rows if BEST in places_of(row)), None)
+        by_name = {row["encoding"].removesuffix(HALF_NAME): row for row in rows}
+        for pair in asked:
+            pair.row = _figures(by_name[pair.looked.encoding.name], best)
+
+
+def _picked(storage: str, domain: str | None, pairs: Sequence[Pair]) -> list[Row]:
+    """The rows of `pick` in a storage, with pairs to compare with, by their angles alone."""
+    encodings = (pair.looked.encoding for pair in pairs)
+    against = tuple(Given(encoding.name, encoding) for encoding in encodings)
+    (cases,) = questions(PickOptions(storage=(storage,), against=against, domain=domain, count=COUNT))
+    (rows,) = pick.rows([cases], None, None, lambda _: None)
+    return answered(rows)
+
+
+def _packed_figures(codec: Codec) -> Row:
+    row, slots = row_of(codec) | best_columns(codec), Costs([codec], (FAMILY,)).of(codec).get("slots_once")
+    figures = {"mean_deg": row["angle_mean_deg"], "largest_deg": row["angle_max_deg"], "slots": slots}
+    if row["best_codec"] is None or row["angle_mean_deg"] <= AS_GOOD_PACKED * row["best_mean_deg"]:
+        return figures | {"best": "as good"}
+    return figures | {"best": row["best_codec"], "best_mean_deg": row["best_mean_deg"]}
+
+
+def _figures(row: Row, best: Row | None) -> Row:
+    error, least = mean(row), mean(best) if best else None
+    figures = {"mean_deg": error, "largest_deg": largest(row), "slots": row["slots_once"]}
+    if best is None or error is None or least is None:
+        return figures
+    if best["encoding"] == row["encoding"] or error <= AS_GOOD * least:
+        return figures | {"best": "as good"}
+    name = best["encoding"] if best["storage"] == row["storage"] else f"{best['encoding']} in {best['storage']}"
+    return figures | {"best": name, "best_mean_deg": least, "best_slots": best["slots_once"]}
+
+
+class Told:
+    """What is said of a folder's pairs.
+
+    Attributes:
+        rows: one for each pair, and for each file that speaks of one and has none.
+        measured: those of pairs that were measured, for people.
+        lines: what is likely wrong, and why others were not measured.
+        lead: how many there are, in a sentence.
+    """
+
+    def __init__(self, folder: Path, files: int, all_told: Sequence[Pair | Other]):
+        self.rows = [_row(each) for each in all_told]
+        shown = [row for row in self.rows if row["mean_deg"] is not None]
+        self.measured = [{name: row[name] for name in (*COLUMNS, "findings")} for row in shown]
+        named = ((f"{row['file']} {row['functions'] or ''}".rstrip(), row["says"]) for row in self.rows)
+        self.lines = [f"{name}: {says}" for name, says in named if says]
+        wrong = sum(bool(each.findings) for each in all_told)
+        better = sum(row["best_mean_deg"] is not None for row in shown)
+        count = f"{len(shown)} pair{'s' * (len(shown) != 1)} in {files} shader file{'s' * (files != 1)}"
+        self.lead = f"{count} of {folder.resolve().name or folder}: {wrong or 'none'} with findings, "
+        self.lead += f"{better or 'none'} with a better code of as many bits."
+
+
+def _row(told: Pair | Other) -> Row:
+    figures, storage, whys = ({}, None, [told.why]) if isinstance(told, Other) else (told.row, told.storage.name, [])
+    row = {"file": told.file, "functions": told.functions, "storage": storage}
+    row |= {name: figures.get(name) for name in COLUMNS[3:]}
+    return row | {"findings": len(told.findings), "says": "; ".join([*told.findings, *whys]) or None}
+
+
+def _write(told: Told, format: str, output: Path | None) -> None:
+    if format not in FOR_PEOPLE:
+        write(told.rows, format, output)
+        return
+    check_rows(output)
+
+    def text() -> str:
+        width = shutil.get_terminal_size((120, 40)).columns
+        table = [tables.written(told.measured, format, width, total=" ").rstrip()] if told.measured else []
+        return "\n\n".join([told.lead, *table, *([bulleted(told.lines, format)] if told.lines else [])]) + "\n"
+
+    write_text(text, output, is_checked=True)

@@ -1,0 +1,126 @@
+"""The patch of `doctor FOLDER --diff`: the catalogue's best code in place of a worse one, in the file's language."""
+
+from __future__ import annotations
+
+import difflib
+import re
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+from ...encodings.catalogue import ENCODINGS
+from ...encodings.codecs.codec import Codec
+from ..ground.compilers.lines import without_comments
+from ..ground.output.errors import MissingError, UsageError, tell
+from ..ground.user_files import UserFile
+from ..shaders.code.files import code_of
+from ..shaders.languages.embedded import shader_text
+from ..shaders.languages.items import Item, items
+from ..shaders.languages.language import name_of
+from ..subjects.codecs.user_encodings import examined
+from .examine import row_of
+from .folder import PATCH, Pair
+
+# How far the patched file may be off from the best code, as a share of its mean error.
+NEARLY = 0.02
+# What follows the functions that a patch has.
+_PACKING = "\n// The texel as an integer of 32 bits"
+_PARAMETER = re.compile(r"\(\s*(?:(\w+)\s*:|[^,():]*?(\w+)\s*(?:[,):\[]))")
+
+
+def patch_of(folder: Path, pairs: Sequence[Pair]) -> str:
+    """Return a patch for `git apply` or `patch -p1` in the folder: each change was measured, and says so above it.
+
+    Pairs that cannot be changed are named on standard error.
+    """
+    by_file: dict[str, list[Pair]] = {}
+    for pair in pairs:
+        if pair.row.get("best_mean_deg"):
+            by_file.setdefault(pair.file, []).append(pair)
+    return "".join([f"{PATCH}\n", *(_part_of(folder, file, several) for file, several in by_file.items())])
+
+
+def _part_of(folder: Path, file: str, pairs: Sequence[Pair]) -> str:
+    """The part of a file."""
+    try:
+        text = was = (folder / file).read_bytes().decode("utf-8")
+    except (OSError, ValueError) as error:
+        tell(f"{file} is not in the patch: {error}")
+        return ""
+    said: list[str] = []
+    for pair in pairs:
+        try:
+            patched = patched_text(text, pair)
+            mean, before, best = _mean_of(patched, folder / file, pair), pair.row["mean_deg"], pair.row["best"]
+        except (UsageError, MissingError) as error:
+            tell(f"{file} {pair.functions} is not in the patch: {error}")
+            continue
+        said.append(f"{file} {pair.functions}: {best}, {mean:.4g} degrees on average in place of {before:.4g}\n")
+        text = patched
+    before, after = (version.splitlines(keepends=True) for version in (was, text))
+    return "".join([*said, *difflib.unified_diff(before, after, f"a/{file}", f"b/{file}")])
+
+
+def _mean_of(patched: str, path: Path, pair: Pair) -> float:
+    """The mean error of a patched file. Raises UsageError where it is not that of the best code."""
+    with tempfile.TemporaryDirectory() as place:
+        copy = Path(place) / path.name
+        copy.write_bytes(patched.encode())
+        file = UserFile(pair.word)
+        settings = file.word.removeprefix(file.plain)
+        word = f"{copy}:{pair.functions}{settings}:include={path.parent.absolute()}"
+        mean = row_of(Codec(examined(UserFile(word)).encoding, pair.storage))["angle_mean_deg"]
+    wanted = pair.row["best_mean_deg"]
+    if mean is None or abs(mean - wanted) > NEARLY * wanted:
+        raise UsageError(f"with {pair.row['best']} it would have {mean} degrees in place of {wanted:.4g}")
+    return mean
+
+
+def patched_text(text: str, pair: Pair) -> str:
+    """Return a file's text with the best code in both functions of a pair.
+
+    Raises:
+        UsageError: it cannot be changed so; a sentence.
+    """
+    looked, best = pair.looked, ENCODINGS.get(pair.row["best"])
+    if best is None or (best.components, best.sign_bits) != (looked.encoding.components, 0):
+        raise UsageError(f"{pair.row['best']} has another number of components")
+    if shader_text(text, Path(pair.file).suffix.lower()) != text or "PROGRAM" in text:
+        raise UsageError("its functions lie in a block of something else")
+    language = {"GLSL": "glsl", "WGSL": "wgsl"}.get(name_of(UserFile(pair.word)), "hlsl")
+    prefix = f"nb_{best.name}"
+    code = code_of(Codec(best, pair.storage), language, prefix).body.partition(_PACKING)[0].rstrip()
+    places = {item.name: item for item in items(without_comments(text)) if item.function}
+    names = [name.rpartition("::")[2] for name in pair.functions.split(":") if name]
+    if len(names) != 2 or not {*names} <= {*places}:
+        raise UsageError("its functions are not in this file, or are given more than a normal and a code")
+    out, back = (" * 0.5 + 0.5", " * 2.0 - 1.0") if looked.encoding.is_unit else ("", "")
+    encode, decode = (places[name] for name in names)
+    calls = {
+        encode: f"{{ return {prefix}_encode({_parameter(text, encode)}){out}; }}",
+        decode: f"{{ return {prefix}_decode({_parameter(text, decode)}{back}); }}",
+    }
+    first = min(calls, key=lambda item: item.start)
+    start = _line_start(text, first)
+    is_there = f"{prefix}_encode(" in text
+    changes = [(item.body, item.end, call) for item, call in calls.items()]
+    changes += [] if is_there else [(start, start, f"{code}\n\n")]
+    ending = "\r\n" if "\r\n" in text else "\n"
+    for begin, end, words in sorted(changes, reverse=True):
+        text = text[:begin] + words.replace("\n", ending) + text[end:]
+    return text
+
+
+def _parameter(text: str, item: Item) -> str:
+    """The name of a function's first parameter."""
+    match = _PARAMETER.search(without_comments(text)[item.start : item.body])
+    if not match:
+        raise UsageError(f"the first parameter of {item.name} has no name")
+    return match[1] or match[2]
+
+
+def _line_start(text: str, item: Item) -> int:
+    """Where the line of a function's name begins."""
+    bare = without_comments(text)
+    name = re.compile(rf"\b{item.name}\s*\(").search(bare, item.start)
+    return bare.rfind("\n", 0, name.start() if name else item.start) + 1

@@ -1,0 +1,49 @@
+"""Shaders in files of something else: GLSL in strings of JavaScript, and the blocks of Stride's shader classes."""
+
+from __future__ import annotations
+
+import re
+
+from ...ground.compilers.lines import blank, without_comments
+
+SCRIPTS = (".js", ".mjs", ".ts")
+# `...` behind /* glsl */, and one that is all of a file.
+_MARKED = re.compile(r"/\*\s*glsl\s*\*/\s*`([^`]*)`", re.I)
+_BEFORE = r"\s*(?:export\s+default|(?:export\s+)?(?:const|let|var)\s+\w+\s*=)\s*"
+_WHOLE = re.compile(_BEFORE + r"`([^`]*)`\s*;?\s*(?:export[^`]*)?")
+_CLASS = re.compile(r"^[ \t]*(?:(?:public|internal|partial|abstract)\s+)*shader\s+\w+[^{};]*\{", re.M)
+# What Stride's functions have in front, and other languages do not.
+_OF_STRIDE = re.compile(r"^([ \t]*)((?:(?:override|abstract|stage|clone|static)\s+)+)", re.M)
+
+
+def shader_text(text: str, ending: str) -> str:
+    """Return what is a shader in a file's text, each line where it stood.
+
+    Args:
+        ending: of the file's name, in small letters.
+    """
+    if ending in SCRIPTS:
+        whole = _WHOLE.fullmatch(without_comments(text))
+        return only(text, [match.span(1) for match in ([whole] if whole else _MARKED.finditer(text))])
+    if ending == ".sdsl" and (blocks := [_block(text, match.end()) for match in _CLASS.finditer(text)]):
+        return _OF_STRIDE.sub(lambda match: match[1] + blank(match[2]), only(text, blocks))
+    return text
+
+
+def _block(text: str, start: int) -> tuple[int, int]:
+    """Where the inside of braces that begin at a place starts and ends."""
+    depth, bare = 1, without_comments(text)
+    for mark in re.finditer(r"[{}]", bare[start:]):
+        depth += 1 if mark[0] == "{" else -1
+        if not depth:
+            return start, start + mark.start()
+    return start, len(text)
+
+
+def only(text: str, spans: list[tuple[int, int]]) -> str:
+    """A text with blanks for what is in none of some spans."""
+    made, last = [], 0
+    for start, end in spans:
+        made += [blank(text[last:start]), text[start:end]]
+        last = end
+    return "".join([*made, blank(text[last:])])

@@ -1,0 +1,25 @@
+"""The page of a folder's codes of normals."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+from .. import tables
+from .page import base, template
+
+
+class Head(NamedTuple):
+    """What stands above a column."""
+
+    title: str
+    numeric: bool
+
+
+def folder_html(folder: str, lead: str, rows: Sequence[Mapping[str, Any]], lines: Sequence[str], patch: str) -> str:
+    """Return the page: a sentence, a table of these rows, findings, and a patch; any of them may be empty."""
+    shown = [dict(row) for row in rows]
+    heads = [Head(tables.title_of(name), tables.is_numeric(shown, name)) for name in (shown[0] if shown else ())]
+    cells = [[tables.text_of(value) for value in row.values()] for row in shown]
+    about = {"folder": folder, "lead": lead, "heads": heads, "shown": cells, "lines": lines, "patch": patch}
+    return template("folder.html.j2").render(about | base(["tables.js"]))

@@ -1,0 +1,150 @@
+"""`doctor FOLDER`: a made-up engine is read once, in one table, and its patch is measured again."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+from normalbench.bench.door.cli import app as cli
+
+pytestmark = pytest.mark.usefixtures("gl", "slang", "radv")
+
+OCTAHEDRAL = """
+float2 PackDir(float3 n) {
+    float2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
+    return n.z >= 0.0 ? p : (1.0 - abs(p.yx)) * signs_of(p);
+}
+float3 UnpackDir(float2 e) {
+    float3 n = float3(e, 1.0 - abs(e.x) - abs(e.y));
+    n.xy -= signs_of(n.xy) * max(-n.z, 0.0);
+    return normalize(n);
+}
+"""
+SIGNS = "float2 signs_of(float2 v) { return float2(v.x >= 0.0 ? 1.0 : -1.0, v.y >= 0.0 ? 1.0 : -1.0); }\n"
+SPHEREMAP = """// Spheremap, as an old engine has it.\r
+float2 EncodeNormal(float3 normal)\r
+{\r
+    return normal.xy / sqrt(normal.z * 8.0 + 8.0) + 0.5;\r
+}\r
+\r
+float3 DecodeNormal(float2 enc)\r
+{\r
+    float2 fenc = enc * 4.0 - 2.0;\r
+    float f = dot(fenc, fenc);\r
+    return float3(fenc * sqrt(1.0 - f / 4.0), 1.0 - f / 2.0);\r
+}\r
+"""
+TEMPLATE = """
+vec2 encodeDir(vec3 n) { return n.xy * inversesqrt(n.z * 8.0 + 8.0) + 0.5; }
+vec3 decodeDir(vec2 e) {
+    vec2 f = e * 4.0 - 2.0;
+    return vec3(f * sqrt(1.0 - dot(f, f) / 4.0), 1.0 - dot(f, f) / 2.0);
+}
+"""
+WHOLE = SIGNS + OCTAHEDRAL
+STRIDE = """namespace A.B
+{
+    shader Store : Base
+    {
+        override float3 EncodeNormal(float3 n) { return n * 0.5 + 0.5; }
+        float3 DecodeNormal(float3 c) { return normalize(c * 2 - 1); }
+    };
+}
+"""
+READER = """float2 screen_of(float3 p) { return p.xy / p.z; }
+float3 OtherNormal_Decode(float2 e) {
+    float3 n = float3(e, 1.0 - abs(e.x) - abs(e.y));
+    float k = max(-n.z, 0.0);
+    n.x += n.x >= 0.0 ? -k : k;
+    n.y += n.y >= 0.0 ? -k : k;
+    return normalize(n);
+}
+"""
+LOST = """#include "Packages/core/Packing.hlsl"
+float2 EncodeNormal(float3 n) { return PackOct(n); }
+float3 DecodeNormal(float2 e) { return UnpackOct(e); }
+"""
+FILES = {
+    "deferred/pack.hlsl": WHOLE,
+    "deferred/old.hlsl": SPHEREMAP,
+    # Found from the top of the repository, as its author's compiler does.
+    "deferred/modules.slang": "import common.signs;" + OCTAHEDRAL,
+    "common/signs.slang": "module signs;\npublic " + SIGNS,
+    "common/signs.slangh": SIGNS,
+    "deferred/header.slang": '#include "../common/signs.slangh"' + OCTAHEDRAL,
+    # Functions that have names of the language's, one that kills a compiler, and a word that none is given.
+    "other/own.hlsl": "bool2 and(bool2 a, bool2 b) { return bool2(a.x && b.x, a.y && b.y); }\n" + WHOLE,
+    "other/endless.slang": "float again(float x = again()) { return x; }\n" + WHOLE,
+    "other/intrinsic.slang": "__intrinsic_op(cmpGT) bool above(float a, float b);\n" + WHOLE,
+    "web/normals.js": f"import {{ x }} from './x.js';\nexport const glsl = /* glsl */`{TEMPLATE}`;\n",
+    "web/build/made.js": f"export const glsl = /* glsl */`{TEMPLATE}`;\n",
+    "stride/Store.sdsl": STRIDE,
+    "split/write.hlsl": "float2 StoreNormal_Encode(float3 n) { return n.xy / sqrt(n.z * 8.0 + 8.0) + 0.5; }\n",
+    "split/read.hlsl": READER,
+    "lost/unity.hlsl": LOST,
+    "post/blur.hlsl": "float4 blur(float4 a, float4 b) { return 0.5 * (a + b); }\n",
+}
+
+
+@pytest.fixture(scope="module")
+def engine(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("engine")
+    for name, text in FILES.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(text.encode())
+    (folder / ".git").mkdir()
+    return folder
+
+
+def doctor(folder, *words: str) -> list[dict]:
+    file = folder.parent / f"{folder.name}.json"
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(sys, "argv", ["normalbench", "doctor", str(folder), *words, "-o", str(file)])
+        assert cli.main() == 1
+    return json.loads(file.read_text())
+
+
+@pytest.fixture(scope="module")
+def told(engine, tmp_path_factory):
+    """By file its row, and the patch."""
+    patch = tmp_path_factory.mktemp("patch") / "best.patch"
+    rows = doctor(engine, "--diff", str(patch), "--report", str(patch.with_name("page.html")))
+    return {row["file"]: row for row in rows}, patch
+
+
+def test_each_pair_of_a_folder_has_a_row(told):
+    """What the pair does not reach does not matter; a decoder beside a function of something else is no pair."""
+    rows, _ = told
+    octahedral = {name for name, row in rows.items() if row["mean_deg"] == pytest.approx(0.337, abs=0.001)}
+    assert octahedral == {
+        *("deferred/pack.hlsl", "deferred/modules.slang", "deferred/header.slang"),
+        *("other/own.hlsl", "other/endless.slang", "other/intrinsic.slang"),
+    }
+    assert rows["stride/Store.sdsl"]["mean_deg"] == pytest.approx(0.170, abs=0.001)
+    assert all(rows[name]["best"] == "octahedral" for name in ("deferred/old.hlsl", "web/normals.js"))
+    assert rows["deferred/old.hlsl"]["mean_deg"] > 0.35
+    assert not {"web/build/made.js", "post/blur.hlsl", "common/signs.slang"} & {*rows}
+    assert "OtherNormal_Decode is the decode of octahedral" in rows["split/read.hlsl"]["says"]
+    assert not rows["split/read.hlsl"]["findings"]
+
+
+def test_a_pair_that_is_not_compiled_says_which_include_is_missing(told):
+    rows, _ = told
+    said = rows["lost/unity.hlsl"]["says"]
+    assert "PackOct" in said and "Packages/core/Packing.hlsl is not next to unity.hlsl" in said
+    assert "--include Packages=FOLDER" in said and rows["lost/unity.hlsl"]["mean_deg"] is None
+
+
+def test_the_patch_is_applied_and_measured_again(told, engine):
+    """In HLSL with the ends of lines that the file has; what it cannot change stays."""
+    _, patch = told
+    subprocess.run(["git", "init", "-q"], cwd=engine, check=True)
+    subprocess.run(["git", "apply", str(patch)], cwd=engine, check=True)
+    text = (engine / "deferred/old.hlsl").read_bytes().decode()
+    assert "nb_octahedral_encode(normal) * 0.5 + 0.5" in text and "\n" not in text.replace("\r\n", "")
+    (row,) = [row for row in doctor(engine) if row["functions"] == "EncodeNormal:DecodeNormal" and "old" in row["file"]]
+    assert row["mean_deg"] == pytest.approx(0.336, abs=0.005) and row["best"] == "as good"
+    page = patch.with_name("page.html").read_text()
+    assert "nb_octahedral_encode" in page and "deferred/old.hlsl" in page
