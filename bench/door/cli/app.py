@@ -7,6 +7,7 @@ catalogue, so that an encoding that cannot be imported is said in one line.
 from __future__ import annotations
 
 import atexit
+import inspect
 import io
 import os
 import re
@@ -38,9 +39,19 @@ from ...keep.row_files import write
 from ...run.workers.words import check_place
 from ...tables.registry import TABLES
 from ...tables.table import Group
-from .commands import Commands, Grouped, OnOption, command_with, table_info, with_options
+from . import shared
+from .commands import (
+    HELP_ALL,
+    Commands,
+    Grouped,
+    command_with,
+    parameter_of,
+    table_info,
+    with_options,
+    with_parameters,
+)
 from .device_commands import add_devices
-from .formats import Format, FormatOption, format_of
+from .formats import Format, format_of
 from .history_commands import add_history
 from .inputs import keep_inputs
 from .renderdoc_commands import add_renderdoc
@@ -83,7 +94,6 @@ def _version(is_asked: bool) -> None:
         raise typer.Exit
 
 
-@program_alone.callback()
 def every_command(
     _is_asked: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="The version.")
@@ -92,8 +102,9 @@ def every_command(
         bool, typer.Option(NO_CACHE, help="Neither read nor keep instruction counts and compiled programs.")
     ] = False,
     anew: Annotated[bool, typer.Option(ANEW, help="Measure again what pick, budget and cost have kept.")] = False,
+    **typed: Any,
 ) -> None:
-    """Measures what compact normals and thin G-buffers cost: encodings in JAX and GLSL, stored as hardware does."""
+    """Measure how accurate and how expensive compact normals and G-buffers are."""
     if no_cache:
         from ...ground.output import cache
 
@@ -102,9 +113,17 @@ def every_command(
         from ...ground.output import cache
 
         cache.measure_anew()
+    shared.given.clear()
+    shared.given.update({name: value for name, value in typed.items() if value is not None})
 
 
-PlainOutput = Annotated[Path | None, typer.Option("-o", "--output", help="Write the rows to this file.")]
+def _with_shared(command: Callable[..., None]) -> Any:
+    """Give the program the options that its commands share."""
+    own = [p for p in inspect.signature(command, eval_str=True).parameters.values() if p.name != "typed"]
+    return with_parameters(command, [*own, *shared.parameters(parameter_of)])
+
+
+program_alone.callback()(_with_shared(every_command))
 
 
 @app.command("list", rich_help_panel=Group.MACHINE)
@@ -116,10 +135,10 @@ def list_command(
             "environments, lights, or all."
         ),
     ] = "all",
-    format: FormatOption = None,
-    output: PlainOutput = None,
+    format: Format | None = None,
+    output: Path | None = None,
 ) -> None:
-    """What there is: encodings, storages, codes of other kinds, sets, layouts, pipelines, effects, scenes, lights."""
+    """List encodings, storages, layouts, scenes and the rest."""
     from ...subjects.names.listing import listing
 
     write(listing(names(what)), format_of(format, output), output, SPARED, by="kind")
@@ -147,15 +166,16 @@ def doctor(
         Path | None,
         typer.Option("--diff", help="Of a folder: write a patch here that puts better codes in. Nothing is applied."),
     ] = None,
-    report: Annotated[Path | None, typer.Option("--report", help="Of a folder: write its page here, in HTML.")] = None,
-    format: FormatOption = None,
-    output: PlainOutput = None,
+    report: Path | None = None,
+    format: Format | None = None,
+    output: Path | None = None,
     **sources: Any,
 ) -> int:
-    """What this machine has; or what is likely wrong with an encoding, with exit status 1 if anything is.
+    """Describe this machine, or check a shader file or a folder of them.
 
-    Without a file: versions, cores, the GL device and how it rounds. With one: what its encode and decode do to
-    directions before any storage. With a folder: a line for each pair below it, with the best code of as many bits.
+    The exit status is 1 if a problem is found. Without a file: versions, cores, the GL device and how it rounds. With
+    one: what its encode and decode do to directions before any storage. With a folder: a line for each pair below it,
+    with the best code of as many bits.
     """
     require_memory()
     if file is None and plot is None and not any((storage, domain, diff, report, *sources.values())):
@@ -179,10 +199,6 @@ def _run(options: Any, output: Path | None, on: str | None, commit: str | None) 
     return run_command(options, output, on, commit)
 
 
-RunOutput = Annotated[
-    Path | None,
-    typer.Option("-o", "--output", help="Results folder: new, or of a run to go on with. Default: results/<time>."),
-]
 CommitOption = Annotated[
     str | None,
     typer.Option(
@@ -197,7 +213,7 @@ def _run_info() -> CommandInfo:
     """Return the command `run`, without its options: they are those of all tables."""
     return CommandInfo(
         rich_help_panel=Group.ANSWER,
-        help="Many tables into a results folder with its page: by default what people ship, in every table.\n\n"
+        help="Measure the default suite into a folder, with a report page.\n\n"
         "A run that was stopped goes on when the same command is run again. With -o a finished run is extended.",
         callback=_run_with_options,
     )
@@ -206,14 +222,14 @@ def _run_info() -> CommandInfo:
 def _run_with_options() -> Callable[..., int]:
     from ..run_options import RunOptions
 
-    return command_with(RunOptions, _run, output=RunOutput, on=OnOption, commit=CommitOption)
+    return command_with(RunOptions, _run, output=Path | None, on=str | None, commit=CommitOption)
 
 
 @app.command(rich_help_panel=Group.MACHINE)
 def worker(
     scheduler: Annotated[str, typer.Argument(help="The address of a dask scheduler.", metavar="tcp://HOST:PORT")],
 ) -> int:
-    """A worker that measures for the commands that name this scheduler in --on, until it is interrupted."""
+    """Measure for commands that name this scheduler in --on, until interrupted."""
     from ...run.workers.worker import worker_command
 
     return worker_command(scheduler)
@@ -225,26 +241,22 @@ def _code(options: Any, format: Format | None, output: Path | None) -> int:
     return code_command(options, format_of(format, output if options.check else None), output)
 
 
-CodeOutput = Annotated[
-    Path | None,
-    typer.Option("-o", "--output", help="Write the code into this folder; with --check the rows to this file."),
-]
 app.command(
     "code",
     rich_help_panel=Group.OWN,
-    help="Code of any codec to paste into an engine: encode, pack, unpack and decode, run and compared before it is "
-    "written.",
+    help="Write verified shader functions for an encoding in a storage.\n\n"
+    "Encode, pack, unpack and decode are run and compared with the catalogue before they are written.",
     epilog="Example: normalbench code octahedral --storage rgb10a2 --to hlsl",
-)(command_with(CodeOptions, _code, format=FormatOption, output=CodeOutput))
+)(command_with(CodeOptions, _code, format=Format | None, output=Path | None))
 
 
 @app.command("columns", rich_help_panel=Group.MACHINE)
 def columns_command(
     table: Annotated[str, typer.Argument(help="A table, or several, comma-separated, or all.")],
-    format: FormatOption = None,
-    output: PlainOutput = None,
+    format: Format | None = None,
+    output: Path | None = None,
 ) -> None:
-    """What a table's columns mean: definitions, units, which way is better."""
+    """Explain the columns of a table: definitions, units, which way is better."""
     from ...tables.columns import columns
 
     write(columns(names(table)), format_of(format, output), output, by="table")
@@ -264,10 +276,13 @@ def check(
         bool,
         typer.Option("--write-baseline", help="Write the baselines that gates name instead of comparing with them."),
     ] = False,
-    format: FormatOption = None,
-    output: PlainOutput = None,
+    format: Format | None = None,
+    output: Path | None = None,
 ) -> int:
-    """Hold figures to a team's limits: pass or fail for each, exit status 1 where one fails."""
+    """Check figures against a team's thresholds.
+
+    The exit status is 1 if any fails.
+    """
     from ..gates.check_command import check_command
 
     return check_command(gates, files or (), run, write_baseline, format_of(format, output), output)
@@ -284,12 +299,13 @@ def compare(
     before: Annotated[Path, typer.Argument(help="A results folder.")],
     after: Annotated[Path, typer.Argument(help="Another one.")],
     fail_on: Annotated[FailOn, typer.Option("--fail-on", help="What makes the exit status 1.")] = FailOn.never,
-    format: FormatOption = None,
-    output: PlainOutput = None,
+    format: Format | None = None,
+    output: Path | None = None,
 ) -> int:
-    """What changed between two runs, the worst first: figures exactly, times only where it is more than chance.
+    """Compare two runs, the largest changes first.
 
-    For people at most 20 lines; JSON and CSV have every figure that differs.
+    Figures are compared exactly, timings only if the change exceeds the noise. For people at most 20 lines; JSON and
+    CSV have every figure that differs.
     """
     from ...keep.compare_command import compare_command
 
@@ -301,7 +317,7 @@ def show(
     run: Annotated[Path, typer.Argument(help="A results folder.", metavar="RUN")],
     tables: Annotated[str, typer.Argument(help="Tables to print, comma-separated, or all.", metavar="TABLE")] = "",
 ) -> None:
-    """Print what a run found: the verdict of each table, or a table."""
+    """Print the verdict of each table of a run, or a table."""
     from ...show.show_command import show_command
 
     show_command(run, names(tables))
@@ -325,12 +341,9 @@ def report(
     charts: Annotated[
         bool, typer.Option("--charts", help="Also write every chart as PNG and SVG, into the folder charts next to it.")
     ] = False,
-    output: Annotated[
-        Path | None,
-        typer.Option("-o", "--output", help="The page. Default: report.html in the folder."),
-    ] = None,
+    output: Path | None = None,
 ) -> None:
-    """A run on one page: the answer, tables, pictures, charts, and how each figure was measured. Opens offline.
+    """Write a run as one page that opens offline.
 
     The run's own files stay as they are.
     """
@@ -453,16 +466,19 @@ def _hint(said: str) -> str:
 def _words(words: list[str], group: Any) -> list[str]:
     """What was typed, with each option once. Raises UsageError."""
     own = ["-h", "--help", *(flag for option in group.params for flag in option.opts)]
-    # It may stand anywhere.
+    # They may stand anywhere.
+    words = ["--help" if word == HELP_ALL else word for word in words]
     anywhere = [flag for flag in (NO_CACHE, ANEW) if flag in words]
     words = [word for word in words if word not in anywhere]
     check_begins_with_command(words, group.list_commands, own)
     if not (words and words[0] in group.commands):
         return anywhere + words
-    options = group.commands[words[0]].params
-    typed = added_up(words[1:], options)
-    keep_inputs(typed, options)
-    return [*anywhere, words[0], *typed]
+    command = group.commands[words[0]]
+    taken = [option for option in group.params if option.name in command.taken]
+    typed = added_up(words[1:], [*command.params, *taken])
+    keep_inputs(typed, [*command.params, *taken])
+    front, rest = shared.moved_to_the_front(typed, command.params, taken)
+    return [*anywhere, *front, words[0], *rest]
 
 
 def _without_output(words: list[str]) -> None:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterator, Mapping
+import sys
+import textwrap
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from itertools import groupby
 from pathlib import Path
@@ -17,40 +19,61 @@ from typer.models import CommandInfo
 from ...ground.options.counts import whole_number
 from ...ground.options.option import Field, Reading, fields_of
 from ...ground.output.writing import check_is_folder, check_page
-from ...run.workers.words import HELP, check_place
+from ...run.workers.words import check_place
 from ...tables.registry import TABLES
 from ...tables.table import Group, Table
-from .formats import WRITTEN, Format, FormatOption, OutputOption, format_of
+from .formats import Format, format_of
 from .names import NAMES, completion_of
+from .shared import WRITTEN, marks, split
 
 # Panels of a command's help.
 MEASURED, FILES = "What is measured", "How files of normals are read"
-ReportOption = Annotated[
-    Path | None,
-    typer.Option(
-        "--report",
-        help="Write a page of this table, with its charts and pictures, to this file.",
-        rich_help_panel=WRITTEN,
-    ),
-]
 
 
-OnOption = Annotated[str | None, typer.Option("--on", help=HELP, metavar="WORKERS")]
+MOST_OPTIONS = 12
+HELP_ALL = "--help-all"
+
+
+def is_told_all() -> bool:
+    """Whether every option is to be shown."""
+    return HELP_ALL in sys.argv
 
 
 class Command(TyperCommand):
-    """A command whose help has its options in groups."""
+    """A command whose help has its options in groups.
+
+    Attributes:
+        taken: the names of the program's options that it takes.
+    """
+
+    taken: Sequence[str] = ()
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
-        """Write each group of options under its title."""
+        """Write each group of options under its title: all of them, or the first MOST_OPTIONS, those of the example
+        before others."""
+        options = [param for param in self.get_params(ctx) if param.param_type_name == "option"]
+        words = (self.epilog or "").split()
+        first = sorted(options, key=lambda option: not {*option.opts} & {*words})[:MOST_OPTIONS]
         groups: dict[str, list[tuple[str, str]]] = {}
         for param in self.get_params(ctx):
             title = getattr(param, "rich_help_panel", None) or f"{param.param_type_name.capitalize()}s"
-            if record := param.get_help_record(ctx):
+            is_shown = is_told_all() or param in first or param not in options
+            if is_shown and (record := param.get_help_record(ctx)):
                 groups.setdefault(title, []).append(record)
         for title, records in groups.items():
             with formatter.section(title):
                 formatter.write_dl(records)
+        self._write_others(ctx, formatter, len(options) - len(first))
+
+    def _write_others(self, ctx: Any, formatter: Any, left_out: int) -> None:
+        """Say which options there are besides."""
+        every = ctx.parent.command.params if ctx.parent else ()
+        flags = [max(option.opts, key=len) for option in every if option.name in self.taken]
+        more = [f"{left_out} more"] * bool(left_out and not is_told_all())
+        if flags or more:
+            formatter.write_paragraph()
+            said = f"Also: {', '.join([*flags, *more])}. See normalbench {self.name} {HELP_ALL}."
+            formatter.write(f"{textwrap.fill(said, formatter.width)}\n")
 
 
 class Commands(Mapping[str, Any]):
@@ -72,10 +95,12 @@ class Commands(Mapping[str, Any]):
 
     def __getitem__(self, name: str) -> Any:
         info = self.info(name)
-        if name in self._late and info.callback:
-            info.callback = info.callback()
-        info.name, info.cls = name, Command
-        return get_command_from_info(info, pretty_exceptions_short=False, rich_markup_mode=None)
+        made = info.callback() if name in self._late and info.callback else info.callback
+        callback, taken = split(made)  # pyright: ignore[reportArgumentType]
+        named = {**vars(info), "name": name, "cls": Command, "callback": callback}
+        command: Any = get_command_from_info(CommandInfo(**named), pretty_exceptions_short=False, rich_markup_mode=None)
+        command.taken = taken
+        return command
 
     def __contains__(self, name: object) -> bool:
         return name in self._ready or name in self._late
@@ -87,6 +112,10 @@ class Commands(Mapping[str, Any]):
         return len(self._ready) + len(self._late)
 
 
+# Commands that few people need, which the front page names without a line.
+FURTHER = frozenset(("worker", "import", "columns", "renderdoc", "devices", "roofline", "sweep"))
+
+
 class Grouped(TyperGroup):
     """The program, whose help has the commands by what they are for."""
 
@@ -95,6 +124,18 @@ class Grouped(TyperGroup):
     def list_commands(self, ctx: Any = None) -> list[str]:  # noqa: ARG002
         """Return the names of the commands, those for one purpose together."""
         return sorted(self.commands, key=lambda name: [*Group].index(self._group(name)))
+
+    def format_help(self, ctx: Any, formatter: Any) -> None:
+        """Write a page of one line for each command, or everything."""
+        if is_told_all():
+            super().format_help(ctx, formatter)
+            return
+        formatter.write(f"{inspect.getdoc(self.callback)}\n")
+        for group, names in groupby(self.list_commands(ctx), key=self._group):
+            formatter.write(f"{group}:\n")
+            formatter.write("".join(f"  {name:<10}{self._lead(name)}\n" for name in names if name not in FURTHER))
+        formatter.write(f"More: {', '.join(sorted(FURTHER))}\n")
+        formatter.write(f"COMMAND --help shows the options of a command, {HELP_ALL} everything.\n")
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         """Write the first paragraph of each command's help under the title of its group."""
@@ -129,13 +170,12 @@ def command_of(table: Table) -> Callable[..., int]:
         options, outputs = (_made(group, typed) for group in (table.options, table.outputs))
         return table_command(table, options, outputs, format_of(format, output), output, report, on)
 
-    ends = {"format": (FormatOption, None), "output": (OutputOption, None), "report": (ReportOption, None)}
-    ends |= {"on": (OnOption, None)}
+    ends = {"format": Format | None, "output": Path | None, "report": Path | None, "on": str | None}
     reads = fields_of(Reading) if issubclass(table.options, Reading) else {}
     typed = [parameter_of(f, FILES if f.name in reads else MEASURED) for f in fields_of(table.options).values()]
     typed += [parameter_of(field, WRITTEN) for field in fields_of(table.outputs).values()]
     typed += [
-        inspect.Parameter(n, inspect.Parameter.KEYWORD_ONLY, default=d, annotation=a) for n, (a, d) in ends.items()
+        inspect.Parameter(n, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=kind) for n, kind in ends.items()
     ]
     return with_parameters(command, typed)
 
@@ -176,7 +216,7 @@ def parameter_of(field: Field, panel: str = MEASURED) -> inspect.Parameter:
     if field.name in NAMES:
         more |= {"autocompletion": completion_of(field.name)}
     flags = [one for one in (option.letter, option.flag) if one]
-    shown = Annotated[_typed(field), typer.Option(*flags, help=option.help, **more)]
+    shown = Annotated[_typed(field), typer.Option(*flags, help=option.help, **more), *marks(field)]
     return inspect.Parameter(field.name, kind, default=field.typed, annotation=shown)
 
 
@@ -194,7 +234,7 @@ def _whole_number(text: str) -> int:
         raise typer.BadParameter(str(error)) from error
 
 
-def with_parameters(command: Callable[..., int], parameters: list[inspect.Parameter]) -> Callable[..., int]:
+def with_parameters(command: Callable[..., Any], parameters: list[inspect.Parameter]) -> Callable[..., Any]:
     """A function with another signature, as typer reads it."""
     command.__signature__ = inspect.Signature(parameters)  # pyright: ignore[reportFunctionMemberAccess]
     command.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}

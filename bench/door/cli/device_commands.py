@@ -13,14 +13,12 @@ from ...tables.table import Group
 Files = Annotated[
     list[Path], typer.Argument(help='Device files, which a page saves by "Save this device".', metavar="FILE...")
 ]
-RunFolder = Annotated[Path | None, typer.Option("-o", "--output", help="The run's folder.", metavar="RUN")]
 Folders = Annotated[
     list[Path],
     typer.Argument(
         help="A run's folder, folders of device files, or both; folders in these count.", metavar="FOLDER..."
     ),
 ]
-SiteFolder = Annotated[Path, typer.Option("-o", "--output", help="The folder of the site.")]
 
 
 def add_devices(app: typer.Typer) -> None:
@@ -29,8 +27,8 @@ def add_devices(app: typer.Typer) -> None:
     app.command("site", rich_help_panel=Group.KEEP)(site_command)
 
 
-def import_command(files: Files, output: RunFolder = None) -> int:
-    """Add readers' devices to a run, for its page to show: what differs on which GPU, times, facts.
+def import_command(files: Files, output: Path | None = None) -> int:
+    """Add readers' devices to a run, for its page to show.
 
     Of one GPU in one browser the newest file stays. All files are checked before any is added.
     """
@@ -39,9 +37,11 @@ def import_command(files: Files, output: RunFolder = None) -> int:
     return add(files, output)
 
 
-def site_command(folders: Folders, output: SiteFolder = Path("site")) -> int:
-    """A static site of a run: the laboratory, the answer, and a page for each encoding. Of readers' devices: a list to
-    search, and a page for each with the codec to take on it.
+def site_command(folders: Folders, output: Path = Path("site")) -> int:
+    """Make a static website of a run, of readers' devices, or of both.
+
+    It has the laboratory, the answer, and a page for each encoding. Devices are a list to search, with the codec to
+    take on each.
     """
     from ...show.site_command import site_command as make
 

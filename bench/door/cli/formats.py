@@ -1,4 +1,4 @@
-"""The options that every command has."""
+"""The formats that rows are written in."""
 
 from __future__ import annotations
 
@@ -6,13 +6,8 @@ from collections.abc import Mapping
 from enum import StrEnum
 from pathlib import Path
 from types import MappingProxyType
-from typing import Annotated
-
-import typer
 
 from ...ground.output.errors import UsageError
-
-WRITTEN = "What is written"
 
 
 class Format(StrEnum):
@@ -29,24 +24,6 @@ OTHERS: Mapping[str, str] = MappingProxyType(
 )
 # What people may expect, and would be given a text.
 NOT_WRITTEN = (".parquet", ".xlsx")
-FormatOption = Annotated[
-    Format | None,
-    typer.Option(
-        "--format",
-        help=f"{', '.join(Format)}. Default: as the name of -o ends, or table.",
-        metavar="<name>",
-        rich_help_panel=WRITTEN,
-    ),
-]
-OutputOption = Annotated[
-    Path | None,
-    typer.Option(
-        "-o",
-        "--output",
-        help="Write the rows to this file; a command that was stopped then goes on.",
-        rich_help_panel=WRITTEN,
-    ),
-]
 
 
 def format_of(format: Format | None, output: Path | None) -> Format:

@@ -10,12 +10,11 @@ import typer
 
 from ...ground.options.words import names
 from ...tables.table import Group
-from .formats import FormatOption, format_of
+from .formats import Format, format_of
 
 Runs = Annotated[
     list[Path], typer.Argument(help="Results folders, or folders that hold some.", metavar="RUN...", show_default=False)
 ]
-PlainOutput = Annotated[Path | None, typer.Option("-o", "--output", help="Write the rows to this file.")]
 SHOWN = "What is shown"
 
 
@@ -50,10 +49,10 @@ def history(
     encoding: Encoding = None,
     storage: Storage = None,
     column: Column = None,
-    format: FormatOption = None,
-    output: PlainOutput = None,
+    format: Format | None = None,
+    output: Path | None = None,
 ) -> int:
-    """At which commit a figure got worse, over runs of many commits, and at which it was mended.
+    """Find the commit at which a figure got worse, over many runs.
 
     Figures are judged as compare does. A time counts where many runs of one machine before and behind a commit agree.
     A run knows the commit of the folder that it was started in; see run --commit.

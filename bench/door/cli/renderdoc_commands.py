@@ -23,7 +23,9 @@ def renderdoc(
         Path | None, typer.Option("--script", help="Write the script to this file. Default: print it.")
     ] = None,
 ) -> int:
-    """A script for RenderDoc's Python: it saves a capture's G-buffer as EXR, and says which commands measure it.
+    """Print a script that saves a capture's G-buffer in RenderDoc.
+
+    It writes EXR files, and says which commands measure them.
 
     In RenderDoc, open the capture and run the script by Window > Python Shell; or: python3 SCRIPT frame.rdc
     """

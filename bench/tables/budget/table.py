@@ -222,9 +222,10 @@ COLUMNS = (
 
 TABLE = Table(
     package=__package__ or "",
-    help="How few bytes a pixel does the whole G-buffer need, and which layout does it?\n\nEach code of each attribute "
-    "is measured by itself, by what it does to the displayed image of mirrors, glossy and rough surfaces. An integer "
-    "program then finds the codes and targets whose worst class is best, and the layout is drawn whole.",
+    help="Find the smallest layout for a quality, or the best for a size.\n\nEach code of each attribute "
+    "is measured by itself, by what it does to the displayed image of mirrors, glossy and rough surfaces. An "
+    "integer program then finds the codes and targets whose worst class is best, and the layout is drawn "
+    "whole.",
     example="normalbench budget --bytes 12,16 --read-alone normal,roughness",
     is_kept=True,
     step_s=0.2,

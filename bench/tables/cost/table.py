@@ -227,9 +227,8 @@ PACKED = "rgba8,rg8,rgb10a2,rg16f,rg16,12:12,16:16,11:10:11,depth16,depth24,dept
 
 TABLE = Table(
     package=__package__ or "",
-    help="What encoding and decoding cost: instructions on GPUs of three vendors, and time; all of it by default.\n\n"
-    "Counts are by Mesa's compilers, and by NVIDIA's of CUDA, for GPUs that need not be there, less an empty kernel "
-    "that moves the same numbers.",
+    help="Count instructions on GPUs of three vendors, and measure time.\n\nCounts are by Mesa's compilers, and by "
+    "NVIDIA's of CUDA, for GPUs that need not be there, less an empty kernel that moves the same numbers.",
     example="normalbench cost --isa --family navi31 --encoding octahedral,spheremap",
     is_kept=True,
     step_s=8.0,

@@ -62,8 +62,8 @@ COLUMNS = (
 
 TABLE = Table(
     package=__package__ or "",
-    help="How exact roughness, metalness, occlusion and channels of colours are in few bits: on a curve, over a range, "
-    "rounded, cut off or dithered.\n\nA curve lies in the first channel of a storage. `unorm:5` is five bits.",
+    help="Measure curves of roughness, metallic, AO and colours in few bits.\n\nA curve lies in the first channel "
+    "of a storage. `unorm:5` is five bits.",
     example="normalbench curves --encoding linear,square_root,srgb --storage unorm:4..8 --backend jax",
     options=CurvesOptions,
     columns=COLUMNS,

@@ -128,9 +128,9 @@ ALSO = (
 
 TABLE = Table(
     package=__package__ or "",
-    help="How far off a position is that was rebuilt from a stored depth, at distances and over the whole range.\n\n"
-    "Errors are distances in the unit of --near and --far, of points anywhere on the screen; a distance stands for "
-    "depths up to a sixteenth of it nearer or farther. --depths measures the depths of your own image.",
+    help="Measure positions rebuilt from stored depth.\n\nErrors are distances in the unit of --near and --far, of "
+    "points anywhere on the screen; a distance stands for depths up to a sixteenth of it nearer or farther. "
+    "--depths measures the depths of your own image.",
     example="normalbench depth --depth reversed_window,logarithmic --near 0.1 --far 1000",
     step_s=0.04,
     options=DepthOptions,

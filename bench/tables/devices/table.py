@@ -78,9 +78,8 @@ COLUMNS = (
 TABLE = Table(
     package=__package__ or "",
     group=Group.KEEP,
-    help="What readers' devices make of each codec: codes that differ from the run's, angles and times. With --facts, "
-    "how they round, filter, resolve and compute.\n\n"
-    'A device file is what the live section of a page saves by "Save this device".',
+    help="Show what readers' devices make of each codec.\n\nWith --facts it shows how they round, filter, resolve "
+    'and compute.\n\nA device file is what the live section of a page saves by "Save this device".',
     example="normalbench devices --devices phone.json",
     options=DevicesOptions,
     columns=COLUMNS,

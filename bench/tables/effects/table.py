@@ -141,9 +141,8 @@ COLUMNS = (
 
 TABLE = Table(
     package=__package__ or "",
-    help="How much of a code's error arrives in effects that read the G-buffer: ambient occlusion and others.\n\n"
-    "Every normal code lies in an otherwise exact layout, and every depth code in one with exact normals. A layout "
-    "is measured as it is.",
+    help="Measure how much of the error reaches AO and other effects.\n\nEvery normal code lies in an otherwise "
+    "exact layout, and every depth code in one with exact normals. A layout is measured as it is.",
     example="normalbench effects --effect gtao --encoding octahedral,spheremap --storage rg8,rgb10a2",
     step_s=0.8,
     options=EffectsOptions,

@@ -97,9 +97,8 @@ COLUMNS = (
 
 TABLE = Table(
     package=__package__ or "",
-    help="What tangent frame codes lose: the angles of normals, of tangents and of the whole rotation, and lost "
-    "handedness.\n\nA set may be a mesh (glTF, GLB, OBJ, PLY): the tangent frames of its vertices, authored or along "
-    "its uv.",
+    help="Measure encodings of tangent frames.\n\nA set may be a mesh (glTF, GLB, OBJ, PLY): the tangent frames of "
+    "its vertices, authored or along its uv.",
     example="normalbench frames --encoding smallest_three --backend jax",
     step_s=0.05,
     options=FramesOptions,

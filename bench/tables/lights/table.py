@@ -83,8 +83,8 @@ ALSO = (Column("*_lights", "What is left of the sum of that many lights."),)
 
 TABLE = Table(
     package=__package__ or "",
-    help="What light buffers lose: adding lights up, banding and rebuilt colour.\n\n"
-    "The model, in JAX, stands next to what the GL device does. Without a GL device the model is measured alone.",
+    help="Measure light buffers: sums, banding and rebuilt colour.\n\nThe model, in JAX, stands next to what the "
+    "GL device does. Without a GL device the model is measured alone.",
     example="normalbench lights --experiment equal,banding --light-buffer rgbm,r11g11b10f",
     step_s=0.4,
     options=LightsOptions,

@@ -128,9 +128,8 @@ COLUMNS = (
 
 TABLE = Table(
     package=__package__ or "",
-    help="What block compression loses of a normal map: BC5, BC7, EAC RG11 and ASTC 4x4.\n\n"
-    "A normal map is an image file (PNG, EXR, TIFF, DDS, HDR, WebP, NPY). The encoders are packages: "
-    "pip install normalbench[maps].",
+    help="Measure block-compressed normal maps: BC5, BC7, EAC RG11, ASTC 4x4.\n\nA normal map is an image file "
+    "(PNG, EXR, TIFF, DDS, HDR, WebP, NPY). The encoders are packages: pip install normalbench[maps].",
     example="normalbench maps --normals frame.png --encoding xy,octahedral --block bc5,bc7",
     step_s=0.08,
     options=MapsOptions,

@@ -223,9 +223,9 @@ COLUMNS = (
 
 TABLE = Table(
     package=__package__ or "",
-    help="What happens to a code when texels meet: filtering, mip levels, multisample resolve and blending.\n\n"
-    "The verdict of each codec: filterable, blendable, resolvable, or why not. `pick --needs filter,blend,resolve` "
-    "leaves out codecs that are not.",
+    help="Measure filtering, mip levels, MSAA resolve and blending of codes.\n\nThe verdict of each codec: "
+    "filterable, blendable, resolvable, or why not. `pick --needs filter,blend,resolve` leaves out codecs "
+    "that are not.",
     example="normalbench mix --encoding octahedral,xyz --storage rgba8 --angle 5",
     step_s=0.05,
     options=MixOptions,

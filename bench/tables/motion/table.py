@@ -165,9 +165,9 @@ ALSO = (
 
 TABLE = Table(
     package=__package__ or "",
-    help="How much a code's error changes from frame to frame while the camera or an object turns.\n\n"
-    "A code in view space is another one in each frame of a turning camera, so highlights wobble; a code in world "
-    "space stays. Measured of the normals, of highlights and of the displayed image.",
+    help="Measure how errors change while the camera or an object turns.\n\nA code in view space is another one in "
+    "each frame of a turning camera, so highlights wobble; a code in world space stays. Measured of the "
+    "normals, of highlights and of the displayed image.",
     example="normalbench motion --encoding octahedral,spheremap --storage rg8,rgb10a2 --axis yaw,roll",
     step_s=0.5,
     options=MotionOptions,

@@ -299,9 +299,9 @@ ALSO = (
 TABLE = Table(
     package=__package__ or "",
     group=Group.ANSWER,
-    help="Which code to take for each storage, at what price, and what to take instead.\n\n"
-    "Codes that do not meet the constraints are left out, with the reason. Of the others a code may cost twice as much "
-    "if it is --worth decibels better. The exit status is 1 where no code meets the constraints.",
+    help="Choose an encoding for each storage, with alternatives and cost.\n\nCodes that do not meet the "
+    "constraints are left out, with the reason. Of the others a code may cost twice as much if it is --worth "
+    "decibels better. The exit status is 1 where no code meets the constraints.",
     example="normalbench pick --storage rg8 --most-instructions 40 --scene room --power 256",
     is_kept=True,
     step_s=0.4,

@@ -240,10 +240,9 @@ SETS_OF_NAMED = f"{SETS},domain"
 TABLE = Table(
     is_usual=True,
     package=__package__ or "",
-    help="What each codec loses of the normals of a set: MSE, PSNR, angles, effective bits.\n\n"
-    "A set may be a file: a captured frame (EXR, PNG, TIFF, DDS, HDR, WebP, NPY), a mesh seen by "
-    "a camera (glTF, GLB, OBJ, PLY), its vertex normals in object space (mesh.glb#vertices), or a point "
-    "cloud (PLY).",
+    help="Measure the error of encodings: PSNR, angles, effective bits.\n\nA set may be a file: a captured frame "
+    "(EXR, PNG, TIFF, DDS, HDR, WebP, NPY), a mesh seen by a camera (glTF, GLB, OBJ, PLY), its vertex normals "
+    "in object space (mesh.glb#vertices), or a point cloud (PLY).",
     example="normalbench quality --encoding octahedral,spheremap --storage rg8,rgb10a2 --normals sphere",
     step_s=0.008,
     options=QualityOptions,

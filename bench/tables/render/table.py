@@ -211,9 +211,9 @@ COLUMNS = (
 
 TABLE = Table(
     package=__package__ or "",
-    help="What codecs, layouts and light buffers do to the final image, against the same pipeline in fp32.\n\n"
-    "Without --layout every encoding lies in rgba8 in an otherwise exact G-buffer. With --layout and none of "
-    "--encoding, --storage and --rounding the layouts are measured as they are.",
+    help="Measure the error of the final image, against 32-bit floats.\n\nWithout --layout every encoding lies in "
+    "rgba8 in an otherwise exact G-buffer. With --layout and none of --encoding, --storage and --rounding the "
+    "layouts are measured as they are.",
     example="normalbench render --encoding octahedral,spheremap --storage rg8 --scene gloss --power 47,1024",
     step_s=1.2,
     options=RenderOptions,

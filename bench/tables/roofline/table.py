@@ -91,9 +91,9 @@ ALSO = (
 
 TABLE = Table(
     package=__package__ or "",
-    help="Bytes saved against instructions spent: which code is faster on which GPU, by a model.\n\n"
-    "A code's bytes take memory bandwidth. Its instructions, as `cost --isa` counts them, take arithmetic. The longer "
-    "of the two is its time. Nothing is timed, and the GPUs need not be there.",
+    help="Estimate which encoding is faster on which GPU, by a model.\n\nA code's bytes take memory bandwidth. Its "
+    "instructions, as `cost --isa` counts them, take arithmetic. The longer of the two is its time. Nothing "
+    "is timed, and the GPUs need not be there.",
     example="normalbench roofline --encoding xyz,octahedral --storage rgba16f,rg8 --gpu rx6800xt,iris_xe",
     options=RooflineOptions,
     outputs=RooflineOutputs,

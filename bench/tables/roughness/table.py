@@ -110,11 +110,11 @@ COLUMNS = (
 
 TABLE = Table(
     package=__package__ or "",
-    help="From which roughness on a normal code carries reflections: a mirror shows each step of a code, a dull "
-    "surface none.\n\nA sphere and two panels of a metal that reflects all light fill the picture one by one, under "
-    "three environments, and a sphere of white plaster in the sun. A code carries a roughness where FLIP's 99th "
-    "percentile is at most --threshold there and at every greater roughness, on the worst of objects and environments. "
-    "0.1 is what we call acceptable and 0.05 invisible: both are conventions.",
+    help="Find the lowest roughness at which banding is acceptable.\n\nA sphere and two panels of a metal that "
+    "reflects all light fill the picture one by one, under three environments, and a sphere of white plaster "
+    "in the sun. A code carries a roughness where FLIP's 99th percentile is at most --threshold there and at "
+    "every greater roughness, on the worst of objects and environments. 0.1 is what we call acceptable and "
+    "0.05 invisible: both are conventions.",
     example="normalbench roughness --storage rg8,rgb10a2 --environment studio",
     step_s=2.5,
     options=RoughnessOptions,

@@ -92,7 +92,7 @@ COLUMNS = (
 
 TABLE = Table(
     package=__package__ or "",
-    help="How each pipeline's passes grow with the number of objects: light pre-pass against hybrid and the others.",
+    help="Measure the passes of each pipeline over the number of objects.",
     example="normalbench sweep --objects 100,200 --size 320x240 --repeats 1 -o sweep.csv",
     options=SweepOptions,
     outputs=SweepOutputs,

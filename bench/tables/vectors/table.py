@@ -106,9 +106,8 @@ COLUMNS = (
 
 TABLE = Table(
     package=__package__ or "",
-    help="How exact motion vectors are in compact targets: errors in pixels over the speed, what slow motion is lost, "
-    "and how far reprojected points drift.\n\nA motion is in screens a frame. Fixed-point storages keep motions up to "
-    "the range. `_centred` is UNORM with an exact code for no motion, as engines store it.",
+    help="Measure encodings of motion vectors, in pixels.\n\nA motion is in screens a frame. Fixed-point storages "
+    "keep motions up to the range. `_centred` is UNORM with an exact code for no motion, as engines store it.",
     example="normalbench vectors --encoding linear --storage rg16f,rg16,rg16_centred --backend jax",
     step_s=0.05,
     options=VectorsOptions,

@@ -10,6 +10,7 @@ from pathlib import Path
 import jax.numpy as jnp
 import pytest
 
+from normalbench.bench.door.cli.app import command_line
 from normalbench.bench.subjects.codecs import encoding_names
 from normalbench.bench.tables.registry import TABLES
 from normalbench.encodings.catalogue import ENCODINGS, NAMES
@@ -19,17 +20,43 @@ from normalbench.reports import tables
 QUICK = ["quality", "--encoding", "xy,octahedral", "--storage", "rg8", "--normals", "axes"]
 
 
-def test_the_help_groups_commands_by_what_they_are_for(run):
+def test_the_front_page_fits_a_screen_and_groups_commands_by_what_they_are_for(run):
+    """All of it, with every option that commands share, is a word further."""
     _, out, _ = run("--help")
-    titles = [line.rstrip(":") for line in out.splitlines() if re.fullmatch(r"\S.*:", line)]
-    assert titles == [
-        "Options",
-        "The answer",
-        "Measure",
-        "Your own",
-        "Keep and compare",
-        "This program and this machine",
-    ]
+    lines = out.splitlines()
+    groups = ["The answer", "Measure", "Your own", "Keep and compare", "This program and this machine"]
+    assert [line.rstrip(":") for line in lines if re.fullmatch(r"\S.*:", line)] == groups
+    assert len(lines) <= 40 and max(map(len, lines)) <= 80
+    named = {word for line in lines for word in re.findall(r"[a-z]+", line)}
+    assert {*command_line().commands} <= named
+    _, out, _ = run("--help-all")
+    assert all(f"--{flag}" in out for flag in ("output", "format", "report", "on", "define", "channels", "anew"))
+
+
+def test_no_help_shows_more_than_twelve_options_at_first(run):
+    """There are at most 320, and none twice: what commands share is the program's, and may stand anywhere."""
+    program = command_line()
+    options = [option for command in program.commands.values() for option in command.params]
+    options = [option for option in (*options, *program.params) if option.param_type_name == "option"]
+    assert len(options) <= 320
+    for name in ("pick", "run", "doctor"):
+        _, short, _ = run(name, "--help")
+        _, whole, _ = run(name, "--help-all")
+        heads = (text.partition("Also:")[0] for text in (short, whole))
+        shown, every = (len(re.findall(r"^  (?:-\w, )?--(?!help)", head, re.M)) for head in heads)
+        assert shown == min(every, 12), name
+        assert f"normalbench {name} --help-all" in " ".join(short.split()) and "--output" in short
+
+
+def test_an_option_that_commands_share_may_stand_anywhere_and_is_refused_where_it_means_nothing(run):
+    words = ("--encoding", "xyz", "--storage", "rg16,rgba8", "--count", "4096", "--backend", "jax")
+    _, before, _ = run("--format", "csv", "quality", *words)
+    _, behind, _ = run("quality", *words, "--format=csv")
+    assert before == behind and before.startswith("encoding,")
+    status, _, err = run("--on", "local:2", "list", "encodings")
+    assert status == 2 and "--on is not an option of this command" in err
+    status, _, err = run("list", "--on", "local:2")
+    assert status == 2 and "No such option: --on" in err
 
 
 def test_the_list_names_every_encoding(run):

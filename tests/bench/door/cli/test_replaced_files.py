@@ -195,12 +195,13 @@ def test_every_table_knows_its_own_header(tmp_path, table):
 # By command what its options that take a path write; `--run` is a folder, which nothing replaces.
 WRITTEN = {
     *("--output", "--report", "--plot", "--images", "--live", "--maps", "--disassembly", "--layouts", "--table"),
-    *("--script", "--run"),
+    *("--script", "--run", "--diff"),
 }
 
 
 def test_options_that_take_a_path_are_written():
     """What is read is an argument or a text: the gate takes every other value for an input."""
-    commands = command_line().commands.values()
-    options = [option for command in commands for option in command.params if option.param_type_name == "option"]
+    program = command_line()
+    every = [*program.params, *(option for command in program.commands.values() for option in command.params)]
+    options = [option for option in every if option.param_type_name == "option"]
     assert {max(option.opts, key=len) for option in options if _takes(option, Path)} == WRITTEN

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from normalbench.bench.door.cli.app import _is_delicate, command_line
+from normalbench.bench.door.cli.app import _is_delicate, _words, command_line
 from normalbench.bench.door.table_command import _why_nothing
 from normalbench.bench.ground.options.counts import whole_number
 from normalbench.bench.tables.registry import TABLES
@@ -117,7 +117,10 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
         ("doctor", "words.txt"),
         "words.txt: its name does not end in .glsl, .hlsl, .hlsli, .fx, ",
     ),
-    "a folder that is called like a shader": (("doctor", "folder.glsl"), "folder.glsl: it is a folder; name a file"),
+    "a folder without a pair": (
+        ("doctor", "folder.glsl"),
+        "folder.glsl: none of its 0 shader files defines a function",
+    ),
     "a capture that is not there": (("quality", "--normals", "missing.exr"), "missing.exr"),
     "a capture of another kind": (("quality", "--normals", "frame.fbx1"), "a file that ends in .exr"),
     "a JPEG": (("quality", "--normals", "frame.jpg"), "frame.jpg: JPEG changes normals; save the frame as EXR or PNG"),
@@ -334,7 +337,7 @@ def test_help_fits_80_columns_and_groups_its_options(run, monkeypatch, name):
     status, out, _ = run(name, "-h")
     assert status == 0 and max(map(len, out.splitlines())) <= 80
     if name in TABLES:
-        assert "What is measured" in out and "What is written" in out and "Example: normalbench" in out
+        assert "What is measured" in out and "Also: --output" in out and "Example: normalbench" in out
         assert "<table|json" not in out, "a list of choices leaves no room for the words"
     if name == "check":
         assert "[[gate]]" in out
@@ -344,10 +347,11 @@ def test_help_fits_80_columns_and_groups_its_options(run, monkeypatch, name):
 @pytest.mark.parametrize("name", TABLES)
 def test_the_example_of_a_command_is_one_that_it_takes(name):
     """Its options, and the names in them, but for files."""
-    table, words = TABLES[name], TABLES[name].example.split()
-    command = command_line().commands[name]
-    assert words[:2] == ["normalbench", name]
-    made = command.make_context(name, words[2:])
+    table, program = TABLES[name], command_line()
+    words = _words(TABLES[name].example.split()[1:], program)
+    command = program.commands[name]
+    at = words.index(name)
+    made = command.make_context(name, words[at + 1 :])
     asked = {field.name: made.params[field.name] for field in fields(table.options) if field.name in made.params}
     if not {"frame.png", "phone.json"} & set(words):
         assert table.work.steps(table.options(**asked), table.outputs())
