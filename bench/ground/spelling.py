@@ -19,7 +19,16 @@ OTHER_WORDS: Mapping[str, Mapping[str, str]] = MappingProxyType(
             "d32sfloat": "depth32f",
             "unorm:24": "packed24",
         },
-        "attribute": {"basecolour": "basecolor"},
+        "attribute": {
+            **dict.fromkeys(("basecolour", "albedo", "diffusecolor"), "base_color"),
+            **dict.fromkeys(("metalness", "metal"), "metallic"),
+            **dict.fromkeys(("occlusion", "ambientocclusion"), "ao"),
+            **dict.fromkeys(("specular", "reflectance"), "f0"),
+            **dict.fromkeys(("velocity", "motionvectors"), "motion"),
+            **dict.fromkeys(("shadingmodel", "kind", "model"), "id"),
+            "emission": "emissive",
+            "perceptualroughness": "roughness",
+        },
         "encoding": {"oct": "octahedral", "hemioct": "hemi_octahedral"},
         "family": {
             "gcn4": "polaris10",

@@ -28,17 +28,15 @@ NORMAL = "normal"
 COMPONENTS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
         "normal": ("normal.x", "normal.y", "normal.z"),
-        "basecolor": ("albedo.r", "albedo.g", "albedo.b"),
+        "base_color": ("albedo.r", "albedo.g", "albedo.b"),
         "roughness": ("roughness",),
-        "metalness": ("metalness",),
-        "specular": ("reflectance",),
-        "occlusion": ("occlusion",),
+        "metallic": ("metalness",),
+        "f0": ("reflectance",),
+        "ao": ("occlusion",),
     }
 )
 # What a surface has of an attribute that no G-buffer keeps.
-WITHOUT: Mapping[str, float] = MappingProxyType(
-    {"metalness": 0.0, "specular": DIELECTRIC, "occlusion": 1.0, "emission": 0.0}
-)
+WITHOUT: Mapping[str, float] = MappingProxyType({"metallic": 0.0, "f0": DIELECTRIC, "ao": 1.0, "emissive": 0.0})
 # The curve that leaves numbers as they are.
 ITSELF = "linear"
 
@@ -46,15 +44,15 @@ ITSELF = "linear"
 @dataclass(frozen=True)
 class Surfaces:
     """What pixels see, float32: normals in the world's axes, base colours and the light that is given off (height,
-    width, 3), the others (height, width)."""
+    width, 3), the others (height, width). Named as attributes are."""
 
     normal: np.ndarray
-    basecolor: np.ndarray
+    base_color: np.ndarray
     roughness: np.ndarray
-    metalness: np.ndarray
-    specular: np.ndarray
-    occlusion: np.ndarray
-    emission: np.ndarray
+    metallic: np.ndarray
+    f0: np.ndarray
+    ao: np.ndarray
+    emissive: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -164,17 +162,18 @@ def _curved(curve: str, limit: float | None, component: str) -> str:
 
 
 def _basecolors() -> Iterator[Code]:
-    yield _on_curve("basecolor", "albedo", "srgb", (8, 8, 8), SRGB)
+    yield _on_curve("base_color", "albedo", "srgb", (8, 8, 8), SRGB)
     # Textures have 8 bits: more would keep nothing that they have.
     for bits in ((7, 7, 6), (7, 7, 7), (8, 8, 8)):
-        yield _on_curve("basecolor", "albedo", "square_root", bits)
-    yield _on_curve("basecolor", "albedo", ITSELF, (10, 10, 10))
+        yield _on_curve("base_color", "albedo", "square_root", bits)
+    yield _on_curve("base_color", "albedo", ITSELF, (10, 10, 10))
 
 
 def _singles(attribute: str, sizes: Iterable[int], curve: str = ITSELF) -> Iterator[Code]:
-    """Of an attribute that a layout calls by the same name."""
+    """Of an attribute of one number."""
+    (component,) = COMPONENTS[attribute]
     for bits in sizes:
-        yield _on_curve(attribute, attribute, curve, (bits,))
+        yield _on_curve(attribute, component, curve, (bits,))
 
 
 @dataclass(frozen=True)
@@ -222,19 +221,19 @@ def motion(speed: float, is_packed: bool = False) -> Attribute:
 
 def _emission(name: str, buffer: str, word: str, bits: tuple[int, ...], kind: str) -> Code:
     trip = partial(_light_trip, LIGHT_BUFFERS[buffer])
-    return Code("emission", name, (word,), bits, kind, in_fields=False, trip=trip)
+    return Code("emissive", name, (word,), bits, kind, in_fields=False, trip=trip)
 
 
 def _light_trip(codec: LightCodec, surfaces: Surfaces) -> Surfaces:
-    r, g, b = (jnp.asarray(plane) for plane in np.moveaxis(surfaces.emission, -1, 0))
+    r, g, b = (jnp.asarray(plane) for plane in np.moveaxis(surfaces.emissive, -1, 0))
     back = codec.round_trip(Vec4(r, g, b, jnp.ones_like(r)))
-    return replace(surfaces, emission=np.stack([np.asarray(plane) for plane in back[:3]], axis=-1))
+    return replace(surfaces, emissive=np.stack([np.asarray(plane) for plane in back[:3]], axis=-1))
 
 
 # Light has no largest value: its floor is the relative error of these codes, of the largest channel half of 2^-8 for
 # RGB9E5, half of 2^-6 for R11G11B10F.
 EMISSION = Attribute(
-    "emission",
+    "emissive",
     (
         _emission("RGB9E5", "rgb9e5", "rgb9e5(emission)", (32,), RGB9E5),
         _emission("R11G11B10F", "r11g11b10f", "emission", (11, 11, 10), FLOAT),
@@ -249,7 +248,7 @@ def _reflectances() -> Iterator[Code]:
         # The usual 0.04 lies on a code: one that it lies between is off everywhere, by half a step. Engines' 0.08 is in
         # the range.
         share = (2 ** (bits - 1) - 1) / (2**bits - 1)
-        yield _on_curve("specular", "reflectance", ITSELF, (bits,), limit=_short(DIELECTRIC / share))
+        yield _on_curve("f0", "reflectance", ITSELF, (bits,), limit=_short(DIELECTRIC / share))
 
 
 def _short(limit: float) -> float:
@@ -262,7 +261,7 @@ SEEN: Mapping[str, Attribute] = MappingProxyType(
         one.name: one
         for one in (
             Attribute("normal", tuple(_normals()), 20),
-            Attribute("basecolor", tuple(_basecolors()), 18),
+            Attribute("base_color", tuple(_basecolors()), 18),
             Attribute(
                 "roughness",
                 (
@@ -274,13 +273,13 @@ SEEN: Mapping[str, Attribute] = MappingProxyType(
                 8,
             ),
             Attribute(
-                "metalness",
-                tuple(_singles("metalness", range(3, 9))),
+                "metallic",
+                tuple(_singles("metallic", range(3, 9))),
                 # Filtered maps have values between 0 and 1.
                 4,
             ),
-            Attribute("specular", tuple(_reflectances()), 5),
-            Attribute("occlusion", tuple(_singles("occlusion", range(4, 9))), 6),
+            Attribute("f0", tuple(_reflectances()), 5),
+            Attribute("ao", tuple(_singles("ao", range(4, 9))), 6),
         )
     }
 )

@@ -14,7 +14,7 @@ from .solve import UNSEEN, Solution
 
 # How many changes are named, and the decibels that each brings at least: what rounds to less is no advice.
 MOST, LEAST_DB = 3, 0.1
-NUMBERS = ("metalness", "specular", "roughness", "occlusion")
+NUMBERS = ("metallic", "f0", "roughness", "ao")
 
 
 def holds_other_quantities(layout: Layout) -> bool:
@@ -29,7 +29,7 @@ def completed(layout: Layout) -> Layout:
     if holds_other_quantities(layout):
         return layout
     lacks = [COMPONENTS[name][0] for name in NUMBERS if COMPONENTS[name][0] not in layout.components]
-    words = [" ".join(lacks), "" if COMPONENTS["basecolor"][0] in layout.components else "albedo -"]
+    words = [" ".join(lacks), "" if COMPONENTS["base_color"][0] in layout.components else "albedo -"]
     return replace(layout, targets=(*layout.targets, *(Target("rgba32f", holds) for holds in words if holds)))
 
 
@@ -44,7 +44,7 @@ def alone(layout: Layout, attribute: str) -> Layout:
     is_normal = attribute == "normal"
     if not is_normal:
         held.append(Target("rgba32f", "normal.x normal.y normal.z -"))
-    if attribute != "basecolor":
+    if attribute != "base_color":
         held.append(Target("rgba32f", "albedo -"))
     others = [FREE if name == attribute else COMPONENTS[name][0] for name in NUMBERS]
     held.append(Target("rgba32f", " ".join(others)))

@@ -23,7 +23,7 @@ EXACT: Mapping[str, str] = MappingProxyType(
 )
 # A frame of a tangent: an angle around the normal and a hand.
 TANGENT = exact_bits("tangent", "other.tangent", 8)
-MOTION, PACKED, IN_LIGHT, STENCIL = "motion", "motion:packed", "emission:light", "stencil"
+MOTION, PACKED, IN_LIGHT, STENCIL = "motion", "motion:packed", "emissive:light", "stencil"
 MOST_BITS = 64
 # What hardware can test before shading.
 IN_STENCIL = ("id", "flags")

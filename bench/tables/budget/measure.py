@@ -58,7 +58,7 @@ MORE, WORTH_DB = (1, 2, 4), 0.5
 ONE_WORD = 32
 UNMEASURABLE = (ShaderError, FormatError, LayoutError)
 # What engines may lack, with a word of a layout that has it.
-LACKS = {"motion": "motion.x", "id": "kind", "specular": "reflectance", "occlusion": "occlusion"}
+LACKS = {"motion": "motion.x", "id": "kind", "f0": "reflectance", "ao": "occlusion"}
 # Pixels of the two pictures that traffic is said for.
 HD, UHD = 1920 * 1080, 3840 * 2160
 
@@ -410,7 +410,7 @@ class Judged:
         lacks = [held[name] for name, word in LACKS.items() if name in held and word not in kept]
         storages = [(word, layout.targets[word.target].storage) for word in layout.words]
         more = [word.bits or storage.bits[word.first] for word, storage in storages if "emission" in word.component]
-        return sum(lacks) / 8 - (0 if "emission" in held else sum(more) / 8)
+        return sum(lacks) / 8 - (0 if "emissive" in held else sum(more) / 8)
 
     def _contract_bytes(self, layout: Layout) -> int:
         return math.ceil(layout.bytes_per_pixel + self._beside(layout))

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from ....encodings.storages.storage import Storage
+from ....gbuffer.layouts.kept import LIGHT
 from ....gbuffer.layouts.layout import Layout
 from ....gbuffer.layouts.words import FREE, Target, Word, all_placed, place_of, spelt_out
 from .attributes import COMPONENTS, EMISSION, FLOAT, SEEN, SRGB, UNORM, Attribute, Code, in_halves
@@ -97,12 +98,12 @@ def _attributes(layout: Layout) -> Iterator[Attribute]:
     placed = [(text, word) for at, target in enumerate(layout.targets) for text, word in _texts(layout, at, target)]
     seen = {component for names in COMPONENTS.values() for component in names}
     others = [(text, word) for text, word in placed if word.component not in seen]
-    if any(word.component.startswith(EMISSION.name) for _, word in others):
+    if any(word.component.startswith(LIGHT) for _, word in others):
         yield EMISSION
     motion = [pair for pair in others if pair[1].component.startswith("motion.")]
     if motion:
         yield _as_it_is("motion", layout, motion)
-    rest = [pair for pair in others if not pair[1].component.startswith(("motion.", EMISSION.name))]
+    rest = [pair for pair in others if not pair[1].component.startswith(("motion.", LIGHT))]
     for at, pair in enumerate(rest):
         component = pair[1].label or pair[1].component
         yield _as_it_is(MODEL if component == "kind" else f"{component} {at}", layout, [pair])

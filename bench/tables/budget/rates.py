@@ -85,10 +85,8 @@ class Exact:
         )
         self.shown = self.display.image(linear)
         self._flip = Flip(self.shown)
-        metalness, specular, roughness, occlusion = (material[..., i] for i in range(4))
-        self.surfaces = Surfaces(
-            normal[..., :3], colour[..., :3], roughness, metalness, specular, occlusion, light[..., :3]
-        )
+        metallic, f0, roughness, ao = (material[..., i] for i in range(4))
+        self.surfaces = Surfaces(normal[..., :3], colour[..., :3], roughness, metallic, f0, ao, light[..., :3])
         self.classes = self._masks(light[..., :3].max(axis=-1) > 0)
 
     def _masks(self, gives_light: np.ndarray) -> dict[str, np.ndarray]:
@@ -138,9 +136,9 @@ class Exact:
     def _texels(self, given: Surfaces) -> Sequence[np.ndarray]:
         normal, colour, material, light = (one.copy() for one in self._textures)
         where = self.covered
-        normal[where, :3], colour[where, :3] = given.normal[where], given.basecolor[where]
-        light[where, :3] = given.emission[where]
-        numbers = (given.metalness, given.specular, given.roughness, given.occlusion)
+        normal[where, :3], colour[where, :3] = given.normal[where], given.base_color[where]
+        light[where, :3] = given.emissive[where]
+        numbers = (given.metallic, given.f0, given.roughness, given.ao)
         material[where] = np.stack([one[where] for one in numbers], axis=-1)
         return normal, colour, material, light
 

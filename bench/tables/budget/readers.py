@@ -19,13 +19,13 @@ MOST = 64.0
 WORDS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
         "normal": ("normal",),
-        "basecolor": ("albedo",),
+        "base_color": ("albedo",),
         "roughness": ("roughness", "power"),
-        "metalness": ("metalness",),
-        "specular": ("reflectance", "specular"),
-        "occlusion": ("occlusion",),
+        "metallic": ("metalness",),
+        "f0": ("reflectance", "specular"),
+        "ao": ("occlusion",),
         "motion": ("motion",),
-        "emission": ("emission",),
+        "emissive": ("emission",),
         "id": ("kind",),
     }
 )

@@ -44,21 +44,21 @@ class BudgetOptions(Options):
         Names,
         Option(
             "--hold",
-            "What is stored: normal, basecolor, roughness, metalness, specular, occlusion, tangent; motion in a target "
+            "What is stored: normal, base_color, roughness, metallic, f0, ao, tangent; motion in a target "
             "of its own, or motion:packed; id:BITS, flags:BITS, or either as id:stencil; shadow:BITS, custom:BITS, "
-            "other:BITS; emission, or emission:light where the light buffer has it.",
+            "other:BITS; emissive, or emissive:light where the light buffer has it.",
         ),
     ] = (
         "normal",
-        "basecolor",
+        "base_color",
         "roughness",
-        "metalness",
-        "specular",
-        "occlusion",
+        "metallic",
+        "f0",
+        "ao",
         "id:4",
         "flags:4",
         "motion",
-        "emission:light",
+        "emissive:light",
     )
     speed: Annotated[
         float,
@@ -84,9 +84,7 @@ class BudgetOptions(Options):
         float | None,
         Option("--threshold", "The fewest bytes whose FLIP (99th percentile) is at most this, in place of --bytes."),
     ] = None
-    blend: Annotated[Names | None, Option("--blend", "What decals blend into, such as basecolor,roughness,normal.")] = (
-        None
-    )
+    blend: Annotated[Names | None, Option("--blend", "What decals blend into: base_color,roughness,normal.")] = None
     read_alone: Annotated[
         Names,
         Option(

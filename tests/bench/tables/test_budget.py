@@ -87,7 +87,7 @@ def test_a_layout_holds_everything_within_its_bytes_and_channels(limit):
 
 
 def test_decals_have_targets_of_their_own_whose_alpha_is_free():
-    blended = frozenset({"normal", "basecolor", "roughness"})
+    blended = frozenset({"normal", "base_color", "roughness"})
     found = solved(problem(Rules(24, 6, blended=blended)))
     assert found is not None
     for (_, _), lying in by_target(found).items():
@@ -113,7 +113,7 @@ def test_without_fields_every_number_has_a_channel():
 
 
 def test_a_number_beside_an_unused_colour_lies_in_the_fourth_channel():
-    code = next(code for code in held.SEEN["occlusion"].codes if code.bits == (8,))
+    code = next(code for code in held.SEEN["ao"].codes if code.bits == (8,))
     normal = next(code for code in held.SEEN["normal"].codes if code.name == "octahedral 16:16")
     placed = (Placed(normal, BINS["rg16"], 0), Placed(code, BINS["srgb8_a8"], 0))
     layout = layout_of("mine", Solution(placed, {}))
@@ -130,7 +130,7 @@ def test_what_is_read_alone_lies_in_few_bytes_with_nothing_large(limit):
         lying for lying in by_target(found).values() if {"normal", "roughness"} & {p.code.attribute for p in lying}
     ]
     assert sum(lying[0].bin.bytes for lying in homes) <= 8
-    assert not {"basecolor", "motion"} & {p.code.attribute for lying in homes for p in lying}
+    assert not {"base_color", "motion"} & {p.code.attribute for lying in homes for p in lying}
     (home,) = [lying for lying in by_target(found).values() if any(p.code.attribute == "id" for p in lying)]
     assert "flags" in {p.code.attribute for p in home}
 
@@ -149,7 +149,7 @@ def test_webgpus_bytes_a_sample_are_the_specifications():
 
 def test_what_no_image_shows_has_its_bits_all_the_same():
     """Ids, flags, custom data and motion at every limit, also where a byte more would be worth much to the image."""
-    hold = "normal,basecolor,roughness,metalness,specular,occlusion,id:4,flags:6,motion,custom:32,other:7"
+    hold = "normal,base_color,roughness,metallic,f0,ao,id:4,flags:6,motion,custom:32,other:7"
     wanted = attributes_held(hold, 64.0)
     for limit in (18, 20, 24):
         found = solved(problem(Rules(limit, 8), wanted))
@@ -217,12 +217,12 @@ def test_a_limit_takes_no_bytes_that_bring_nothing():
 def test_what_the_worst_class_leaves_goes_to_the_others():
     """A code whose error one class alone shows is taken as well as the bytes allow, though that class is not the
     worst."""
-    (metalness,) = (one for one in DEFAULT if one.name == "metalness")
+    (metalness,) = (one for one in DEFAULT if one.name == "metallic")
     errors = falling() | {
-        ("metalness", code.name): {"class 0": 0.0, "class 1": 1e-4 * 4.0**-code.total_bits} for code in metalness.codes
+        ("metallic", code.name): {"class 0": 0.0, "class 1": 1e-4 * 4.0**-code.total_bits} for code in metalness.codes
     }
     chosen = [placed.code for placed in solved(problem(USUAL, errors=errors)).placed]
-    assert next(code for code in chosen if code.attribute == "metalness").total_bits > min(
+    assert next(code for code in chosen if code.attribute == "metallic").total_bits > min(
         code.total_bits for code in metalness.codes
     )
 
@@ -304,7 +304,7 @@ def test_codes_share_the_channels_of_ten_bits():
     home = BINS["rgb10a2"]
     codes = {code.key: code for one in held.SEEN.values() for code in one.codes}
     flags = held.exact_bits("flags", "other", 2).codes[0]
-    names = [("normal", "octahedral 11:11"), ("metalness", "linear 5")]
+    names = [("normal", "octahedral 11:11"), ("metallic", "linear 5")]
     layout = layout_of("mine", Solution(tuple(Placed(c, home, 0) for c in (*(codes[n] for n in names), flags)), {}))
     (target,) = layout.targets
     assert target.holds == "normal.x:11 normal.y:11 metalness:5 -:3 other"
@@ -324,7 +324,7 @@ def test_codes_share_the_channels_of_wide_targets(name):
 
 
 def test_the_usual_reflectance_lies_on_a_code():
-    for code in held.SEEN["specular"].codes:
+    for code in held.SEEN["f0"].codes:
         curve, _, limit = code.words[0].partition("(")[0].partition(":")
         scale = 2 ** code.bits[0] - 1
         number = float(CURVE_ENCODINGS[curve].encode(np.float64(0.04), float(limit))) * scale
@@ -339,13 +339,13 @@ def test_the_usual_reflectance_lies_on_a_code():
             "8 bytes are too few: the attributes need 96 bits, and by these rules the smallest layout has 12 bytes. It "
             "fits without motion (not measured)",
         ),
-        (["--hold", "normal,basecolor,roughness,metalness,specular,occlusion,id:17"], "takes 2 to 16 bits"),
+        (["--hold", "normal,base_color,roughness,metallic,f0,ao,id:17"], "takes 2 to 16 bits"),
         (["--read-alone", "normal,colour"], "--read-alone colour: not held"),
         (["--formats", "rgba16", "--limit", "webgpu"], "no target is left"),
         (["--formats", "rgba8"], "no target of these formats holds motion (linear in halves); --formats names others"),
         (["--targets", "8"], "--targets"),
         (["--bytes", "0"], "--bytes"),
-        (["--hold", "basecolor,roughness"], "--hold: normal is missing; name for example normal,roughness"),
+        (["--hold", "base_color,roughness"], "--hold: normal is missing; name for example normal,roughness"),
         (["--classes", "shiny"], "shiny"),
         (["--hold", "id:4,id:8"], "--hold: id is named twice"),
         (["--hold", "colour"], f"--hold colour: unknown; known: {', '.join(KNOWN)}"),

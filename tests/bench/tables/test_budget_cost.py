@@ -29,10 +29,10 @@ from normalbench.gbuffer.layouts.presets import LAYOUTS
         ("all,all", 32, 32, "twice in full"),
         ("normal", 4, 8, "never in full, once for normal"),
         ("normal+roughness, id,1", 28, 32, "once in full, once for normal and roughness, once for id"),
-        ("basecolor+id", 8, 4, "never in full, once for basecolor and id"),
-        ("specular", 4, 4, "never in full, once for specular"),
+        ("base_color+id", 8, 4, "never in full, once for base_color and id"),
+        ("f0", 4, 4, "never in full, once for f0"),
         # Neither holds it.
-        ("emission", 0, 0, "never in full, once for emission"),
+        ("emissive", 0, 0, "never in full, once for emissive"),
         ("0", 0, 0, "never in full"),
     ],
 )
@@ -49,7 +49,7 @@ def test_a_reader_fetches_the_targets_that_hold_what_it_reads(readers, unreal, s
         ("-1", "--readers -1.0: from 0.0 to 64.0"),
         ("nan", "--readers -1.0: from 0.0 to 64.0"),
         ("32,33", "--readers 65.0: from 0.0 to 64.0"),
-        ("normals", "--readers normals: unknown; known: a number, all, normal, basecolor"),
+        ("normals", "--readers normals: unknown; known: a number, all, normal, base_color"),
         ("normal+flags", "--readers normal+flags: unknown"),
         ("normal+", "--readers normal+: unknown"),
     ],
@@ -63,7 +63,7 @@ def test_readers_that_are_none_are_one_line(readers, said):
 @pytest.mark.parametrize(
     ("asked", "said"),
     [
-        (["--readers", "emission"], "--readers emission: not held; held: normal, basecolor, roughness"),
+        (["--readers", "emissive"], "--readers emissive: not held; held: normal, base_color, roughness"),
         (["--family", "cypress"], "unknown"),
         (["--family", "navi22"], "navi22"),
         (["--most-instructions", "-1"], "--most-instructions -1: from 0 to 1000000"),
@@ -109,7 +109,7 @@ def test_the_dearest_family_is_that_of_a_pixel(monkeypatch):
 FEW = [
     replace(held.SEEN["normal"], codes=tuple(c for c in held.SEEN["normal"].codes if c.bits[0] in (10, 12, 14))),
     replace(held.SEEN["roughness"], codes=held.SEEN["roughness"].codes[1:4]),
-    replace(held.SEEN["metalness"], codes=held.SEEN["metalness"].codes[::2]),
+    replace(held.SEEN["metallic"], codes=held.SEEN["metallic"].codes[::2]),
 ]
 
 

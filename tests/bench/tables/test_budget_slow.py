@@ -27,7 +27,7 @@ def test_the_program_finds_what_exhaustive_search_finds():
     attributes = [
         replace(held.SEEN["normal"], codes=tuple(c for c in held.SEEN["normal"].codes if c.bits[0] in (10, 12, 14))),
         replace(held.SEEN["roughness"], codes=held.SEEN["roughness"].codes[1:4]),
-        replace(held.SEEN["metalness"], codes=held.SEEN["metalness"].codes[::2]),
+        replace(held.SEEN["metallic"], codes=held.SEEN["metallic"].codes[::2]),
     ]
     bins = [replace(BINS[name], copies=1) for name in ("rgb10a2", "r8", "rg8", "r32_uint_fields")]
     possible = []
@@ -98,7 +98,7 @@ def test_a_layout_is_drawn_and_is_what_was_predicted(gl, run, tmp_path):
     [
         ("normal", 4, {"normal"}),
         ("normal,roughness", 4, {"normal", "roughness"}),
-        ("normal,basecolor", 8, {"normal", "albedo"}),
+        ("normal,base_color", 8, {"normal", "albedo"}),
     ],
 )
 def test_what_is_not_held_is_exact_and_takes_no_bytes(run, kept, size, named):
