@@ -14,21 +14,32 @@ FILES = dict(re.findall(r"^<!-- file (\S+) -->\n```(?:yaml|groovy|toml)\n(.*?)^`
 
 
 WORKFLOW, PIPELINE, JENKINSFILE = (".github/workflows/normals.yml", ".gitlab-ci.yml", "Jenkinsfile")
+LEAST = ".github/workflows/gates.yml"
+ACTION = (ROOT / "action.yml").read_text()
 
 
 def test_actions_are_named_with_their_versions_and_install_what_the_manual_says():
-    assert set(FILES) == {WORKFLOW, PIPELINE, JENKINSFILE, ".pre-commit-config.yaml", "normals.toml"}
+    assert set(FILES) == {LEAST, WORKFLOW, PIPELINE, JENKINSFILE, ".pre-commit-config.yaml", "normals.toml"}
     used = [step["uses"] for step in yaml.safe_load(FILES[WORKFLOW])["jobs"]["normals"]["steps"] if "uses" in step]
     assert used and all(re.fullmatch(r"actions/[\w-]+@v\d+", name) for name in used)
-    installed = re.findall(r"--no-install-recommends (.*)$", PAGE, re.M)
-    assert len(installed) == 2 and len(set(installed)) == 1
+    installed = re.findall(r"--no-install-recommends (.*)$", PAGE + ACTION, re.M)
+    assert len(installed) == 3 and len(set(installed)) == 1
     assert all(name in PAGES[ROOT / "docs/commands.md"] for name in installed[0].split())
 
 
 def test_no_text_that_a_stranger_writes_is_part_of_a_script():
     """Names of branches come as variables: in a script of GitHub's they would be run."""
-    steps = yaml.safe_load(FILES[WORKFLOW])["jobs"]["normals"]["steps"]
+    steps = yaml.safe_load(FILES[WORKFLOW])["jobs"]["normals"]["steps"] + yaml.safe_load(ACTION)["runs"]["steps"]
     assert not any("${{" in step.get("run", "") for step in steps)
+
+
+def test_the_least_workflow_is_ten_lines_that_use_the_action_of_this_repository():
+    """What the action runs besides pip is held by the workflow's steps and by `check`."""
+    text = FILES[LEAST]
+    (step,) = (step for step in yaml.safe_load(text)["jobs"]["gates"]["steps"] if "with" in step)
+    assert len(text.splitlines()) <= 10 and set(step["with"]) <= set(yaml.safe_load(ACTION)["inputs"])
+    (checked,) = (step["run"] for step in yaml.safe_load(ACTION)["runs"]["steps"] if "GATES" in step.get("env", {}))
+    assert checked.startswith('normalbench check "$GATES" ')
 
 
 def hook() -> dict:
