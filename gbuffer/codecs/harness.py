@@ -64,7 +64,7 @@ class Passes:
         device: Device,
         shaders: tuple[str, str],
         defines: Mapping[str, object],
-        names: Mapping[str, Path],
+        names: Mapping[str, Path | tuple[Path, ...]],
         formats: Mapping[str, Storage],
         tables: Tables = dict,
     ):

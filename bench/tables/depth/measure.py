@@ -169,7 +169,8 @@ def _limits(codec: DepthCodec, camera: Camera, on: Points) -> tuple[np.ndarray, 
     """How far positions may move, without and with float32 arithmetic; the same for every back end. NaN where only
     shaders have the code: the exact maps are JAX's."""
     if codec.storage.code:
-        return (np.full(len(on.depths), np.nan),) * 2
+        unknown = np.full(len(on.depths), np.nan)
+        return unknown, unknown
     rays, depths = np.linalg.norm(on.rays(camera), axis=1), on.depths.astype(np.float64)
     try:
         half_steps, bounds = _in_blocks(

@@ -89,7 +89,7 @@ class DepthPasses(Passes):
         defines = depth_defines(codec.encoding) | _storage_defines(codec.storage, rounding, not is_native) | added
         code = codec.storage.code
         shaders = ("depth_encode.frag", "depth_decode.frag")
-        names = {"DEPTH_ENCODING": [codec.encoding.glsl, *([code.glsl] if code else [])]}
+        names = {"DEPTH_ENCODING": (codec.encoding.glsl, *((code.glsl,) if code else ()))}
         super().__init__(device, shaders, defines, names, {"texels": codec.storage.format}, tables)
 
     def round_trip(self, points: np.ndarray, camera: Camera, way: int) -> Rebuilt:
