@@ -25,18 +25,18 @@ class PixelSurfaces:
     Attributes:
         depth: (height, width), along the line of sight; 0 where there is no surface.
         normal: (height, width, 3), unit, in view space.
-        basecolor, emission: (height, width, 3), linear.
-        roughness, metalness, reflectance, occlusion: (height, width).
+        base_color, emissive: (height, width, 3), linear.
+        roughness, metallic, f0, ao: (height, width); f0 of a dielectric.
     """
 
     depth: np.ndarray
     normal: np.ndarray
-    basecolor: np.ndarray
+    base_color: np.ndarray
     roughness: np.ndarray
-    metalness: np.ndarray
-    reflectance: np.ndarray
-    occlusion: np.ndarray
-    emission: np.ndarray
+    metallic: np.ndarray
+    f0: np.ndarray
+    ao: np.ndarray
+    emissive: np.ndarray
 
 
 def pixel_scene(pixels: PixelSurfaces, view: View) -> Scene:
@@ -45,7 +45,7 @@ def pixel_scene(pixels: PixelSurfaces, view: View) -> Scene:
     Each square looks its texel up at the texel's centre, so nothing is filtered, whatever size it is drawn at.
     """
     covered = pixels.depth > 0
-    reflectances, level = _levels(pixels.reflectance, covered)
+    reflectances, level = _levels(pixels.f0, covered)
     meshes = [_squares(pixels.depth, level == at, view) for at in range(len(reflectances))]
     to_world, surface = np.linalg.inv(view.matrix())[None], _surface(pixels)
     return Scene(
@@ -84,12 +84,12 @@ def _surface(pixels: PixelSurfaces) -> MetalRough:
         metalness=1.0,
         roughness=1.0,
         emission=white,
-        base_map=lying(pixels.basecolor),
-        rough_metal_map=lying(one, pixels.roughness, pixels.metalness),
+        base_map=lying(pixels.base_color),
+        rough_metal_map=lying(one, pixels.roughness, pixels.metallic),
         # Read as 2 c - 1.
         normal_map=lying(pixels.normal * 0.5 + 0.5),
-        occlusion_map=lying(pixels.occlusion, one, one),
-        emission_map=lying(pixels.emission),
+        occlusion_map=lying(pixels.ao, one, one),
+        emission_map=lying(pixels.emissive),
     )
 
 

@@ -79,7 +79,7 @@ FRAME = json.dumps(
         "view_matrix": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]],
         "depth": {"file": "list.npy", "channel": "0", "depth_unit": 1.0},
         "normal": {"file": "list.npy", "channels": "0,1,2", "nan_share": 0.1, "unpack": False},
-        "basecolor": [0.5, 0.25, 1],
+        "base_color": [0.5, 0.25, 1],
         "roughness": {"file": "list.npy", "scale": 2},
     }
 )

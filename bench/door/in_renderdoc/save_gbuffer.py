@@ -28,11 +28,11 @@ COVERED = "covered"
 LEAST, MOST, SHARE = 0.97, 1.03, 0.9
 FLOATS = {2: "e", 4: "f", 8: "d"}
 # By names of targets, what they hold where they are called after one quantity: and that of a number or a colour.
-NUMBERS = {"roughness": "rough", "smoothness": "smooth|gloss", "metalness": "metal", "occlusion": "occlusion|\\bao\\b"}
-COLOURS = {"basecolor": "base_?colou?r|albedo", "emission": "emissi"}
-# What is left for people to say. Specular is what is reflected head on, which targets of that name seldom hold.
-QUANTITIES = ("depth", "normal", "basecolor", "roughness", "metalness", "specular", "occlusion", "emission")
-NEEDED = ("fov", "near", "far", "depth", "normal", "basecolor", "roughness")
+NUMBERS = {"roughness": "rough", "smoothness": "smooth|gloss", "metallic": "metal", "ao": "occlusion|\\bao\\b"}
+COLOURS = {"base_color": "base_?colou?r|albedo", "emissive": "emissi"}
+# What is left for people to say. F0 is what is reflected head on, which targets called specular seldom hold.
+QUANTITIES = ("depth", "normal", "base_color", "roughness", "metallic", "f0", "ao", "emissive")
+NEEDED = ("fov", "near", "far", "depth", "normal", "base_color", "roughness")
 # Unreal's targets, where there are all three; its specular of 1 reflects 0.08.
 UNREAL = re.compile(r"gbuffer_?([abc])$", re.I)
 # Normals that are looked at for what space they are in, and by how much more of them must face the camera.
@@ -247,10 +247,10 @@ def guessed(targets):
     if set("abc") <= set(letters):
         b, c = letters["b"]["file"], letters["c"]["file"]
         return {
-            "metalness": {"file": b, "channel": "R"},
-            "specular": {"file": b, "channel": "G", "scale": 0.08},
+            "metallic": {"file": b, "channel": "R"},
+            "f0": {"file": b, "channel": "G", "scale": 0.08},
             "roughness": {"file": b, "channel": "B"},
-            "basecolor": {"file": c, "channels": "R,G,B", "curve": "srgb"},
+            "base_color": {"file": c, "channels": "R,G,B", "curve": "srgb"},
         }
     kept = {}
     for name, one in targets.items():

@@ -25,7 +25,7 @@ from .frame_file import COLOUR, ENTRIES, FrameFile, as_keys
 # Pixels of a frame that are drawn; of larger ones every second row and column, every third and so on.
 MOST_PIXELS = 2**18
 # What stands in for a quantity that a frame does not have.
-STAND_INS = {"metalness": 0.0, "specular": DIELECTRIC, "occlusion": 1.0, "emission": 0.0}
+STAND_INS = {"metallic": 0.0, "f0": DIELECTRIC, "ao": 1.0, "emissive": 0.0}
 # By how much numbers may be beyond 0 and 1: rounding of floats of 16 bits.
 BEYOND = 1e-3
 MOST_LIGHT = 1e6
@@ -108,8 +108,7 @@ class _Reader:
         assert roughness is not None
         said = {name: self._stood_in(name, found, depth.shape) for name, found in said.items()}
         self._say_what_stands_in()
-        reflectance = said.pop("specular")
-        return PixelSurfaces(depth=depth, normal=normal, roughness=roughness, reflectance=reflectance, **said)
+        return PixelSurfaces(depth=depth, normal=normal, roughness=roughness, **said)
 
     def _asked(self, name: str, read: Callable[[], Any]) -> Any:
         """What is read of an entry. Raises UsageError that names it."""
@@ -155,7 +154,7 @@ class _Reader:
         else:
             found = np.multiply.outer(covered, np.asarray(said)).astype(np.float32)
         self._asked(name, lambda: _check_range(name, found[covered]))
-        return found if name == "emission" else np.clip(found, 0.0, 1.0)
+        return found if name == "emissive" else np.clip(found, 0.0, 1.0)
 
     def _image(self, name: str, said: dict[str, Any], covered: np.ndarray) -> np.ndarray:
         path = Path(said["file"])
@@ -165,7 +164,7 @@ class _Reader:
         if pixels.steps:
             self._coarse.setdefault(pixels.steps.bit_length(), []).append(name)
         curve = choose_one("curve", said.get("curve", "linear"), CURVES)
-        if name == "basecolor" and "curve" not in said and pixels.full == READS_AS_COLOUR:
+        if name == "base_color" and "curve" not in said and pixels.full == READS_AS_COLOUR:
             self._note(
                 name, ['8 bits without "curve" are read as linear; "curve": "srgb" is what images for screens have']
             )
@@ -260,7 +259,7 @@ def _check_finite(path: Path, planes: np.ndarray, covered: np.ndarray) -> None:
 def _check_range(name: str, found: np.ndarray) -> None:
     """Raises UsageError for numbers that a quantity cannot have."""
     low, high = float(found.min()), float(found.max())
-    if name == "emission":
+    if name == "emissive":
         if not 0 <= low <= high <= MOST_LIGHT:
             raise UsageError(f"its numbers are {low:.3g} to {high:.3g}; light is 0 to {MOST_LIGHT:g}")
     elif not -BEYOND <= low <= high <= 1 + BEYOND:

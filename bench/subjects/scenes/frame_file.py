@@ -34,13 +34,13 @@ ENTRIES: Mapping[str, Mapping[str, type]] = MappingProxyType(
     {
         "depth": DEPTH,
         "normal": NORMAL,
-        "basecolor": COLOUR,
+        "base_color": COLOUR,
         "roughness": NUMBER,
         "smoothness": NUMBER,
-        "metalness": NUMBER,
-        "specular": NUMBER,
-        "occlusion": NUMBER,
-        "emission": COLOUR,
+        "metallic": NUMBER,
+        "f0": NUMBER,
+        "ao": NUMBER,
+        "emissive": COLOUR,
     }
 )
 # Of a 32-bit float.
@@ -49,7 +49,7 @@ CAMERA = ("fov", "near", "far")
 # What a script says of the capture is not read.
 KNOWN = (*CAMERA, "view_matrix", *ENTRIES, "capture")
 # Without these there is no image; roughness may be smoothness.
-NEEDED = (*CAMERA, "depth", "normal", "basecolor", "roughness")
+NEEDED = (*CAMERA, "depth", "normal", "base_color", "roughness")
 
 
 @dataclass(frozen=True)

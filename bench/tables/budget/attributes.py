@@ -161,7 +161,7 @@ def _curved(curve: str, limit: float | None, component: str) -> str:
     return f"{curve}({component})" if limit is None else f"{curve}:{limit:g}({component})"
 
 
-def _basecolors() -> Iterator[Code]:
+def _base_colors() -> Iterator[Code]:
     yield _on_curve("base_color", "albedo", "srgb", (8, 8, 8), SRGB)
     # Textures have 8 bits: more would keep nothing that they have.
     for bits in ((7, 7, 6), (7, 7, 7), (8, 8, 8)):
@@ -261,7 +261,7 @@ SEEN: Mapping[str, Attribute] = MappingProxyType(
         one.name: one
         for one in (
             Attribute("normal", tuple(_normals()), 20),
-            Attribute("base_color", tuple(_basecolors()), 18),
+            Attribute("base_color", tuple(_base_colors()), 18),
             Attribute(
                 "roughness",
                 (

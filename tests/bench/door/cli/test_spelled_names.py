@@ -76,7 +76,7 @@ def test_a_captured_frame_has_a_base_colour_however_it_is_spelled(tmp_path, key)
     (tmp_path / "a.npy").touch()
     said = {"fov": 60, "near": 0.1, "far": 100, "depth": entry, "normal": entry, "roughness": 0.5, key: [1, 1, 1]}
     (tmp_path / "gbuffer.json").write_text(json.dumps(said))
-    assert read_frame_file(tmp_path / "gbuffer.json").entries["basecolor"] == [1, 1, 1]
+    assert read_frame_file(tmp_path / "gbuffer.json").entries["base_color"] == [1, 1, 1]
 
 
 @pytest.mark.parametrize("option", ["--hold", "--blend", "--read-alone", "--readers"])

@@ -160,13 +160,13 @@ def test_what_targets_hold_is_guessed_by_names_that_leave_no_doubt():
         "Metallic": target(),
     }
     assert script.guessed(named) == {
-        "basecolor": {"file": "a.exr", "channels": "R,G,B", "curve": "srgb"},
+        "base_color": {"file": "a.exr", "channels": "R,G,B", "curve": "srgb"},
         "roughness": {"file": "b.exr", "channel": "R"},
-        "emission": {"file": "c.exr", "channels": "R,G,B", "curve": "linear"},
-        "occlusion": {"file": "d.exr", "channel": "R"},
+        "emissive": {"file": "c.exr", "channels": "R,G,B", "curve": "linear"},
+        "ao": {"file": "d.exr", "channel": "R"},
     }
     unreal = {f"GBuffer{letter}": target(file=f"{letter}.exr") for letter in "ABC"}
     found = script.guessed(unreal)
-    assert found["specular"] == {"file": "B.exr", "channel": "G", "scale": 0.08} and "occlusion" not in found
-    assert found["basecolor"] == {"file": "C.exr", "channels": "R,G,B", "curve": "srgb"}
+    assert found["f0"] == {"file": "B.exr", "channel": "G", "scale": 0.08} and "ao" not in found
+    assert found["base_color"] == {"file": "C.exr", "channels": "R,G,B", "curve": "srgb"}
     assert not script.guessed({"GBufferA": target(), "GBufferB": target()})

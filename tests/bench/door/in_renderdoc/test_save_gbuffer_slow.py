@@ -68,8 +68,8 @@ def test_a_captured_program_is_measured(display, run, tmp_path, monkeypatch):
     turned = rows_of(run, quality + world.partition("add:")[2])
     assert turned[0]["psnr_db"] == pytest.approx(row["psnr_db"], abs=1e-3), "the camera does not turn"
     assert all(row["relative_max"] < 1e-3 for row in rows_of(run, depth))
-    guessed = [name for name in ("basecolor", "roughness") if frame[name]]
-    assert len(guessed) == 2 and frame["metalness"] is None and "guessed" in done.stdout and "metalness" in done.stdout
+    guessed = [name for name in ("base_color", "roughness") if frame[name]]
+    assert len(guessed) == 2 and frame["metallic"] is None and "guessed" in done.stdout and "metallic" in done.stdout
     check_scene()
 
 
@@ -81,7 +81,7 @@ def check_scene():
         exact = Exact(device(), stack, Stage(maker, Setting(), maker.sides))
         covered, surfaces = exact.covered, exact.surfaces
     assert 2000 < covered.sum() < 8000 and set(np.unique(surfaces.roughness[covered])) == {0.375}
-    assert np.allclose(surfaces.basecolor[covered], np.round(np.array([1, 0.5, 0.25]) * 255) / 255, atol=1e-6)
+    assert np.allclose(surfaces.base_color[covered], np.round(np.array([1, 0.5, 0.25]) * 255) / 255, atol=1e-6)
     middle = surfaces.normal[45, 80]
     assert np.allclose(middle, (0, 0, 1), atol=0.03)
 

@@ -22,14 +22,14 @@ def frame(folder: Path, **changes) -> Path:
     arrays = {
         "depth": np.linspace(2.0, 8.0, 16 * 24).reshape(shape),
         "normal": np.broadcast_to((0.0, 0.6, 0.8), (*shape, 3)),
-        "basecolor": np.linspace(0.0, 1.0, 16 * 24 * 3).reshape(*shape, 3),
+        "base_color": np.linspace(0.0, 1.0, 16 * 24 * 3).reshape(*shape, 3),
         "roughness": np.linspace(0.1, 0.9, 16 * 24).reshape(shape),
         "small": np.ones((8, 12)),
         "holes": np.full(shape, np.nan),
     }
     for name, found in arrays.items():
         np.save(folder / f"{name}.npy", found.astype(np.float32))
-    said = {name: {"file": f"{name}.npy"} for name in ("depth", "normal", "basecolor", "roughness")}
+    said = {name: {"file": f"{name}.npy"} for name in ("depth", "normal", "base_color", "roughness")}
     said |= {"fov": 60, "near": 1, "far": 10} | changes
     path = folder / "frame.json"
     path.write_text(json.dumps({name: one for name, one in said.items() if one != "left out"}))
@@ -52,23 +52,23 @@ def pixels_of(path: Path) -> PixelSurfaces:
         ({"normal": "left out"}, ("no normal", '"normal": {"file": "FILE", "channels"')),
         ({"roughness": None, "near": None}, ("no near, roughness", '"near": NUMBER')),
         ({"smoothness": 0.5}, ("roughness and smoothness are one quantity",)),
-        ({"basecolor": {"file": "gone.npy"}}, ("basecolor: no file gone.npy", "from the folder of frame.json")),
-        ({"basecolor": {"file": "../away.npy"}}, ("basecolor", "leaves the file's folder")),
-        ({"basecolor": 0.5}, ("basecolor is 0.5", '"channels"')),
+        ({"base_color": {"file": "gone.npy"}}, ("base_color: no file gone.npy", "from the folder of frame.json")),
+        ({"base_color": {"file": "../away.npy"}}, ("base_color", "leaves the file's folder")),
+        ({"base_color": 0.5}, ("base_color is 0.5", '"channels"')),
         ({"roughness": {"channel": "R"}}, ("roughness: no file",)),
         ({"roughness": {"file": "small.npy"}}, ("roughness", "small.npy", "12 x 8", "24 x 16", "one size")),
         ({"normal": {"file": "small.npy"}}, ("normal", "small.npy")),
         ({"roughness": {"file": "holes.npy"}}, ("384 of 384 pixels are NaN", "row 0, column 0", "mask")),
-        ({"roughness": {"file": "basecolor.npy"}}, ("no channel is named; it has 0, 1, 2", '"channel" names one')),
-        ({"roughness": {"file": "basecolor.npy", "channel": "A"}}, ("no channel 'A'", "it has 0, 1, 2")),
+        ({"roughness": {"file": "base_color.npy"}}, ("no channel is named; it has 0, 1, 2", '"channel" names one')),
+        ({"roughness": {"file": "base_color.npy", "channel": "A"}}, ("no channel 'A'", "it has 0, 1, 2")),
         (
-            {"basecolor": {"file": "basecolor.npy", "channels": "R,G,B"}},
+            {"base_color": {"file": "base_color.npy", "channels": "R,G,B"}},
             ("no channels R,G,B", '"channels" names three'),
         ),
         ({"roughness": {"file": "depth.npy"}}, ("roughness: its numbers are 2 to 8", "0 to 1", '"scale"')),
-        ({"metalness": -1}, ("metalness: its numbers are -1 to -1",)),
-        ({"emission": [0, 0, -1]}, ("emission: its numbers are -1 to 0", "light")),
-        ({"basecolor": {"file": "basecolor.npy", "curve": "srbg"}}, ("unknown curve 'srbg'", "srgb")),
+        ({"metallic": -1}, ("metallic: its numbers are -1 to -1",)),
+        ({"emissive": [0, 0, -1]}, ("emissive: its numbers are -1 to 0", "light")),
+        ({"base_color": {"file": "base_color.npy", "curve": "srbg"}}, ("unknown curve 'srbg'", "srgb")),
         ({"depth": {"file": "depth.npy", "depths_are": "window"}}, ("depth", "2 to 8", '"depths_are" view')),
         ({"depth": {"file": "depth.npy", "depth_unit": 100}}, ("no depth lies within near and far", "200 to 800")),
         ({"depth": {"file": "depth.npy", "depth_unit": "m"}}, ("depth_unit is 'm'", "a number")),
@@ -79,7 +79,7 @@ def pixels_of(path: Path) -> PixelSurfaces:
         ({"fov": 0}, ("fov is 0", "1 to 175")),
         ({"near": 10, "far": 1}, ("near is 10 and far is 1", "reversed_window")),
         ({"far": "infinite"}, ("far is 'infinite'", "a number")),
-        ({"basecolor": [1e300, 0, 0]}, ("basecolor is 1e+300", "a 32-bit float holds")),
+        ({"base_color": [1e300, 0, 0]}, ("base_color is 1e+300", "a 32-bit float holds")),
         ({"roughness": {"file": "roughness.npy", "scale": -1e39}}, ("roughness: scale is -1e+39", "a 32-bit float")),
         ({"view_matrix": [1, 0, 0, 0, 1, 0, 0, 0, 10**300]}, ("view_matrix is 1e+300", "a 32-bit float")),
     ],
@@ -112,13 +112,13 @@ def test_what_is_no_description_is_one_line(tmp_path, text):
 
 
 def test_numbers_stand_for_quantities_and_smoothness_for_roughness(tmp_path):
-    smooth = {"roughness": None, "smoothness": {"file": "roughness.npy"}, "metalness": 1, "emission": [0, 0.5, 2]}
-    found = pixels_of(frame(tmp_path, **smooth, specular={"file": "roughness.npy", "scale": 0.08}))
+    smooth = {"roughness": None, "smoothness": {"file": "roughness.npy"}, "metallic": 1, "emissive": [0, 0.5, 2]}
+    found = pixels_of(frame(tmp_path, **smooth, f0={"file": "roughness.npy", "scale": 0.08}))
     rough = np.load(tmp_path / "roughness.npy")
-    assert np.allclose(found.roughness, 1 - rough) and np.allclose(found.reflectance, 0.08 * rough)
-    assert (found.metalness == 1).all() and (found.emission == (0, 0.5, 2)).all() and (found.occlusion == 1).all()
+    assert np.allclose(found.roughness, 1 - rough) and np.allclose(found.f0, 0.08 * rough)
+    assert (found.metallic == 1).all() and (found.emissive == (0, 0.5, 2)).all() and (found.ao == 1).all()
     (line,) = read(frame(tmp_path, **smooth)).notes
-    assert line.startswith("it has no specular (0.04), occlusion (1)")
+    assert line.startswith("it has no f0 (0.04), ao (1)")
 
 
 def test_background_is_what_depth_or_normals_say(tmp_path):
@@ -166,9 +166,9 @@ def test_worlds_of_any_axes_have_y_up(up, hand):
 
 
 def test_many_reflectances_are_rounded_and_few_are_not(tmp_path):
-    few = pixel_scene(pixels_of(frame(tmp_path, specular=0.05)), SCENES["ramps"].make(Setting()).view)
+    few = pixel_scene(pixels_of(frame(tmp_path, f0=0.05)), SCENES["ramps"].make(Setting()).view)
     assert [one.reflectance for one in few.materials] == [pytest.approx(0.05)]
-    many = read(frame(tmp_path, specular={"file": "roughness.npy", "scale": 0.1})).scene
+    many = read(frame(tmp_path, f0={"file": "roughness.npy", "scale": 0.1})).scene
     found = np.array([one.reflectance for one in many.materials])
     assert 200 < len(found) <= 256 and np.diff(found).min() > 0
     assert found[[0, -1]] == pytest.approx((0.01, 0.09)) and len(many.parts) == len(found)
@@ -178,9 +178,9 @@ def test_images_belong_to_what_is_measured(tmp_path):
     """Another image makes another input, and workers are sent it."""
     matrix = tmp_path / "view.txt"
     matrix.write_text("1 0 0 0 1 0 0 0 1")
-    path = frame(tmp_path, view_matrix="view.txt", metalness=0)
+    path = frame(tmp_path, view_matrix="view.txt", metallic=0)
     assert [one.name for one in companions(path)] == [
-        *("basecolor.npy", "depth.npy", "normal.npy", "roughness.npy", "view.txt")
+        *("base_color.npy", "depth.npy", "normal.npy", "roughness.npy", "view.txt")
     ]
     path.write_text("{")
     assert companions(path) == []

@@ -14,17 +14,20 @@ from written import png_bytes
 from normalbench.bench.tables.budget.attributes import SEEN
 from normalbench.bench.tables.budget.rates import Exact, Stage
 from normalbench.encodings.storages.rounding import from_srgb
+from normalbench.gbuffer.environment.catalogue import ENVIRONMENTS
 from normalbench.gbuffer.frame.resources import LINEAR_DEPTH
 from normalbench.gbuffer.scenes.catalogue import SCENES, SceneMaker
+from normalbench.gbuffer.scenes.files.read import AROUND
 from normalbench.gbuffer.scenes.setting import Setting
 
 SIZE = (160, 120)
 
 
 def unlit(name: str) -> SceneMaker:
-    """A scene of the catalogue under its environment alone, as frames are."""
+    """A scene of the catalogue under the environment of captured frames alone."""
     maker = SCENES[name]
-    return replace(maker, make=lambda setting: replace(maker.make(setting), lights=()))
+    around = ENVIRONMENTS[AROUND].make()
+    return replace(maker, make=lambda setting: replace(maker.make(setting), lights=(), environment=around))
 
 
 def written(exact: Exact, folder: Path) -> Path:
@@ -59,7 +62,7 @@ def test_a_scene_that_was_read_back_has_the_images_of_the_scene(gl, name, tmp_pa
             apart = abs(getattr(whole.surfaces, one) - getattr(again.surfaces, one))[whole.covered]
             assert apart.max() < 1e-6 * max(1.0, abs(getattr(whole.surfaces, one)).max()), one
         assert abs(whole.shown - again.shown).max() < 1e-4
-        for attribute in ("normal", "basecolor", "roughness", "metalness", "occlusion"):
+        for attribute in ("normal", "base_color", "roughness", "metallic", "ao"):
             code = SEEN[attribute].codes[0]
             errors, others = whole.of(code.trip), again.of(code.trip)
             for of_class, error in errors.items():
@@ -72,12 +75,12 @@ def test_images_of_eight_bits_are_read_by_their_curve_and_named(tmp_path):
     rng = np.random.default_rng(5)
     colours = rng.integers(0, 256, (16, 24, 3), np.uint8)
     (tmp_path / "a.png").write_bytes(png_bytes(colours))
-    path = frame(tmp_path, basecolor={"file": "a.png", "curve": "srgb"})
+    path = frame(tmp_path, base_color={"file": "a.png", "curve": "srgb"})
     np.save(tmp_path / "roughness.npy", rng.integers(0, 256, (16, 24)).astype(np.float32) / np.float32(255))
-    assert np.allclose(pixels_of(path).basecolor, from_srgb(colours / 255), atol=1e-6)
+    assert np.allclose(pixels_of(path).base_color, from_srgb(colours / 255), atol=1e-6)
     assert (
-        "basecolor, roughness: steps of 8 bits; codes of the same steps look better than they are" in read(path).notes
+        "base_color, roughness: steps of 8 bits; codes of the same steps look better than they are" in read(path).notes
     )
-    path = frame(tmp_path, basecolor={"file": "a.png"})
-    assert np.allclose(pixels_of(path).basecolor, colours / 255, atol=1e-6)
+    path = frame(tmp_path, base_color={"file": "a.png"})
+    assert np.allclose(pixels_of(path).base_color, colours / 255, atol=1e-6)
     assert any('"curve": "srgb"' in line for line in read(path).notes)
