@@ -49,7 +49,7 @@ from .pairs import (
     speaks_of_normals,
 )
 from .plain import NotPlainError, plain
-from .programs import Read, TranslationError
+from .programs import ANY, Read, TranslationError
 from .shaped import shaped_pair
 from .source import Part, Source
 from .wiring import Wiring, candidates, wired, wiring_of
@@ -254,7 +254,7 @@ def _facts_of_texts(
     except TranslationError as error:
         # What was cut out for another reason is not defined for that one.
         unknown = _UNDEFINED.search(str(error))
-        why = found.lost.get(unknown[1], "") if unknown else ""
+        why = found.lost.get(unknown[1], found.lost.get(ANY, "")) if unknown else ""
         raise TranslationError(why or str(error)) from None
     return {
         "name": name,

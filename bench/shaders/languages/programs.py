@@ -24,6 +24,9 @@ _HALF = re.compile(rf"\b(?:(?:{'|'.join(HALVES)})(?:[1-4](?:x[1-4])?)?|f16(?:vec
 VERSION, YEAR = "__HLSL_VERSION", "2018"
 SIZES = ("", "2", "3", "4")
 
+# In place of a name.
+ANY = ""
+
 
 class Read(NamedTuple):
     """What a compiler reads of a source.
@@ -32,7 +35,7 @@ class Read(NamedTuple):
         source: the part of it that is compiled; each line stands where it stood.
         functions: those of vectors in it.
         refused: by its name, why a function is not among them.
-        lost: by its name, why a global or a type is not in the source.
+        lost: by its name, why a global or a type is not in the source; of ANY, why names are not that nobody knows.
     """
 
     source: Source

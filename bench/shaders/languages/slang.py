@@ -18,7 +18,7 @@ from ...ground.compilers.lines import blank, with_known_directives
 from ...ground.compilers.text import OTHER_FILES, RefusedError
 from .items import Item, blanked, defined_in, functions_in, heads, items, marked_heads, without
 from .pairs import Function
-from .programs import ENGINE_TYPES, ENTRY, HALVES, Read, TranslationError, macros, program, template
+from .programs import ANY, ENGINE_TYPES, ENTRY, HALVES, Read, TranslationError, macros, program, template
 from .reflection import functions_of
 from .source import Source
 
@@ -49,6 +49,9 @@ _OF_A_STAGE = re.compile(
 )
 # What GLSL fills as no other language does: a matrix of one number is a diagonal.
 _DIAGONAL = re.compile(r"\bmat[234](?:x[234])?\s*\(")
+
+# Said of words that read other files.
+INSTEAD = "; #include a file next to it"
 
 
 class RefusedWordError(TranslationError):
@@ -110,7 +113,7 @@ def _readable_part(source: Source, first: Callable[[str], str], folder: Path, op
         left = source.with_text(without(source.text, bad))
         refused |= {name: why for item, why in bad.items() for name in _names_in_head(source.text, item)}
         texts = {source.text[item.start : item.end]: why for item, why in bad.items() if not item.function}
-        lost |= {name: why for text, why in texts.items() for name in defined_in(text)}
+        lost |= {name: why for text, why in texts.items() for name in (*defined_in(text), *_any_name(why))}
         source = left
     # The library ends the process where it is asked for a function that has the name of one of its own.
     made = _compiled(source, marked_heads(source.text, MARK) + NO_ENTRY, (*options, *TARGET), folder)
@@ -158,7 +161,14 @@ def _live_part(source: Source, folder: Path, options: tuple[str, ...]) -> Source
 def _names_in_head(text: str, item: Item) -> list[str]:
     """The names that an item may give a function: that of the one that it defines, else all that stand before (."""
     before, brace, _ = text[item.start : item.end].partition("{")
-    return [item.name] if item.function else _CALLED.findall(before) if brace else []
+    if item.function:
+        return [item.name]
+    return _CALLED.findall(before) if brace or "=" not in before else []
+
+
+def _any_name(why: str) -> list[str]:
+    """ANY where what is cut out reads another file, whose names nobody knows."""
+    return [ANY] if why.endswith(INSTEAD) else []
 
 
 def _items_at(source: Source, messages: Iterable[tuple[int, int, str]]) -> dict[Item, str]:
@@ -215,14 +225,18 @@ def _compiled(source: Source, text: str, options: tuple[str, ...], folder: Path)
         if not error.line:
             raise TranslationError(refusal(source, error)) from None
         line = text.split("\n")[error.line - 1]
-        place = (error.line, line.find(error.word) + 1, error.why)
+        place = (error.line, line.find(error.word) + 1, _explained(error))
         raise RefusedWordError(refusal(source, error), place) from None
 
 
 def refusal(source: Source, error: RefusedError) -> str:
     """Return why a text of a source is refused, with the user's file and line."""
-    why = error.why + ("; #include a file next to it" if error.word in OTHER_FILES else "")
+    why = _explained(error)
     return source.explained(error.line, why) if error.line else f"{source.path}: {why}"
+
+
+def _explained(error: RefusedError) -> str:
+    return error.why + (INSTEAD if error.word in OTHER_FILES else "")
 
 
 def check(source: Source, said: str, status: int) -> None:

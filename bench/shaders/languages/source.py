@@ -102,8 +102,10 @@ def _read(own: Path, path: Path, language: str) -> _Text:
         return _Text(lines, found, _NATURE)
     imports: dict[int, str] = {}
     if (language or TRANSLATED.get(path.suffix.lower())) == "Slang":
-        imports = {at: match[1] or match[2] for at, line in enumerate(lines) if (match := _IMPORT.fullmatch(line))}
-        found |= {at: name.removesuffix(SLANG).replace(".", "/") + SLANG for at, name in imports.items()}
+        matches = {at: match for at, line in enumerate(lines) if (match := _IMPORT.fullmatch(line))}
+        # A name's points part folders; what is quoted is a path.
+        imports = {at: (match[1] or "").replace(".", "/") or match[2] for at, match in matches.items()}
+        found |= {at: path.removesuffix(SLANG) + SLANG for at, path in imports.items()}
         lines = ["" if _MODULE.fullmatch(line) else line for line in lines]
     guard = _PRAGMA if any(map(_ONCE.fullmatch, lines)) else _guard(lines)
     return _Text(lines, found, guard, frozenset(imports))

@@ -186,9 +186,9 @@ def _answer_without_killer(file: UserFile, by: str, kind: Kind) -> dict[str, Any
             return None
         if len(left_out) == 1:
             said = f"{_one_line(left_out[0])} kills the compiler"
-            more = {"error": f"{found['error']}; {said}"} if "error" in found else {}
+            more = {"error": f"{said}; without it: {found['error']}"} if "error" in found else {}
             notes = {"notes": [f"{said} and is left out", *found["notes"]]} if "notes" in found else {}
-            return {name: value for name, value in found.items() if name != "left_out"} | more | notes
+            return {name: value for name, value in found.items() if name not in ("left_out", "alone")} | more | notes
 
 
 def _one_line(said: Any) -> str:

@@ -1,6 +1,7 @@
 """What a file may not do, and what stands in the way of a pair: found by those who tried."""
 
 import itertools
+import re
 
 import pytest
 from typed import translated
@@ -15,6 +16,7 @@ ENCODE = "float2 PackDir(float3 n) { return CODE; }\n"
 DECODE = "float3 UnpackDir(float2 e) { return float3(e, sqrt(saturate(1.0 - dot(e, e)))); }\n"
 WGSL = "fn f_encode(n: vec3f) -> vec2f { return n.xy * two(); }\n"
 WGSL += "fn f_decode(e: vec2f) -> vec3f { return vec3f(e, 0.0); }\n"
+UNREAD = r"mine\.\w+:\d+(:\d+)?: .*(\w+ is not read|other.slang lies outside the folder)"
 PLAIN = ENCODE.replace("CODE", "n.xy") + DECODE
 
 
@@ -26,21 +28,30 @@ PLAIN = ENCODE.replace("CODE", "n.xy") + DECODE
         '__target_intrinsic(cpp, "exit(1)") float f(float a);\n',
         '#define P(a, b) a##b\nfloat f(float a) { P(__intrin, sic_asm) "exit(1)"; }\n',
         '__intrin\\\nsic_asm "exit(1)";\n',
-        'import "other.slang";\n',
-        '#define I import\nI "other.slang";\n',
-        'imp\\\nort "other.slang";\n',
-        '#define J(x) x "other.slang"\nJ(import);\n',
-        '#define P(a, b) a##b\nP(imp, ort) "other.slang";\n',
+        'import "../other.slang";\n',
+        '#define I import\nI "../other.slang";\n',
+        'imp\\\nort "../other.slang";\n',
+        '#define J(x) x "../other.slang"\nJ(import);\n',
+        '#define P(a, b) a##b\nP(imp, ort) "../other.slang";\n',
     ],
 )
 def test_a_file_writes_no_program_and_reads_no_other_file(tmp_path, text, ending):
-    """Words of Slang's that put a string into the C++ that is run, or read a module, however they are written."""
-    (tmp_path / "other.slang").write_text("float secret() { return 1.0; }\n")
-    path = tmp_path / f"mine.{ending}"
-    code = ENCODE.replace("CODE", "n.xy * f(1.0)") + DECODE if "f(" in text else PLAIN
-    path.write_text(text + code)
-    with pytest.raises(UsageError, match=r"mine\.\w+:\d+: \w+ is not read"):
-        translated(path)
+    """Words of Slang's that put a string into the C++ that is run, or read a module, however they are written: what
+    needs them is refused, and what does not is measured as if they were not there."""
+    (tmp_path / "other.slang").write_text("float f(float a) { return 1.0; }\n")
+    path = tmp_path / "own" / f"mine.{ending}"
+    (path.parent / ".git").mkdir(parents=True)
+    path.write_text(PLAIN)
+    plain = translated(path).texts
+    path.write_text(text + PLAIN)
+    try:
+        assert translated(path).texts == plain
+    except UsageError as error:
+        assert re.search(UNREAD, str(error)), error
+    if "f(" in text or "other" in text:
+        path.write_text(text + ENCODE.replace("CODE", "n.xy * f(1.0)") + DECODE)
+        with pytest.raises(UsageError, match=UNREAD):
+            translated(path)
 
 
 # What hides an include from whoever looks at lines one by one. JOIN is a line's end that is none.
@@ -91,8 +102,9 @@ def test_no_disguise_of_an_include_reads_a_file_elsewhere(tmp_path, ending, by, 
 
 def test_a_refusal_names_the_line_whatever_branches_stand_before_it(tmp_path):
     path = tmp_path / "mine.hlsl"
-    path.write_text("#ifdef A\n#else\n#endif\n#if B\n#endif\nimport x;\n" + PLAIN)
-    with pytest.raises(UsageError, match=r"mine\.hlsl:6: import is not read; #include a file next to it"):
+    needs = ENCODE.replace("CODE", "n.xy * f(1.0)") + DECODE
+    path.write_text("#ifdef A\n#else\n#endif\n#if B\n#endif\nimport x;\n" + needs)
+    with pytest.raises(UsageError, match=r"mine\.hlsl:6:1: import is not read; #include a file next to it"):
         translated(path)
     path.write_text("#ifdef A\n#else\n#endif\n#define B a # b\n#if C # 1\n#endif\n" + PLAIN)
     with pytest.raises(UsageError, match=r"mine\.hlsl:5: a # inside a line is not read"):

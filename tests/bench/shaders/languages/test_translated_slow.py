@@ -117,6 +117,7 @@ ENDLESS = "float s = n.x; while (s < 2.0) s *= 0.5; return n.xy * s;"
 READS = "Texture2D<float4> T; SamplerState S;\n" + changed("return T.SampleLevel(S, n.xy, 0).xy;")
 
 
+KILLED = "too much for it|did not end|killed|kills the compiler"
 # What is wrong, and what its line says.
 WRONG = {
     "undeclared": (changed("\n return n.xy * strange;"), r":5:16: (strange: unknown variable|undefined.*'strange')"),
@@ -131,8 +132,8 @@ WRONG = {
     "endless": (changed(ENDLESS), "do not end here"),
     "recurses": (changed("return EncodeNormal(n.yzx);"), "[Rr]ecursion"),
     "reads": (READS, "read a texture or a constant buffer"),
-    "bomb": (BOMB + changed("float s = n.x; A14 return n.xy * s;"), "too much for it|did not end|killed"),
-    "deep": (changed(f"return {'(' * 30000}p{')' * 30000};"), "too much for it|did not end|killed"),
+    "bomb": (BOMB + changed("float s = n.x; A14 return n.xy * s;"), KILLED),
+    "deep": (changed(f"return {'(' * 30000}p{')' * 30000};"), KILLED),
 }
 
 

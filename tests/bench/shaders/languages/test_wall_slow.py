@@ -50,7 +50,7 @@ def answer(tmp_path, head="", attempt="pass", is_walled=True, code=MINE):
     path = tmp_path / "own" / "mine.hlsl"
     path.write_text(code)
     fault = FAULT.format(head=head, attempt=attempt, is_walled=is_walled)
-    words = [sys.executable, "-P", "-c", fault, str(tmp_path / "work"), str(path), "", "normal"]
+    words = [sys.executable, "-P", "-c", fault, str(tmp_path / "work"), str(path), "", "normal", "0:0"]
     done = subprocess.run(words, capture_output=True, encoding="utf-8", env=children.environment())
     assert done.stdout, done.stderr
     return json.loads(done.stdout), done.stdout + done.stderr
