@@ -76,7 +76,7 @@ class Domain:
 RIM = 0.02
 SPHERE, VIEWED, NONE = Domain("sphere"), Domain("view"), Domain("")
 HALVES = tuple(Domain(HEMISPHERE, axis, side) for axis in (2, 1, 0) for side in (1, -1))
-# In this order: what comes back of z >= 0 does so of much that faces the viewer.
+# Of two that are as likely the first is meant.
 IN_TURN = (SPHERE, HALVES[0], VIEWED, *HALVES[1:])
 # Nearly all.
 MOST = 0.95
@@ -87,7 +87,10 @@ AS_WELL, EXACT_DEG = 1.1, 5e-5
 def guessed(trip: Trip, within: float) -> Domain:
     """Where the decoder undoes the encoder within so many degrees, seams and poles apart; NONE where nowhere."""
     is_same = trip.angles() < within
-    return next((one for one in IN_TURN if is_same[one.holds(trip)].mean() > MOST), NONE)
+    shares = {domain: is_same[domain.holds(trip)].mean() for domain in IN_TURN}
+    # A code of the sphere undoes seams of a half a little better; z >= 0 and what faces the viewer share most.
+    likely = SPHERE if shares[SPHERE] > MOST else max(IN_TURN, key=shares.__getitem__)
+    return likely if shares[likely] > MOST else NONE
 
 
 def finite(trip: Trip) -> list[Domain]:

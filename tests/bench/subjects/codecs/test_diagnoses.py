@@ -352,7 +352,6 @@ def test_a_table_says_it_too(run, tmp_path):
         (("--domain", "sphere"), "name it"),
         (("a.glsl", "--domain", "z"), "unknown domain 'z'"),
         (("a.glsl", "--storage", "all"), "doctor measures in one storage"),
-        ((".",), ".: it is a folder; name a file"),
         (("nothing.glsl",), "there is no such file"),
         (("a.glsl", "--plot", "a.txt"), "a.txt"),
     ],

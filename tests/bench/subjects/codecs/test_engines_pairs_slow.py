@@ -97,7 +97,8 @@ def test_one_function_alone_is_told_what_it_is(run, tmp_path, command, name):
     "name, said, table", [("frame.hlsl", "tangent frames", "frames"), ("motion.hlsl", "motion vectors", "vectors")]
 )
 def test_codes_of_something_else_are_named(name, said, table):
+    path = FORMS / name
     assert (
-        f"is of {said}, not of normals: `normalbench {table} --encoding {name}` measures it"
-        in first_look(FORMS / name)["error"]
+        f"is of {said}, not of normals: `normalbench {table} --encoding {path}` measures it"
+        in first_look(path)["error"]
     )
