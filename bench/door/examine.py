@@ -80,8 +80,7 @@ def examine_encoding(
     for option, value in {"diff": diff, "report": report}.items():
         if value:
             raise UsageError(f"--{option} is of a folder, and {file} is none: name its folder")
-    (word,) = in_names({"encoding": (str(file),), **vars(Sources(**sources))})["encoding"]
-    shader = UserFile(str(word))
+    shader = UserFile(word_of(file, sources))
     check_plot(plot)
     kept = _storage(storage or STORAGE)
     try:
@@ -144,6 +143,12 @@ def _write(about: dict[str, str], wrong: Sequence[str], notes: Sequence[str], fo
 
 def _lines(kind: str, lines: Sequence[str]) -> list[tuple[str, str]]:
     return [(line, kind) for line in lines]
+
+
+def word_of(file: Path, sources: Mapping[str, Any]) -> str:
+    """Return what names a file on the command line, with how it is read: see `Sources`."""
+    (word,) = in_names({"encoding": (str(file),), **vars(Sources(**sources))})["encoding"]
+    return str(word)
 
 
 def _text(about: Mapping[str, str], wrong: Sequence[str], notes: Sequence[str], format: str) -> str:

@@ -18,14 +18,13 @@ from ...reports import tables
 from ..ground.compilers.lines import without_comments
 from ..ground.machine.cores import on_all_cores
 from ..ground.machine.systems import forks
-from ..ground.options.option import Sources
-from ..ground.options.source_options import in_names
 from ..ground.options.words import Given
 from ..ground.output.errors import MissingError, SeveralEncodersError, UsageError, tell
 from ..ground.output.writing import check_page, check_writable, whole_file, write_text
 from ..ground.user_files import ENDINGS, UserFile
 from ..keep.row_files import check_rows, write
 from ..shaders.languages.pairs import NO_PAIR, role, stem
+from ..subjects.codecs.looked_at import MOST_PAIRS
 from ..subjects.codecs.user_encodings import ANY, Examined, OneFunctionError, examined
 from ..tables.pick import measure as pick
 from ..tables.pick.answer import BEST, answered, largest, mean, places_of
@@ -34,11 +33,11 @@ from ..tables.pick.table import PickOptions
 from ..tables.pick.work import questions
 from ..tables.quality.packed import best_columns
 from ..tables.table import Row
-from .examine import COUNT, FOR_PEOPLE, bulleted, row_of
+from .examine import COUNT, FOR_PEOPLE, bulleted, row_of, word_of
 
 # Folders that hold no sources of the engine's own.
 SKIPPED = frozenset(("node_modules", "build", "bin", "obj", "Intermediate", "Library"))
-MOST_FILES, MOST_PAIRS = 20_000, 8
+MOST_FILES = 20_000
 # A function where it is defined.
 _DEFINED = re.compile(r"(?:\bfn\s+|\b\w[\w<>]*\s+)(\w+)\s*\([^;{}]*\)\s*(?:->\s*[\w<>]+\s*|:\s*\w+\s*)?\{")
 # Codes are as good as the best one up to this share of its mean error. Of those that pack themselves the best one is
@@ -133,7 +132,7 @@ def examine_folder(
     if not candidates:
         raise UsageError(f"{folder}: none of its {len(files)} shader files defines a function that encodes or decodes")
     look = partial(_looked, folder, storage)
-    looks = on_all_cores(look, [_word(path, sources) for path in candidates], forks.stop)
+    looks = on_all_cores(look, [word_of(path, sources) for path in candidates], forks.stop)
     everything = [each for several in looks for each in several]
     others = [each for each in everything if isinstance(each, Other)]
     pairs = [each for each in everything if isinstance(each, Pair)]
@@ -193,11 +192,6 @@ def _text(path: Path) -> str:
         return without_comments(path.read_text(encoding="utf-8", errors="replace"))
     except OSError:
         return ""
-
-
-def _word(path: Path, sources: Mapping[str, Any]) -> str:
-    (word,) = in_names({"encoding": (str(path),), **vars(Sources(**sources))})["encoding"]
-    return str(word)
 
 
 def _looked(folder: Path, storage: Storage | None, word: str) -> list[Pair | Other]:

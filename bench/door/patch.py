@@ -90,18 +90,19 @@ def patched_text(text: str, pair: Pair) -> str:
     language = {"GLSL": "glsl", "WGSL": "wgsl"}.get(name_of(UserFile(pair.word)), "hlsl")
     prefix = f"nb_{best.name}"
     code = code_of(Codec(best, pair.storage), language, prefix).body.partition(_PACKING)[0].rstrip()
-    places = {item.name: item for item in items(without_comments(text)) if item.function}
+    bare = without_comments(text)
+    places = {item.name: item for item in items(bare) if item.function}
     names = [name.rpartition("::")[2] for name in pair.functions.split(":") if name]
     if len(names) != 2 or not {*names} <= {*places}:
         raise UsageError("its functions are not in this file, or are given more than a normal and a code")
     out, back = (" * 0.5 + 0.5", " * 2.0 - 1.0") if looked.encoding.is_unit else ("", "")
     encode, decode = (places[name] for name in names)
     calls = {
-        encode: f"{{ return {prefix}_encode({_parameter(text, encode)}){out}; }}",
-        decode: f"{{ return {prefix}_decode({_parameter(text, decode)}{back}); }}",
+        encode: f"{{ return {prefix}_encode({_parameter(bare, encode)}){out}; }}",
+        decode: f"{{ return {prefix}_decode({_parameter(bare, decode)}{back}); }}",
     }
     first = min(calls, key=lambda item: item.start)
-    start = _line_start(text, first)
+    start = _line_start(bare, first)
     is_there = f"{prefix}_encode(" in text
     changes = [(item.body, item.end, call) for item, call in calls.items()]
     changes += [] if is_there else [(start, start, f"{code}\n\n")]
@@ -111,16 +112,15 @@ def patched_text(text: str, pair: Pair) -> str:
     return text
 
 
-def _parameter(text: str, item: Item) -> str:
-    """The name of a function's first parameter."""
-    match = _PARAMETER.search(without_comments(text)[item.start : item.body])
+def _parameter(bare: str, item: Item) -> str:
+    """The name of a function's first parameter, in a text without comments."""
+    match = _PARAMETER.search(bare[item.start : item.body])
     if not match:
         raise UsageError(f"the first parameter of {item.name} has no name")
     return match[1] or match[2]
 
 
-def _line_start(text: str, item: Item) -> int:
-    """Where the line of a function's name begins."""
-    bare = without_comments(text)
+def _line_start(bare: str, item: Item) -> int:
+    """Where the line of a function's name begins, in a text without comments."""
     name = re.compile(rf"\b{item.name}\s*\(").search(bare, item.start)
     return bare.rfind("\n", 0, name.start() if name else item.start) + 1

@@ -48,9 +48,8 @@ _FUNCTION = r"(?:\w+::)*\w+(?:\([^()]*\))?(?:->(?:[\w.]+|\([^()]*\)))?"
 DEFINE, PRELUDE, INCLUDE, LANGUAGE, FORMAT = SETTINGS = ("define", "prelude", "include", "language", "format")
 # A colon in front of a slash is of a drive: include=C:\shaders.
 _SETTING = rf":({'|'.join(SETTINGS)})=((?:[^:,]|:(?=[\\/]))*)"
-_WORD = re.compile(
-    rf"(?P<file>{_FILE})(?::(?P<encode>{_FUNCTION}):(?P<decode>{_FUNCTION}))?(?P<settings>(?:{_SETTING})*)", re.I | re.S
-)
+_SAID = rf"(?::(?P<encode>{_FUNCTION}):(?P<decode>{_FUNCTION}))?(?P<settings>(?:{_SETTING})*)"
+_WORD = re.compile(rf"(?P<file>{_FILE}){_SAID}", re.I | re.S)
 # An encoder and its decoder in two files: FILE:ENCODE,FILE:DECODE.
 _PLAIN = rf"(?:[A-Z]:(?=[\\/]))?[^:,]*?(?:{'|'.join(map(re.escape, ENDINGS))})"
 _TWO = re.compile(
@@ -58,13 +57,8 @@ _TWO = re.compile(
     rf"(?P<settings>(?:{_SETTING})*)",
     re.I | re.S,
 )
-
-
-_OTHER = re.compile(
-    rf"(?P<file>(?:[A-Z]:(?=[\\/]))?[^:]*\.\w+)(?::(?P<encode>{_FUNCTION}):(?P<decode>{_FUNCTION}))?"
-    rf"(?P<settings>(?:{_SETTING})*)",
-    re.I | re.S,
-)
+# A text file of any other ending.
+_OTHER = re.compile(rf"(?P<file>(?:[A-Z]:(?=[\\/]))?[^:]*\.\w+){_SAID}", re.I | re.S)
 # Of text files that are no shaders.
 _NO_SHADERS = frozenset(
     (".toml", ".json", ".csv", ".md", ".txt", ".py", ".obj", ".gltf", ".ply", ".svg", ".html", ".yaml", ".yml", ".ini")

@@ -24,10 +24,10 @@ from ...tables.registry import TABLES
 from ...tables.table import Group, Table
 from .formats import Format, format_of
 from .names import NAMES, completion_of
-from .shared import WRITTEN, marks, split
+from .shared import FILES, WRITTEN, marks, split
 
-# Panels of a command's help.
-MEASURED, FILES = "What is measured", "How files of normals are read"
+# A panel of a command's help.
+MEASURED = "What is measured"
 
 
 MOST_OPTIONS = 12

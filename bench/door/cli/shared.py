@@ -6,6 +6,7 @@ import inspect
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
 from pathlib import Path
+from types import MappingProxyType
 from typing import Annotated, Any
 
 import typer
@@ -18,6 +19,17 @@ from .formats import Format
 OUTPUT = "Write the rows to this file, or the page or the folder that a command makes. A stopped command then goes on."
 FORMAT = f"{', '.join(Format)}. Default: as the name of -o ends, or table."
 REPORT = "Write a page of what is measured, with its charts and pictures, to this file."
+# Panels of the program's help.
+WRITTEN, SHADERS, FILES = "What is written", "How shader files are read", "How files of normals are read"
+# Where rows go, by the names that commands have for it in Python.
+WRITES: Mapping[str, Any] = MappingProxyType(
+    {
+        "output": Annotated[Path | None, typer.Option("-o", "--output", help=OUTPUT, rich_help_panel=WRITTEN)],
+        "format": Annotated[Format | None, typer.Option(help=FORMAT, metavar="<name>", rich_help_panel=WRITTEN)],
+        "report": Annotated[Path | None, typer.Option(help=REPORT, rich_help_panel=WRITTEN)],
+        "on": Annotated[str | None, typer.Option(help=HELP, metavar="WORKERS", rich_help_panel=WRITTEN)],
+    }
+)
 # By its name in Python, what the program is given of an option, if it is given.
 given: dict[str, Any] = {}
 
@@ -34,23 +46,12 @@ def parameters(parameter_of: Callable[[Field, str], inspect.Parameter]) -> Itera
     Args:
         parameter_of: (field, panel) -> the option of a field.
     """
-    written = {
-        "output": Annotated[Path | None, typer.Option("-o", "--output", help=OUTPUT, rich_help_panel=WRITTEN)],
-        "format": Annotated[Format | None, typer.Option(help=FORMAT, metavar="<name>", rich_help_panel=WRITTEN)],
-        "report": Annotated[Path | None, typer.Option(help=REPORT, rich_help_panel=WRITTEN)],
-        "on": Annotated[str | None, typer.Option(help=HELP, metavar="WORKERS", rich_help_panel=WRITTEN)],
-    }
-    for name, kind in written.items():
+    for name, kind in WRITES.items():
         yield inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=kind)
     for name, field in own_fields().items():
         parameter = parameter_of(field, FILES if name in fields_of(Reading) else SHADERS)
         kind, *more = parameter.annotation.__args__[0], *parameter.annotation.__metadata__
         yield parameter.replace(default=None, annotation=Annotated[kind | None, *more])
-
-
-# Panels of the program's help.
-WRITTEN, SHADERS, FILES = "What is written", "How shader files are read", "How files of normals are read"
-NAMES = ("output", "format", "report", "on")
 
 
 # Stands in the annotation of an option of a command that is one of the program's.
@@ -66,7 +67,7 @@ def marks(field: Field) -> tuple[str, ...]:
 def split(command: Callable[..., Any]) -> tuple[Callable[..., Any], list[str]]:
     """Return a command without the options that it shares, which it is called with all the same; and their names."""
     every = inspect.signature(command, eval_str=True).parameters.values()
-    marked = (p for p in every if p.name in NAMES or SHARED in getattr(p.annotation, "__metadata__", ()))
+    marked = (p for p in every if p.name in WRITES or SHARED in getattr(p.annotation, "__metadata__", ()))
     shared = {parameter.name: parameter.default for parameter in marked}
 
     def call(**typed: Any) -> Any:

@@ -202,7 +202,8 @@ class Question:
 
     def draw(self, images: Images | None, tick: Callable[[str], None]) -> None:
         """Images, if there is what draws them, and the suprema of codes that have a place then."""
-        left = self._own[len(self._own) // OF_ANGLES :]
+        own = self._own
+        left = own[len(own) // OF_ANGLES :]
         if self._aim == "worst":
             self._take_suprema()
         if images:
@@ -212,7 +213,7 @@ class Question:
             for number, row in enumerate(drawn, 1):
                 case = self._cases[_case_name(row)]
                 self._rows[case.name] |= images.of(case)
-                while left and len(left) > len(self._own) * (1 - number / len(drawn)):
+                while left and len(left) > len(own) * (1 - number / len(drawn)):
                     left.pop()
                     tick(f"images of {case.codec.name}")
         for case in left:
