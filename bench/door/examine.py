@@ -105,7 +105,7 @@ def examine_encoding(
     # What is wasted is meant where the domain is, or where another storage is; it is said all the same.
     is_meant = bool(domain or rounded)
     wrong, notes = ([*found.wrong], [*worse, *found.notes]) if is_meant else ([*found.wrong, *worse], found.notes)
-    wrong, notes = [*wrong, *_no_numbers(codec, row)], [*notes, *halves]
+    wrong, notes = [*wrong, *no_numbers(kept, row)], [*notes, *halves]
     about = {
         "file": shader.path.name,
         "encoding": found.encoding.name,
@@ -182,13 +182,13 @@ def _domain(found: Examined) -> str:
     return found.domain.name + (f", {found.domain.text}" if found.domain.is_turned else "")
 
 
-def _no_numbers(codec: Codec, row: Mapping[str, Any]) -> list[str]:
-    """Count the codes that are no numbers once they are rounded, whatever exact ones are."""
+def no_numbers(storage: Storage, row: Mapping[str, Any]) -> list[str]:
+    """Count the codes that are no numbers once they are rounded, whatever exact ones are, by a row of quality."""
     if not row.get("invalid"):
         return []
     share = f"{row['invalid']} of {row['count']} rounded codes ({100 * row['invalid'] / row['count']:.2g} %)"
     remedy = "rounding may move a code beyond what decode expects; write for example sqrt(max(0.0, ...))"
-    return [f"in {codec.storage.name}, {share} decode to NaN or infinity: {remedy}"]
+    return [f"in {storage.name}, {share} decode to NaN or infinity: {remedy}"]
 
 
 def _compared(found: Examined, codec: Codec, row: Mapping[str, Any]) -> list[str]:

@@ -13,17 +13,22 @@ from typing import Any
 
 from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.variants import HALF_NAME
+from ...encodings.kinds import kind_spoken_of
 from ...encodings.storages.storage import BITS_32, STORAGES, Storage
 from ...reports import tables
 from ..ground.compilers.lines import without_comments
 from ..ground.machine.cores import on_all_cores
 from ..ground.machine.systems import forks
+from ..ground.machine.systems.people import command_line
 from ..ground.options.words import Given
 from ..ground.output.errors import MissingError, SeveralEncodersError, UsageError, tell
 from ..ground.output.writing import check_page, check_writable, whole_file, write_text
 from ..ground.user_files import ENDINGS, UserFile
 from ..keep.row_files import check_rows, write
-from ..shaders.languages.pairs import NO_PAIR, role, stem
+from ..shaders.languages.pairs import IF_NAMED, IS_OF, NO_PAIR, role, stem
+from ..subjects.codecs.kinds.named import examined_code
+from ..subjects.codecs.kinds.own import OwnKind
+from ..subjects.codecs.kinds.table import OWN
 from ..subjects.codecs.looked_at import MOST_PAIRS
 from ..subjects.codecs.user_encodings import ANY, Examined, OneFunctionError, examined
 from ..tables.pick import measure as pick
@@ -33,7 +38,7 @@ from ..tables.pick.table import PickOptions
 from ..tables.pick.work import questions
 from ..tables.quality.packed import best_columns
 from ..tables.table import Row
-from .examine import COUNT, FOR_PEOPLE, bulleted, row_of, word_of
+from .examine import COUNT, FOR_PEOPLE, bulleted, no_numbers, row_of, word_of
 
 # Folders that hold no sources of the engine's own.
 SKIPPED = frozenset(("node_modules", "build", "bin", "obj", "Intermediate", "Library"))
@@ -81,24 +86,21 @@ class Pair:
 
 @dataclass
 class Other:
-    """A file that speaks of a pair and has none that can be measured.
+    """A file whose functions are not measured in the table, or some of them.
 
     Attributes:
         file: from the folder on.
         why: why not.
+        functions: ENCODE:DECODE, or the name of a function without a partner; None where there is no pair.
         lone: its encoder or its decoder, where the other one is missing.
         findings: what is likely wrong, lines.
     """
 
     file: str
     why: str
+    functions: str | None = None
     lone: OneFunctionError | None = None
     findings: list[str] = field(default_factory=list)
-
-    @property
-    def functions(self) -> str | None:
-        """The name of its only function."""
-        return self.lone.function if self.lone else None
 
 
 def examine_folder(
@@ -195,17 +197,53 @@ def _text(path: Path) -> str:
 
 
 def _looked(folder: Path, storage: Storage | None, word: str) -> list[Pair | Other]:
+    """What there is to say of a file: its pairs of normals, and those of other kinds that its functions' names say."""
+    shader = UserFile(word)
+    file = shader.path.relative_to(folder).as_posix()
+    others = [_of_kind(file, shader, kind) for kind in _kinds_by_names(shader.path)]
+    normals = _of_normals(folder, storage, word)
+    # That a file is of another kind is said by these.
+    is_of_other = len(normals) == 1 and isinstance(normals[0], Other) and IS_OF in normals[0].why
+    return [*([] if others and is_of_other else normals), *others]
+
+
+def _of_normals(folder: Path, storage: Storage | None, word: str) -> list[Pair | Other]:
     """The pairs of a file, or why it has none; nothing where it only seemed to have one."""
     path = UserFile(word).path
     file = path.relative_to(folder).as_posix()
     try:
-        return [_pair(file, word, storage)]
+        pair = _pair(file, word, storage)
+        return [pair, *(Other(file, note) for note in pair.looked.notes if note.endswith(IF_NAMED))]
     except SeveralEncodersError as error:
         words = [UserFile(word).with_pair(pair).word for pair in error.pairs]
-        return [each for pair in words[:MOST_PAIRS] for each in _looked(folder, storage, pair)]
+        measured = (each for pair in words[:MOST_PAIRS] for each in _of_normals(folder, storage, pair))
+        return [*measured, *(Other(file, IF_NAMED, pair) for pair in error.pairs[MOST_PAIRS:])]
+    except OneFunctionError as error:
+        return [Other(file, _without(path, error), error.function, error)]
     except (UsageError, MissingError) as error:
-        why = str(error).removeprefix(f"{path}: ")
-        return [] if NO_PAIR in why else [Other(file, why, error if isinstance(error, OneFunctionError) else None)]
+        return [] if NO_PAIR in str(error) else [Other(file, _without(path, error))]
+
+
+def _without(path: Path, error: Exception) -> str:
+    return str(error).removeprefix(f"{path}: ")
+
+
+def _kinds_by_names(path: Path) -> Iterator[OwnKind]:
+    """The kinds, other than normals, of which a file's functions are an encoder and a decoder by their names."""
+    names = [name for name in _DEFINED.findall(_text(path)) if role(name)]
+    for kind, own in OWN.items():
+        if len({role(name) for name in names if kind_spoken_of(name) is kind}) > 1:
+            yield own
+
+
+def _of_kind(file: str, shader: UserFile, kind: OwnKind) -> Other:
+    """What is said of a code of something else than normals, and what measures it."""
+    try:
+        own = examined_code(kind, shader)
+    except (UsageError, MissingError) as error:
+        return Other(file, _without(shader.path, error))
+    why = f"of {kind.kind.plural}; `{kind.kind.command.format(command_line([shader.plain]))}` measures it"
+    return Other(file, why, own.made.named, findings=own.found.get("wrong", []))
 
 
 def _pair(file: str, word: str, storage: Storage | None) -> Pair:
@@ -281,7 +319,9 @@ def _measure(pairs: Sequence[Pair]) -> None:
         best = next((row for row in rows if BEST in places_of(row)), None)
         by_name = {row["encoding"].removesuffix(HALF_NAME): row for row in rows}
         for pair in asked:
-            pair.row = _figures(by_name[pair.looked.encoding.name], best)
+            row = by_name[pair.looked.encoding.name]
+            pair.row = _figures(row, best)
+            pair.findings += no_numbers(pair.storage, row)
 
 
 def _picked(storage: str, domain: str | None, pairs: Sequence[Pair]) -> list[Row]:

@@ -36,6 +36,7 @@ from .blocks import programs_of
 from .items import functions_in, reached, words_of
 from .language import BY_NAME, GLSLANG, Language, language_of, name_of
 from .pairs import (
+    IF_NAMED,
     NO_PAIR,
     NORMAL,
     Function,
@@ -321,7 +322,7 @@ def _others(found: Sequence[Function], pair: Pair) -> list[str]:
     named = {**dict.fromkeys(wired, ""), **packed}
     measured = {pair.encode.name.removesuffix("_wired"), pair.decode.name.removesuffix("_wired")}
     left = {one: what for one, what in named.items() if not measured & set(one.replace("::", "_").split(":"))}
-    return [f"{one}{what} is measured if it is named" for one, what in list(left.items())[:MOST_OTHERS]]
+    return [f"{one}{what} {IF_NAMED}" for one, what in list(left.items())[:MOST_OTHERS]]
 
 
 def _but(found: Sequence[Function], pair: Pair) -> list[Function]:

@@ -30,9 +30,12 @@ OF_COLOURS = {"color", "colour", "rgb", "rgbe", "rgbm", "radiance", "irradiance"
 # Encoders times decoders of a file that are tried with each other; to look through more takes seconds.
 MOST_PAIRED = 10_000
 
-OF_OTHERS = "{} is of {}, not of {}: `{}` measures it"
+IS_OF = "` measures it"
+OF_OTHERS = "{} is of {}, not of {}: `{}" + IS_OF
 
 NO_PAIR = "no encoder and decoder found"
+# Behind the name of a pair that was not measured.
+IF_NAMED = "is measured if it is named"
 BY_PARAMETER = "{} returns nothing; write a function that returns what it gives through its parameter"
 
 

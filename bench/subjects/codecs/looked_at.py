@@ -13,6 +13,7 @@ from ...ground.machine.systems import forks
 from ...ground.options.words import Names
 from ...ground.output.errors import MissingError, SeveralEncodersError, UsageError, leave_out, tell
 from ...ground.user_files import UserFile, names_an_encoder
+from ...shaders.languages.pairs import IF_NAMED
 
 T = TypeVar("T", bound=AnyEncoding)
 # A code, and lines that are to be said of it.
@@ -50,7 +51,7 @@ def choose_or_look(
             return [(word, look(UserFile(word)))]
         except SeveralEncodersError as error:
             pairs = [UserFile(word).with_pair(pair).word for pair in error.pairs]
-            notes.extend(f"{pair} is measured if it is named" for pair in pairs[MOST_PAIRS:])
+            notes.extend(f"{pair} {IF_NAMED}" for pair in pairs[MOST_PAIRS:])
             return [each for pair in pairs[:MOST_PAIRS] for each in tried(pair)]
         except (UsageError, MissingError) as error:
             return [(word, error)]

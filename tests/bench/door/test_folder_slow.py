@@ -65,6 +65,18 @@ LOST = """#include "Packages/core/Packing.hlsl"
 float2 EncodeNormal(float3 n) { return PackOct(n); }
 float3 DecodeNormal(float2 e) { return UnpackOct(e); }
 """
+# Half a sphere in 8 bits with a root of less than zero, a word of 32 bits, and depth over bytes by powers of 256.
+PACKING = """
+vec2 encodeDir(vec3 n) { return n.xy * 0.5 + 0.5; }
+vec3 decodeDir(vec2 e) { vec2 p = e * 2.0 - 1.0; return vec3(p, sqrt(1.0 - dot(p, p))); }
+uint packDirToUint(vec3 n) { return packSnorm2x16(n.xy); }
+vec3 unpackDirFromUint(uint c) { vec2 p = unpackSnorm2x16(c); return vec3(p, sqrt(max(0.0, 1.0 - dot(p, p)))); }
+vec4 packDepth(float d) {
+    vec4 e = fract(vec4(1.0, 256.0, 65536.0, 16777216.0) * d);
+    return e - e.yzww * vec4(1.0 / 256.0, 1.0 / 256.0, 1.0 / 256.0, 0.0);
+}
+float unpackDepth(vec4 c) { return dot(c, vec4(1.0, 1.0 / 256.0, 1.0 / 65536.0, 1.0 / 16777216.0)); }
+"""
 FILES = {
     "deferred/pack.hlsl": WHOLE,
     "deferred/old.hlsl": SPHEREMAP,
@@ -83,6 +95,7 @@ FILES = {
     "split/write.hlsl": "float2 StoreNormal_Encode(float3 n) { return n.xy / sqrt(n.z * 8.0 + 8.0) + 0.5; }\n",
     "split/read.hlsl": READER,
     "lost/unity.hlsl": LOST,
+    "post/packing.glsl": PACKING,
     "post/blur.hlsl": "float4 blur(float4 a, float4 b) { return 0.5 * (a + b); }\n",
 }
 
@@ -108,15 +121,15 @@ def doctor(folder, *words: str) -> list[dict]:
 
 @pytest.fixture(scope="module")
 def told(engine, tmp_path_factory):
-    """By file its row, and the patch."""
+    """By file its row, of several the first, and the patch; and all rows."""
     patch = tmp_path_factory.mktemp("patch") / "best.patch"
     rows = doctor(engine, "--diff", str(patch), "--report", str(patch.with_name("page.html")))
-    return {row["file"]: row for row in rows}, patch
+    return {row["file"]: row for row in reversed(rows)}, patch, rows
 
 
 def test_each_pair_of_a_folder_has_a_row(told):
     """What the pair does not reach does not matter; a decoder beside a function of something else is no pair."""
-    rows, _ = told
+    rows, _, _ = told
     octahedral = {name for name, row in rows.items() if row["mean_deg"] == pytest.approx(0.337, abs=0.001)}
     assert octahedral == {
         *("deferred/pack.hlsl", "deferred/modules.slang", "deferred/header.slang"),
@@ -130,8 +143,18 @@ def test_each_pair_of_a_folder_has_a_row(told):
     assert not rows["split/read.hlsl"]["findings"]
 
 
+def test_all_codes_of_a_file_have_a_line(told):
+    """Those of normals that are measured, what rounding does to them, those that must be named, and those of depth."""
+    _, _, rows = told
+    lines = {row["functions"]: row["says"] for row in rows if row["file"] == "post/packing.glsl"}
+    assert "rounded codes (3.3 %) decode to NaN" in lines["encodeDir:decodeDir"]
+    assert any("packDirToUint:unpackDirFromUint" in said and "if it is named" in said for said in lines.values())
+    depth = lines["packDepth:unpackDepth"]
+    assert "no multiple of 1/255; take powers of 255 in place of 256" in depth and "`normalbench depth --depth" in depth
+
+
 def test_a_pair_that_is_not_compiled_says_which_include_is_missing(told):
-    rows, _ = told
+    rows, _, _ = told
     said = rows["lost/unity.hlsl"]["says"]
     assert "PackOct" in said and "Packages/core/Packing.hlsl is not next to unity.hlsl" in said
     assert "--include Packages=FOLDER" in said and rows["lost/unity.hlsl"]["mean_deg"] is None
@@ -139,7 +162,7 @@ def test_a_pair_that_is_not_compiled_says_which_include_is_missing(told):
 
 def test_the_patch_is_applied_and_measured_again(told, engine):
     """In HLSL with the ends of lines that the file has; what it cannot change stays."""
-    _, patch = told
+    _, patch, _ = told
     subprocess.run(["git", "init", "-q"], cwd=engine, check=True)
     subprocess.run(["git", "apply", str(patch)], cwd=engine, check=True)
     text = (engine / "deferred/old.hlsl").read_bytes().decode()
