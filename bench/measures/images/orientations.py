@@ -11,8 +11,12 @@ import numpy as np
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-# Degrees of the golden angle: whole steps of it never meet, and no even share of a turn favours a fourfold code.
-GOLDEN_ANGLE_DEG = 180 * (3 - 5**0.5)
+# Degrees from a yaw to the next. An octant is cut by the golden ratio, so that even four yaws are spread over what a code
+# with fourfold symmetry and mirrors distinguishes; the golden angle itself goes on by 2.5 degrees there.
+STEP_DEG = 45 * (3 + (5**0.5 - 1) / 2)
+# By up to so many degrees each yaw is off its step: more than a grid of 8 bits has between its codes. Whole steps of an
+# angle can be nearly whole steps of a grid: 137.508 degrees are 1563.007 of the 10-bit steps of a warped cube.
+JITTER_DEG = 1.0
 # By the axis of the world, y up, that an encoding's z axis lies along: from the world's axes to the encoding's.
 POLES: Mapping[str, Float[np.ndarray, "3 3"]] = MappingProxyType(
     {axis: np.roll(np.eye(3), shift, axis=1) for axis, shift in (("x", 1), ("y", 2), ("z", 0))}
@@ -21,8 +25,9 @@ POLES: Mapping[str, Float[np.ndarray, "3 3"]] = MappingProxyType(
 
 def yaws(first: int, count: int, seed: int) -> Float[np.ndarray, "count 3 3"]:
     """Return turns of the world about its y axis, `count` from number `first` on of the series that a seed begins."""
-    start = np.random.default_rng([seed, 0]).uniform(0, 360)
-    angles = np.radians(start + GOLDEN_ANGLE_DEG * np.arange(first, first + count))
+    random = np.random.default_rng([seed, 0])
+    start, jitter = random.uniform(0, 360), random.uniform(0, JITTER_DEG, first + count)
+    angles = np.radians(start + STEP_DEG * np.arange(first, first + count) + jitter[first:])
     turns = np.tile(np.eye(3), (count, 1, 1))
     turns[:, 0, 0] = turns[:, 2, 2] = np.cos(angles)
     turns[:, 0, 2] = np.sin(angles)

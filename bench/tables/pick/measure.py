@@ -34,6 +34,7 @@ from ..table import Row
 from .answer import (
     AFFORDABLE,
     EDGE_SAID,
+    ERRORS,
     answered,
     edges_decide,
     floor,
@@ -230,7 +231,8 @@ class Question:
         rows = self._qualified_rows(self._aim)
         for figure in (score, image_loss):
             least = min(map(figure, rows), default=0.0)
-            for name in (_case_name(row) for row in rows if figure(row) <= least + NEAR_DB):
+            near = [row for row in rows if figure(row) - ERRORS * (row["image_se_db"] or 0.0) <= least + NEAR_DB]
+            for name in map(_case_name, near):
                 self._rows[name] |= images.of(self._cases[name])
 
     def _measure_axes(self, cases: Sequence[PickCase]) -> None:

@@ -11,14 +11,18 @@ def test_a_pole_lies_along_the_axis_that_names_it():
         assert (np.eye(3)["xyz".index(axis)] == matrix.T @ [0, 0, 1]).all() and np.linalg.det(matrix) == 1, axis
 
 
-def test_a_yaw_keeps_what_is_up_and_goes_on_by_the_golden_angle():
+def test_a_yaw_keeps_what_is_up_and_yaws_are_spread_over_what_codes_distinguish():
     turns = yaws(0, 64, 5)
     assert np.allclose(turns @ [0, 1, 0], [0, 1, 0]) and np.allclose(turns @ np.swapaxes(turns, 1, 2), np.eye(3))
     assert np.allclose(np.linalg.det(turns), 1)
     angles = np.degrees(np.arctan2(turns[:, 0, 2], turns[:, 0, 0]))
-    assert np.allclose(np.diff(angles) % 360, 137.508, atol=1e-3)
-    # A fourfold encoding sees every angle once: of 16 even steps it would see four.
-    assert np.diff(np.sort(angles[:16] % 90)).min() > 2
+    # Four yaws of a code with fourfold symmetry and mirrors, and sixteen, leave no gap of twice their even share.
+    for count in (4, 16):
+        octants = np.sort(angles[:count] % 45)
+        assert max(*np.diff(octants), octants[0] + 45 - octants[-1]) < 2 * 45 / count
+    # No grid of 4 to 16 bits along the octant is met in step: a mean phase of 64 yaws is 0 but for chance.
+    for levels in (2.0 ** np.arange(4, 17) - 1) / 2:
+        assert abs(np.exp(2j * np.pi * levels * angles / 45).mean()) < 0.35, levels
 
 
 @pytest.mark.parametrize("series", [yaws, rotations])
