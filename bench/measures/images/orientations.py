@@ -11,8 +11,8 @@ import numpy as np
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-# Degrees from a yaw to the next. An octant is cut by the golden ratio, so that even four yaws are spread over what a code
-# with fourfold symmetry and mirrors distinguishes; the golden angle itself goes on by 2.5 degrees there.
+# Degrees from a yaw to the next. An octant is cut by the golden ratio, so that even four yaws are spread over what a
+# code with fourfold symmetry and mirrors tells apart; there the golden angle goes on by 2.5 degrees alone.
 STEP_DEG = 45 * (3 + (5**0.5 - 1) / 2)
 # By up to so many degrees each yaw is off its step: more than a grid of 8 bits has between its codes. Whole steps of an
 # angle can be nearly whole steps of a grid: 137.508 degrees are 1563.007 of the 10-bit steps of a warped cube.
