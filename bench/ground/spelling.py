@@ -6,6 +6,8 @@ import re
 from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 
+from ...gbuffer.layouts.names import NAMES
+
 # By what is named: other words for it, in lower case and without marks.
 OTHER_WORDS: Mapping[str, Mapping[str, str]] = MappingProxyType(
     {
@@ -20,14 +22,8 @@ OTHER_WORDS: Mapping[str, Mapping[str, str]] = MappingProxyType(
             "unorm:24": "packed24",
         },
         "attribute": {
-            **dict.fromkeys(("basecolour", "albedo", "diffusecolor"), "base_color"),
-            **dict.fromkeys(("metalness", "metal"), "metallic"),
-            **dict.fromkeys(("occlusion", "ambientocclusion"), "ao"),
+            **NAMES,
             **dict.fromkeys(("specular", "reflectance"), "f0"),
-            **dict.fromkeys(("velocity", "motionvectors"), "motion"),
-            **dict.fromkeys(("shadingmodel", "kind", "model"), "id"),
-            "emission": "emissive",
-            "perceptualroughness": "roughness",
         },
         "encoding": {"oct": "octahedral", "hemioct": "hemi_octahedral"},
         "family": {

@@ -31,10 +31,10 @@ def layout_defines(layout: Layout, rounds: tuple[int, ...], is_metal_rough: bool
     """
     words = layout.words
     storages = [target.storage for target in layout.targets]
-    first = {"DEPTH": "depth", "ALBEDO": "albedo.r", "SPECULAR": "specular.r", "MOTION": "motion.x"}
-    first |= {"EMISSION": "emission.r"}
-    single = ("power", "roughness", "metalness", "reflectance", "occlusion", "kind", "instance")
-    first |= {name.upper(): name for name in single}
+    first = {"DEPTH": "depth", "ALBEDO": "base_color.r", "SPECULAR": "f0.r", "MOTION": "motion.x"}
+    first |= {"EMISSION": "emissive.r"}
+    first |= {"METALNESS": "metallic", "REFLECTANCE": "f0", "OCCLUSION": "ao", "KIND": "shading_model"}
+    first |= {name.upper(): name for name in ("power", "roughness", "instance")}
     widen, bias = PACKINGS[layout.packing]
     return {
         **{name: COMPONENTS.index(component) for name, component in first.items()},
@@ -61,11 +61,11 @@ def layout_defines(layout: Layout, rounds: tuple[int, ...], is_metal_rough: bool
         "HAS_DEPTH": int("depth" in layout.components),
         "HAS_POWER": int("power" in layout.components),
         "HAS_ROUGHNESS": int("roughness" in layout.components),
-        "HAS_EMISSION": int("emission.r" in layout.components),
+        "HAS_EMISSION": int("emissive.r" in layout.components),
         "METAL_ROUGH": int(is_metal_rough),
-        "BY_METALNESS": int(is_metal_rough and "metalness" in layout.components),
+        "BY_METALNESS": int(is_metal_rough and "metallic" in layout.components),
         **_sign_defines(layout),
-        "HAS_KIND": int("kind" in layout.components),
+        "HAS_KIND": int("shading_model" in layout.components),
         "HAS_INSTANCE": int("instance" in layout.components),
         "WORLD_SPACE": int(layout.space == "world"),
     }

@@ -161,7 +161,7 @@ class Frame:
         if any(light[name] != kept[name] for name in light.keys() & kept.keys()):
             buffer = self.plan.light_buffer.name
             raise LayoutError(
-                f"layout {self.plan.layout.name}: its emission and the light buffer {buffer} have two ranges"
+                f"layout {self.plan.layout.name}: its emissive and the light buffer {buffer} have two ranges"
             )
         return {**light, **kept}
 

@@ -25,7 +25,7 @@ FINAL = Resource("final", "rgba32f", samples=AS_MANY, copies=2)
 FINAL_DEPTH = Resource("final_depth", DEPTH_STENCIL, samples=AS_MANY, shares=DEPTH)
 
 # Components of a layout that finished colour is made of.
-SHADING = frozenset({"albedo.r", "albedo.g", "albedo.b", "specular.r", "specular.g", "specular.b", "power"})
+SHADING = frozenset({"base_color.r", "base_color.g", "base_color.b", "f0.r", "f0.g", "f0.b", "power"})
 
 # What LIGHT_HOLDS counts: light for a second geometry pass, colour that is finished, or colour of general materials and
 # light of special ones.

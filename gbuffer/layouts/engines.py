@@ -1,7 +1,7 @@
 """The normals of engines and SDKs, each from its own source. What lies beside them is this renderer's.
 
-`kind`, this renderer's Deferred ID, lies where the engine has a material's ID or nothing. `whole.py` has engines whose
-whole material is known.
+`shading_model`, this renderer's Deferred ID, lies where the engine has a material's ID or nothing. `whole.py` has
+engines whose whole material is known.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from ...encodings.codecs.encoding import Encoding
 from ...encodings.codecs.variants import variant
 from .layout import Layout, engine_layout
 
-ALBEDO = "rgba8: albedo.r albedo.g albedo.b kind"
-SPECULAR = "rgba8: specular.r specular.g specular.b -"
-MATERIAL = f"{ALBEDO}; rgba8: specular.r specular.g specular.b power"
+ALBEDO = "rgba8: diffuse_color shading_model"
+SPECULAR = "rgba8: f0.rgb -"
+MATERIAL = f"{ALBEDO}; rgba8: f0.rgb power"
 # What a normal that stands with its roughness is measured beside.
 COLOURS = f"{ALBEDO}; {SPECULAR}"
 NRD = "NVIDIA-RTX/NRD, Shaders/NRD.hlsli (a822d87)"
@@ -123,7 +123,7 @@ ENGINES = (
         "nrd",
         "signed octahedron 10:10, its sign on the roughness, material ID: RGB10A2, NRD_NORMAL_ENCODING 2, the default",
         ENCODINGS["signed_octahedral"],
-        f"rgb10a2: normal.x normal.y roughness*normal.z kind; rgba8: albedo.r albedo.g albedo.b -; {SPECULAR}",
+        f"rgb10a2: normal.x normal.y roughness*normal.z shading_model; rgba8: diffuse_color -; {SPECULAR}",
         NRD,
     ),
     _layout(
@@ -197,7 +197,7 @@ ENGINES = (
         "skyrim_community",
         "octahedral of -n, z into the screen: what is seen is in the middle, as here. In halves, with 1 - roughness",
         ENCODINGS["octahedral"],
-        f"rgb10a2: normal.x normal.y roughness kind; rgba8: albedo.r albedo.g albedo.b -; {SPECULAR}",
+        f"rgb10a2: normal.x normal.y roughness shading_model; rgba8: diffuse_color -; {SPECULAR}",
         "community-shaders/skyrim-community-shaders, package/Shaders/Common/GBuffer.hlsli (fd20066)",
         space="view",
     ),
@@ -226,7 +226,7 @@ ENGINES = (
         "capsaicin",
         "xyz in three RGBA8: of the geometry, the shading and the vertex; roughness R16F, motion RG16F, visibility",
         ENCODINGS["xyz_renormalised"],
-        "rgba8: normal.x normal.y normal.z kind; rgba8: albedo.r albedo.g albedo.b other; "
+        "rgba8: normal.x normal.y normal.z shading_model; rgba8: diffuse_color other; "
         f"{SPECULAR}; r16f: roughness; rg16f: motion.x motion.y; rgba8: other:24 other:8; "
         "rgba32f: other other other other",
         "GPUOpen-LibrariesAndSDKs/Capsaicin, visibility_buffer.cpp:80-105 (5a3bf2a); the albedo is in a normal's place",
@@ -321,8 +321,7 @@ ENGINES = (
         "intel_deferred",
         "view-space spheremap, specular amount and power in RGBA16F",
         ENCODINGS["spheremap_classic"],
-        "rgba16f: normal.x normal.y other power; rgba8: albedo.r albedo.g albedo.b kind; "
-        "rgba8: specular.r specular.g specular.b -",
+        "rgba16f: normal.x normal.y other power; rgba8: diffuse_color shading_model; rgba8: f0.rgb -",
         "A. Lauritzen, Deferred Rendering for Current and Future Rendering Pipelines, 2010",
         space="view",
     ),
@@ -342,8 +341,8 @@ ENGINES = (
         "volo",
         "world-space octahedral about y in RG8, since decals on floors met the fold",
         _about_y("octahedral"),
-        "srgb8_a8: albedo.r albedo.g albedo.b kind; rg8: normal.x normal.y; rg8: roughness other; "
-        "r11g11b10f: emission.r emission.g emission.b; rgba8: specular.r specular.g specular.b -",
+        "srgb8_a8: diffuse_color shading_model; rg8: normal.x normal.y; rg8: roughness other; "
+        "r11g11b10f: emissive; rgba8: f0.rgb -",
         "BastianBlokland/volo, assets/shaders/include/geometry.glsl, pull request 513; specular is this renderer's",
     ),
 )

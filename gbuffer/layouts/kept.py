@@ -11,16 +11,29 @@ from ...encodings.codecs.light_encoding import LightEncoding
 from ...encodings.codecs.motion_codec import MotionEncoding
 from ...encodings.storages.storage import FORMATS
 
-COLOURS = ("albedo", "specular", "emission")
-SINGLE = ("roughness", "metalness", "reflectance", "occlusion")
+# Reflectance at normal incidence: a number next to a metallic, a colour without one.
+F0, F0_COLOUR = "f0", "f0.rgb"
+COLOURS = ("base_color", F0_COLOUR, "emissive")
+SINGLE = ("roughness", "metallic", F0, "ao")
 # What light is kept by in the four numbers of a format that mean nothing one by one.
 WHOLE = {
     name: encoding
     for name, encoding in LIGHT_ENCODINGS.items()
     if encoding.blend == "read" and FORMATS.keys() >= {*encoding.storages}
 }
-LIGHT = "emission"
+LIGHT = "emissive"
 MOTION = "motion"
+
+
+def quantity_of(component: str) -> str:
+    """Return what a component of a layout is a number of: `base_color` of `base_color.r`."""
+    base, dot, _ = component.partition(".")
+    return F0_COLOUR if dot and base == F0 else base
+
+
+def channels_of(colour: str) -> tuple[str, ...]:
+    """Return the components of one of COLOURS."""
+    return tuple(f"{colour.removesuffix('.rgb')}.{channel}" for channel in "rgb")
 
 
 @dataclass(frozen=True)
@@ -42,7 +55,7 @@ class Kept:
 
 
 def kept_as(name: str, limit: str | None, quantity: str) -> Kept:
-    """What `name`, or `name:limit` where there is a limit, says of a quantity such as `roughness` or `emission`.
+    """What `name`, or `name:limit` where there is a limit, says of a quantity such as `roughness` or `emissive`.
 
     Raises:
         ValueError: there is none of that name, it is not for that quantity, or the range is none; a line.

@@ -19,7 +19,7 @@ from ...encodings.codecs.encoding import Encoding
 from ...encodings.codecs.files import called, file_toml
 from ...encodings.codecs.variants import MARK, settings_in, variant
 from ...encodings.storages.storage import BITS_32, DITHERED, ROUNDINGS_AND_DITHERED, TARGET_FORMATS, Storage
-from .kept import COLOURS, LIGHT, MOTION, Kept
+from .kept import COLOURS, F0_COLOUR, LIGHT, MOTION, Kept, channels_of, quantity_of
 from .words import (
     FREE,
     LEAST_BITS,
@@ -36,8 +36,8 @@ from .words import (
 
 SPACES = VIEW, WORLD = ("view", "world")
 # What layouts keep of a metal/rough surface's reflection.
-METALNESS_REFLECTANCE = "base colour, metalness, reflectance"
-METALNESS = "base colour, metalness"
+METALNESS_REFLECTANCE = "base colour, metallic, F0"
+METALNESS = "base colour, metallic"
 DIFFUSE_F0 = "diffuse colour, F0"
 
 
@@ -124,7 +124,7 @@ class Layout:
     def _check_colours(self) -> None:
         """Raises LayoutError where the channels of a colour are not kept alike."""
         for colour in (*COLOURS, MOTION):
-            found = [word for word in self.words if word.component.startswith(f"{colour}.")]
+            found = [word for word in self.words if quantity_of(word.component) == colour]
             if len({word.kept for word in found}) > 1:
                 raise LayoutError(f"layout {self.name}: all channels of {colour} lie on one curve")
             if colour == MOTION:
@@ -224,9 +224,8 @@ class Layout:
 
     @property
     def metal_rough_components(self) -> frozenset[str]:
-        """What it keeps of a metal/rough surface: a metalness next to the base colour is what it reflects too."""
-        reflected = {f"specular.{channel}" for channel in "rgb"}
-        return self.components | (reflected if "metalness" in self.components else set())
+        """What it keeps of a metal/rough surface: a metallic next to the base colour is what it reflects too."""
+        return self.components | ({*channels_of(F0_COLOUR)} if "metallic" in self.components else set())
 
     @property
     def codec(self) -> Codec:
@@ -272,9 +271,9 @@ class Layout:
         ones cannot be compared byte by byte. Empty where the layout is not whole."""
         if not self.is_whole:
             return ""
-        if "metalness" in self.components:
-            return METALNESS_REFLECTANCE if "reflectance" in self.components else METALNESS
-        return DIFFUSE_F0 if "specular.r" in self.components else ""
+        if "metallic" in self.components:
+            return METALNESS_REFLECTANCE if "f0" in self.components else METALNESS
+        return DIFFUSE_F0 if "f0.r" in self.components else ""
 
     def with_codec(self, codec: Codec) -> Layout:
         """The layout with its normal in a target of its own, encoded and stored as `codec` does.

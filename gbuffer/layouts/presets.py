@@ -20,9 +20,9 @@ _ARTICLES = (
         "everything in 32-bit floats: the reference",
         (
             Target("rgba32f", "normal.x normal.y normal.z depth"),
-            Target("rgba32f", "albedo.r albedo.g albedo.b kind"),
-            Target("rgba32f", "specular.r specular.g specular.b power"),
-            Target("rgba32f", "instance motion.x motion.y occlusion"),
+            Target("rgba32f", "diffuse_color shading_model"),
+            Target("rgba32f", "f0.rgb power"),
+            Target("rgba32f", "instance motion.x motion.y ao"),
         ),
         ENCODINGS["xyz"],
         "this project",
@@ -64,13 +64,10 @@ _ARTICLES = (
     ),
     Layout(
         "metal_rough",
-        "base colour, occlusion; normal; roughness, metalness, reflectance, Deferred ID; emission in the light buffer",
-        targets_of(
-            "srgb8_a8: albedo.r albedo.g albedo.b occlusion; rg16: normal.x normal.y; "
-            "rgba8: roughness metalness reflectance kind"
-        ),
+        "base colour, AO; normal; roughness, metallic, f0, Deferred ID; emissive in the light buffer",
+        targets_of("srgb8_a8: base_color ao; rg16: normal.x normal.y; rgba8: roughness metallic f0 shading_model"),
         ENCODINGS["octahedral"],
-        "this project: what engines of metal/rough materials usually keep",
+        "this project: what engines of metallic-roughness materials usually keep",
         space="world",
     ),
     Layout(

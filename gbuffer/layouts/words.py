@@ -1,14 +1,14 @@
 """The words of a layout: what lies in which bits of a render target.
 
 A target is a format and a line of words that fill its bits in order, the most significant first. A word alone
-(`albedo.r`) takes one whole channel and is converted as the format converts. A word with a number of bits (`depth:16`)
-is an unsigned integer laid across the first channels of equal bits of a UNORM format, or of integers. `-` leaves a
-channel free.
+(`base_color.r`) takes one whole channel and is converted as the format converts. A word with a number of bits
+(`depth:16`) is an unsigned integer laid across the first channels of equal bits of a UNORM format, or of integers. `-`
+leaves a channel free.
 
 A quantity may carry a number of the normal's code that is 1 or -1 as its own sign: `roughness*normal.z`. It may lie on
-a curve of the catalogue, over a range of its own: `squared(roughness)`, `linear:0.08(reflectance)`. A colour without a
-channel stands for all of its channels: `square_root(albedo)`. A light may be kept by a code of four numbers, which fill
-a texel: `rgb9e5(emission)`.
+a curve of the catalogue, over a range of its own: `squared(roughness)`, `linear:0.08(f0)`. A colour without a channel
+stands for all of its channels: `square_root(base_color)`, `f0.rgb`. A light may be kept by a code of four numbers,
+which fill a texel: `rgb9e5(emissive)`. The words of engines are understood as well: see `names.py`.
 """
 
 from __future__ import annotations
@@ -18,13 +18,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ...encodings.storages.storage import FORMS, TARGET_FORMATS, Storage
-from .kept import COLOURS, LIGHT, WHOLE, Kept, kept_as
+from .kept import COLOURS, LIGHT, WHOLE, Kept, channels_of, kept_as, quantity_of
+from .names import RefusedWordError, named
 
 # The order is the G-buffer shaders' (gbuffer.glsl).
 COMPONENTS = (
-    *("normal.x", "normal.y", "normal.z", "depth", "albedo.r", "albedo.g", "albedo.b"),
-    *("specular.r", "specular.g", "specular.b", "power", "roughness", "metalness", "reflectance", "occlusion"),
-    *("emission.r", "emission.g", "emission.b", "emission.a", "kind", "instance", "motion.x", "motion.y"),
+    *("normal.x", "normal.y", "normal.z", "depth", "base_color.r", "base_color.g", "base_color.b"),
+    *("f0.r", "f0.g", "f0.b", "power", "roughness", "metallic", "f0", "ao"),
+    *("emissive.r", "emissive.g", "emissive.b", "emissive.a", "shading_model", "instance", "motion.x", "motion.y"),
 )
 FREE = "-"
 # What engines keep and this renderer does not use: it takes its bits. There may be several, and each may have a name
@@ -38,11 +39,11 @@ SIGNED = "signed"
 PACKINGS = {"nearest": (0.0, 0.5), "truncate": (0.0, 0.0), "truncate_half": (0.5, 0.0), SIGNED: (0.0, 0.5)}
 MAX_PACKED_BITS = 24
 # A Deferred ID tells four kinds apart, an instance is 1 to 255.
-LEAST_BITS = {"kind": 2, "instance": 8, "motion.x": 2, "motion.y": 2}
+LEAST_BITS = {"shading_model": 2, "instance": 8, "motion.x": 2, "motion.y": 2}
 # How far from 0 a carried sign keeps its number, in steps: NRD.hlsli has 1.5 / 512 of 10 bits.
 SIGN_STEPS = 1.5
 WORD = re.compile(
-    r"(?:(?P<curve>\w+)(?::(?P<range>[^()\s]*))?\((?P<curved>[a-z.]+)\)|(?P<name>other\.[a-z][a-z0-9_]*|[a-z.]+|-))"
+    r"(?:(?P<curve>\w+)(?::(?P<range>[^()\s]*))?\((?P<curved>[a-z][\w.]*)\)|(?P<name>[a-z][\w.]*|-))"
     r"(?:\*(?P<sign>normal\.[xyz]))?(?::(?P<bits>\d{1,2}))?"
 )
 
@@ -79,7 +80,7 @@ class Target:
 
 
 def targets_of(text: str) -> tuple[Target, ...]:
-    """Targets of text such as `rg16f: normal.x normal.y; rgba8: albedo kind`."""
+    """Targets of text such as `rg16f: normal.x normal.y; rgba8: base_color shading_model`."""
     return tuple(Target(*one.strip().split(": ", 1)) for one in text.split(";"))
 
 
@@ -113,7 +114,7 @@ def all_placed(layout_name: str, index: int, target: Target) -> Iterator[Word]:
             _check_packed(place, text, storage, bits, bit)
         if bit + taken > sum(storage.bits):
             raise LayoutError(f"{place}: {target.holds!r} takes more than its {sum(storage.bits)} bits")
-        if channel < storage.curved and name.partition(".")[0] not in (*COLOURS, OTHER, FREE):
+        if channel < storage.curved and quantity_of(name) not in (*COLOURS, OTHER, FREE):
             raise LayoutError(f"{place}: {text}: the first three channels of {storage.title} hold colours")
         if channel < storage.curved and kept:
             raise LayoutError(f"{place}: {text}: {storage.title} keeps colours by a curve of its own")
@@ -129,9 +130,9 @@ def place_of(layout_name: str, index: int, target: Target) -> str:
 
 
 def spelt_out(place: str, target: Target) -> Iterator[str]:
-    """The words of a target, a colour without a channel as its channels."""
-    for text in target.holds.split():
-        found = WORD.fullmatch(text)
+    """The words of a target by the names of COMPONENTS, a colour without a channel as its channels."""
+    for typed in target.holds.split():
+        text, found = _by_its_name(place, typed)
         name = (found["curved"] or found["name"]) if found else ""
         if found and found["curve"] in WHOLE and name.startswith(f"{LIGHT}."):
             raise LayoutError(f"{place}: {text}: write {found['curve']}({LIGHT}), which takes the whole target")
@@ -142,8 +143,22 @@ def spelt_out(place: str, target: Target) -> Iterator[str]:
         if is_whole and (target.holds.split()[0] != text or target.format not in WHOLE[found["curve"]].storages):
             known = ", ".join(WHOLE[found["curve"]].storages)
             raise LayoutError(f"{place}: {text} is all that its target holds, of {known}")
-        for channel in "rgba" if is_whole else "rgb":
-            yield f"{name}.{channel}".join(text.rsplit(name, 1))
+        for component in (*channels_of(name), *([f"{name}.a"] if is_whole else [])):
+            yield component.join(text.rsplit(name, 1))
+
+
+def _by_its_name(place: str, typed: str) -> tuple[str, re.Match[str] | None]:
+    """A word with the name that COMPONENTS has for it, and its parts."""
+    found = WORD.fullmatch(typed)
+    name = (found["curved"] or found["name"]) if found else ""
+    if not found or name == OTHER or name.startswith(f"{OTHER}."):
+        return typed, found
+    try:
+        other = named(name, bool(found["curve"]))
+    except RefusedWordError as error:
+        raise LayoutError(f"{place}: {typed}: {error}") from error
+    text = other.join(typed.rsplit(name, 1))
+    return text, WORD.fullmatch(text)
 
 
 def _word_parts(place: str, text: str) -> tuple[str, str, int, Kept | None]:
@@ -153,7 +168,7 @@ def _word_parts(place: str, text: str) -> tuple[str, str, int, Kept | None]:
     name = OTHER if name.startswith(f"{OTHER}.") else name
     if not found or name not in (*COMPONENTS, OTHER, FREE):
         if not found and set(text) & set("()"):
-            raise LayoutError(f"{place}: {text}: a curve is said as squared(roughness) or linear:0.08(reflectance):6")
+            raise LayoutError(f"{place}: {text}: a curve is said as squared(roughness) or linear:0.08(f0):6")
         known = ", ".join((*COMPONENTS, OTHER, FREE))
         raise LayoutError(f"{place}: unknown component {name or text!r}; known: {known}")
     sign, bits = found["sign"] or "", int(found["bits"] or 0)
@@ -162,7 +177,7 @@ def _word_parts(place: str, text: str) -> tuple[str, str, int, Kept | None]:
     if sign and name not in CARRIERS:
         raise LayoutError(f"{place}: {text}: only {', '.join(CARRIERS)} carry a sign")
     try:
-        kept = kept_as(found["curve"], found["range"], name.partition(".")[0]) if found["curve"] else None
+        kept = kept_as(found["curve"], found["range"], quantity_of(name)) if found["curve"] else None
     except ValueError as error:
         raise LayoutError(f"{place}: {text}: {error}") from error
     if kept and kept.is_whole and bits:

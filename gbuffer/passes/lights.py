@@ -20,7 +20,7 @@ from .light_bounds import ball, cone
 def lights(light_holds: int) -> Pass:
     """All lights, added up in the light buffer: to nothing for TERMS, else to what the geometry pass began with."""
     begun = () if light_holds == TERMS else (LIGHT,)
-    kinds = {"kind"} if light_holds == BY_KIND else set()
+    kinds = {"shading_model"} if light_holds == BY_KIND else set()
     return Pass(
         "lights",
         reads=(*SURFACE, SHADOW_MAP, DEPTH, *begun),

@@ -16,7 +16,7 @@ from normalbench.gbuffer.layouts.words import LayoutError, targets_of
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import rendering
 
-NORMAL = "rgba32f: normal.x normal.y kind"
+NORMAL = "rgba32f: normal.x normal.y shading_model"
 
 
 def layout_of(targets: str) -> Layout:
@@ -29,14 +29,14 @@ def image(gl, targets: str, pipeline: str = "hybrid") -> np.ndarray:
 
 @pytest.fixture(scope="module")
 def exact(gl) -> np.ndarray:
-    return image(gl, "rgba32f: albedo metalness; rgba32f: roughness reflectance occlusion; rgba32f: emission")
+    return image(gl, "rgba32f: base_color metallic; rgba32f: roughness f0 ao; rgba32f: emissive")
 
 
 @pytest.mark.parametrize("name", CURVE_ENCODINGS)
 def test_in_floats_a_curve_leaves_the_image_as_it_is(gl, exact, name):
     """Every quantity on it: 75 dB. The fast curve does not quite undo itself: 55 to 75; eight rays have nine values."""
-    on = {q: f"{name}({q})" for q in ("albedo", "metalness", "roughness", "reflectance", "occlusion", "emission")}
-    targets = "rgba32f: {albedo} {metalness}; rgba32f: {roughness} {reflectance} {occlusion}; rgba32f: {emission}"
+    on = {q: f"{name}({q})" for q in ("base_color", "metallic", "roughness", "f0", "ao", "emissive")}
+    targets = "rgba32f: {base_color} {metallic}; rgba32f: {roughness} {f0} {ao}; rgba32f: {emissive}"
     found = apart(image(gl, targets.format(**on)), exact)
     off = CURVE_ENCODINGS[name].inverse_error
     least, most = (75, np.inf) if not off else (55, 75) if off < 0.01 else (10, 55)
@@ -47,17 +47,17 @@ def test_in_floats_a_curve_leaves_the_image_as_it_is(gl, exact, name):
 @pytest.mark.parametrize("name", WHOLE)
 def test_a_light_is_kept_by_a_code_of_a_texel(gl, exact, pipeline, name):
     """As well as its light buffer keeps it: above 40 dB, and not exactly."""
-    others = "rgba32f: albedo metalness; rgba32f: roughness reflectance occlusion"
-    found = apart(image(gl, f"{others}; rgba8: {name}(emission)", pipeline), exact)
+    others = "rgba32f: base_color metallic; rgba32f: roughness f0 ao"
+    found = apart(image(gl, f"{others}; rgba8: {name}(emissive)", pipeline), exact)
     assert 40 < found < 90, f"{found:.1f} dB"
 
 
 def test_two_ranges_of_one_code_are_told_apart(gl):
-    """Its files have one range: that of the light buffer would be that of the emission."""
-    layout = layout_of("rgba32f: albedo metalness; rgba32f: roughness reflectance occlusion; rgba8: rgbm(emission)")
+    """Its files have one range: that of the light buffer would be that of the emissive."""
+    layout = layout_of("rgba32f: base_color metallic; rgba32f: roughness f0 ao; rgba8: rgbm(emissive)")
     buffer = replace(LIGHT_BUFFERS["rgbm"], encoding=rgbm.ranged(8.0))
     plan = Plan(SIZE, 1, layout, buffer, 2, False, 1.0)
-    with pytest.raises(LayoutError, match="its emission and the light buffer rgbm:8 have two ranges"):
+    with pytest.raises(LayoutError, match="its emissive and the light buffer rgbm:8 have two ranges"):
         rendering(gl, PIPELINES["hybrid"], LIT, plan).__enter__()
 
 
@@ -66,8 +66,8 @@ def test_two_ranges_of_one_code_are_told_apart(gl):
     [
         ("rgba8: gamma(roughness)", "unknown curve 'gamma'; known: linear, squared, square_root"),
         (
-            "rgba8: squared(kind)",
-            "only albedo, specular, emission, roughness, metalness, reflectance, occlusion, motion lie on",
+            "rgba8: squared(shading_model)",
+            "only base_color, f0.rgb, emissive, roughness, metallic, f0, ao, motion lie on",
         ),
         ("rgba8: squared:0(roughness)", "a range is 0.001 to 65504, not 0"),
         ("rgba8: squared:e(roughness)", "a range is 0.001 to 65504, not e"),
@@ -75,13 +75,13 @@ def test_two_ranges_of_one_code_are_told_apart(gl):
         ("rgba8: squared:(roughness)", "a range is 0.001 to 65504, not "),
         ("rgba8: squared(square_root(roughness))", "a curve is said as"),
         ("rgba8: squared(roughness", r"squared\(roughness: a curve is said as squared\(roughness\)"),
-        ("srgb8_a8: square_root(albedo)", "sRGB8 A8 keeps colours by a curve of its own"),
-        ("rgba8: srgb(albedo.r) albedo.g albedo.b", "all channels of albedo lie on one curve"),
-        ("rgba8: rgb9e5(albedo)", r"rgb9e5 keeps a light in a whole texel, as in rgb9e5\(emission\)"),
-        ("rgba8: metalness; rgba16f: rgb9e5(emission)", r"rgb9e5\(emission\) is all that its target holds, of rgba8"),
-        ("rgba8: emission.r emission.g emission.b emission.a", "a code of light has four numbers"),
-        ("rgba8: rgb9e5(emission.r) metalness", r"write rgb9e5\(emission\), which takes the whole target"),
-        ("rgba8: rgb9e5(emission):8", "the numbers of rgb9e5 have channels of their own"),
+        ("srgb8_a8: square_root(base_color)", "sRGB8 A8 keeps colours by a curve of its own"),
+        ("rgba8: srgb(base_color.r) base_color.g base_color.b", "all channels of base_color lie on one curve"),
+        ("rgba8: rgb9e5(base_color)", r"rgb9e5 keeps a light in a whole texel, as in rgb9e5\(emissive\)"),
+        ("rgba8: metallic; rgba16f: rgb9e5(emissive)", r"rgb9e5\(emissive\) is all that its target holds, of rgba8"),
+        ("rgba8: emissive.r emissive.g emissive.b emissive.a", "a code of light has four numbers"),
+        ("rgba8: rgb9e5(emissive.r) metallic", r"write rgb9e5\(emissive\), which takes the whole target"),
+        ("rgba8: rgb9e5(emissive):8", "the numbers of rgb9e5 have channels of their own"),
     ],
 )
 def test_a_curve_that_cannot_be_is_a_line(targets, message):
@@ -93,10 +93,10 @@ def test_a_file_says_curves_as_presets_do(tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text(
         'encoding = "octahedral"\n[[targets]]\nformat = "rg16"\nholds = "normal.x normal.y"\n'
-        '[[targets]]\nformat = "rgba8"\nholds = "square_root(albedo) inverted(roughness)"\n'
+        '[[targets]]\nformat = "rgba8"\nholds = "square_root(base_color) inverted(roughness)"\n'
     )
     kept = read_layout(path).kept
     assert {name: (how.encoding.name, how.range) for name, how in kept.items()} == {
-        **{f"albedo.{channel}": ("square_root", 1.0) for channel in "rgb"},
+        **{f"base_color.{channel}": ("square_root", 1.0) for channel in "rgb"},
         "roughness": ("inverted", 1.0),
     }

@@ -10,14 +10,15 @@ import test_curves_of_layouts
 exact = test_curves_of_layouts.exact
 
 
-@pytest.mark.parametrize("first", ["roughness", "reflectance", "albedo"])
+@pytest.mark.parametrize("first", ["roughness", "f0", "base_color"])
 def test_the_manual_says_what_a_curve_is_worth(gl, run, tmp_path, first):  # noqa: ARG001 # a device is needed
     """Each row of its table that keeps this quantity, by `render` of a layout file; to a tenth of a decibel."""
     page = (Path(__file__).parents[2] / "docs" / "render.md").read_text()
     rows = re.findall(rf"^\| `([\w:.]*\(?{first}\)?)`[^|]*\| ([\d.]+) \|$", page, re.M)
-    others = {"albedo", "metalness", "roughness", "reflectance", "occlusion"} - {first}
+    others = {"base_color", "metallic", "roughness", "f0", "ao"} - {first}
     exact = "".join(
-        f'[[targets]]\nformat = "rgba32f"\nholds = "{name}"\n' for name in ("normal.x normal.y normal.z kind", *others)
+        f'[[targets]]\nformat = "rgba32f"\nholds = "{name}"\n'
+        for name in ("normal.x normal.y normal.z shading_model", *others)
     )
     paths = []
     for number, (words, _) in enumerate(rows):

@@ -16,16 +16,16 @@ DARK = replace(
 @pytest.mark.parametrize(
     "scene, better, worse",
     [
-        (DARK, "srgb(albedo):5", "albedo:5"),
-        (DARK, "square_root(albedo):5", "albedo:5"),
+        (DARK, "srgb(base_color):5", "base_color:5"),
+        (DARK, "square_root(base_color):5", "base_color:5"),
         (LIT, "roughness:4", "squared(roughness):4"),
-        (LIT, "linear:0.08(reflectance):4", "reflectance:4"),
+        (LIT, "linear:0.08(f0):4", "f0:4"),
     ],
     ids=["sRGB", "square root", "square", "range"],
 )
 def test_in_few_bits_the_curve_decides(gl, scene, better, worse):
-    """Colours want a gamma, a roughness even steps, and a reflectance of 0.04 a range of its own: 3 dB and more."""
-    floats = {"albedo", "metalness", "roughness", "reflectance", "occlusion"} - {worse.rstrip("):45").split("(")[-1]}
+    """Colours want a gamma, a roughness even steps, and a f0 of 0.04 a range of its own: 3 dB and more."""
+    floats = {"base_color", "metallic", "roughness", "f0", "ao"} - {worse.rstrip("):45").split("(")[-1]}
     targets = "; ".join(f"rgba32f: {quantity}" for quantity in sorted(floats))
     right = draw(gl, "hybrid", scene).image
     found = [

@@ -54,7 +54,7 @@ FIGURES = {
 
 # Bytes a pixel of the targets, and with the light buffer where that was read; what says how much a surface reflects.
 # From each engine's source, counted by hand. r3d takes three bytes less where three numbers are not padded.
-BASE, SPECULAR, F0 = "base colour, metalness", "base colour, metalness, reflectance", "diffuse colour, F0"
+BASE, SPECULAR, F0 = "base colour, metallic", "base colour, metallic, F0", "diffuse colour, F0"
 
 
 WHOLE = {
@@ -113,7 +113,7 @@ def test_a_whole_layout_takes_the_bytes_of_its_engine():
 
 def test_a_pipeline_that_a_layout_does_not_suit_names_one_that_it_does(gl):
     granite = plan(LAYOUTS["granite"])
-    said = r"^hybrid needs kind, which layout granite does not keep; --pipeline deferred does not need it$"
+    said = r"^hybrid needs shading_model, which layout granite does not keep; --pipeline deferred does not need it$"
     with pytest.raises(LayoutError, match=said):
         check(gl, PIPELINES["hybrid"], granite, is_metal_rough=True)
 

@@ -20,7 +20,7 @@ from normalbench.gbuffer.frame.resources import GBUFFER
 from normalbench.gbuffer.gl.device import device
 from normalbench.gbuffer.layouts.layout import Layout, read_layout
 from normalbench.gbuffer.layouts.presets import LAYOUTS
-from normalbench.gbuffer.layouts.words import PACKINGS, SIGNED, LayoutError, Target
+from normalbench.gbuffer.layouts.words import PACKINGS, SIGNED, LayoutError, Target, placed
 from normalbench.gbuffer.pipelines import PIPELINES
 from normalbench.gbuffer.render import check, rendering
 from normalbench.gbuffer.scenes.catalogue import SCENES
@@ -60,7 +60,7 @@ def test_words_fill_a_target_in_order_from_the_most_significant_bit():
     """11:10:11 in RGBA8: the y starts at bit 11, the z at bit 21."""
     words = {w.component: (w.target, w.first, w.bits) for w in LAYOUTS["kajiya"].words}
     assert words["normal.x"] == (1, 0, 11) and words["normal.y"] == (1, 11, 10) and words["normal.z"] == (1, 21, 11)
-    assert words["albedo.g"] == (0, 1, 0), "a word without bits counts channels"
+    assert words["base_color.g"] == (0, 1, 0), "a word without bits counts channels"
 
 
 def test_a_sign_in_the_depth_is_a_bit_of_the_normal():
@@ -81,7 +81,7 @@ def test_a_sign_in_the_depth_is_a_bit_of_the_normal():
         ([("rgba8", "normal.x:30")], {}, "up to 24 bits"),
         ([("rgba8", "normal.x:0 normal.y:12")], {}, "at least 1 bit"),
         ([("rgba8", "normal.x:99999 normal.y:12")], {}, "unknown component"),
-        ([("rgba8", "normal.x:12 normal.y:12 kind:1")], {}, "kind needs 2 bits, not 1"),
+        ([("rgba8", "normal.x:12 normal.y:12 kind:1")], {}, "shading_model needs 2 bits, not 1"),
         ([("rgba8", "normal.x:12 normal.y:12 instance:4")], {}, "instance needs 8 bits, not 4"),
         ([("rgba8", "normal.x:12 normal.y:12 depth:1")], {"encoding": "xy_sign"}, "depth needs 2 bits, not 1"),
         ([("rgba16f", "normal.x normal.y")], {"encoding": "octahedral_precise"}, "in fixed point and not otherwise"),
@@ -192,7 +192,7 @@ def test_more_targets_than_the_device_has_are_refused(gl, monkeypatch):
 
 
 def test_a_pipeline_says_what_a_layout_lacks(gl):
-    with pytest.raises(LayoutError, match=r"deferred needs albedo.b, .*, which layout normal_depth does not keep"):
+    with pytest.raises(LayoutError, match=r"deferred needs base_color.b, .*, which layout normal_depth does not keep"):
         check(gl, PIPELINES["deferred"], plan(LAYOUTS["normal_depth"], light_targets=1))
     with pytest.raises(LayoutError, match="one light target needs an alpha channel"):
         light = LIGHT_BUFFERS["r11g11b10f"]
@@ -371,14 +371,53 @@ def test_motion_is_from_where_the_camera_stood(gl):
     assert abs(expected).max() > 0.02 and worst < 1e-4, f"{worst} of a screen off"
 
 
+@pytest.mark.parametrize(
+    ("typed", "components", "curve"),
+    [
+        ("albedo", "base_color.r base_color.g base_color.b", None),
+        ("diffuse_color.g", "base_color.g", None),
+        ("metalness", "metallic", None),
+        ("ambient_occlusion:6", "ao", None),
+        ("kind:4", "shading_model", None),
+        ("velocity.x", "motion.x", None),
+        ("specular.r", "f0.r", None),
+        ("square_root(albedo.r):7", "base_color.r", ("square_root", 1.0)),
+        # roughness = 1 - x; f0 = 0.08 x, 0.16 x^2 and 0.04 x.
+        ("smoothness", "roughness", ("inverted", 1.0)),
+        ("unreal_specular:5", "f0", ("linear", 0.08)),
+        ("reflectance", "f0", ("square_root", 0.16)),
+        ("gltf_specular", "f0", ("linear", 0.04)),
+    ],
+)
+def test_engines_words_are_understood_with_the_curve_that_they_stand_for(typed, components, curve):
+    words = list(placed("mine", 0, Target("rgba8", typed)))
+    assert [word.component for word in words] == components.split()
+    kept = words[0].kept
+    assert (kept and (kept.encoding.name, kept.range)) == curve
+
+
+@pytest.mark.parametrize(
+    ("typed", "why"),
+    [
+        ("alpha", "is the square of the roughness in most engines"),
+        ("linear_roughness", r"write squared\(roughness\)"),
+        ("specular", "is f0.rgb, or unreal_specular"),
+        ("squared(smoothness)", r"has a curve of its own, inverted\(roughness\); within another write roughness"),
+    ],
+)
+def test_a_word_that_means_several_things_says_what_to_write(typed, why):
+    with pytest.raises(LayoutError, match=why):
+        list(placed("mine", 0, Target("rgba8", typed)))
+
+
 FIELDS = (
     "normal.x:11 normal.y:11 roughness:10",
-    "metalness:4 occlusion:5 reflectance:7 albedo.r:5 albedo.g:6 albedo.b:5",
+    "metallic:4 ao:5 f0:7 base_color.r:5 base_color.g:6 base_color.b:5",
 )
 
 
 # In the bits of RGB10A2 whose channels are of one size.
-FEWER_FIELDS = tuple(one.replace("roughness:10", "roughness:8").replace("tance:7", "tance:5") for one in FIELDS)
+FEWER_FIELDS = tuple(one.replace("roughness:10", "roughness:8").replace("f0:7", "f0:5") for one in FIELDS)
 
 
 @pytest.mark.parametrize(

@@ -167,22 +167,31 @@ def test_a_light_prepass_says_that_it_cannot_carry_them(gl, name):
         draw(gl, name, LIT)
 
 
-NORMAL, BASE, EMISSION = "normal.x normal.y", "albedo.r albedo.g albedo.b", "emission.r emission.g emission.b"
+NORMAL, BASE, EMISSION = (
+    "normal.x normal.y",
+    "base_color.r base_color.g base_color.b",
+    "emissive.r emissive.g emissive.b",
+)
 
 
 # What lies in 32-bit floats, and what lies in a bit or two of eight.
 KEPT = {
-    "": (f"{BASE} metalness", "roughness reflectance occlusion kind", EMISSION, ""),
-    "roughness": (f"{BASE} metalness", "reflectance occlusion kind", EMISSION, "roughness:2"),
-    "metalness": (f"{BASE} roughness", "reflectance occlusion kind", EMISSION, "metalness:1"),
-    "occlusion": (f"{BASE} metalness", "roughness reflectance kind", EMISSION, "occlusion:1"),
-    "emission": (
-        f"{BASE} metalness",
-        "roughness reflectance occlusion kind",
+    "": (f"{BASE} metallic", "roughness f0 ao shading_model", EMISSION, ""),
+    "roughness": (f"{BASE} metallic", "f0 ao shading_model", EMISSION, "roughness:2"),
+    "metallic": (f"{BASE} roughness", "f0 ao shading_model", EMISSION, "metallic:1"),
+    "ao": (f"{BASE} metallic", "roughness f0 shading_model", EMISSION, "ao:1"),
+    "emissive": (
+        f"{BASE} metallic",
+        "roughness f0 ao shading_model",
         "",
-        "emission.r:1 emission.g:1 emission.b:1",
+        "emissive.r:1 emissive.g:1 emissive.b:1",
     ),
-    "base colour": ("metalness", "roughness reflectance occlusion kind", EMISSION, "albedo.r:1 albedo.g:1 albedo.b:1"),
+    "base colour": (
+        "metallic",
+        "roughness f0 ao shading_model",
+        EMISSION,
+        "base_color.r:1 base_color.g:1 base_color.b:1",
+    ),
 }
 
 

@@ -28,11 +28,11 @@ NORMAL = "normal"
 COMPONENTS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
         "normal": ("normal.x", "normal.y", "normal.z"),
-        "base_color": ("albedo.r", "albedo.g", "albedo.b"),
+        "base_color": ("base_color.r", "base_color.g", "base_color.b"),
         "roughness": ("roughness",),
-        "metallic": ("metalness",),
-        "f0": ("reflectance",),
-        "ao": ("occlusion",),
+        "metallic": ("metallic",),
+        "f0": ("f0",),
+        "ao": ("ao",),
     }
 )
 # What a surface has of an attribute that no G-buffer keeps.
@@ -162,11 +162,11 @@ def _curved(curve: str, limit: float | None, component: str) -> str:
 
 
 def _base_colors() -> Iterator[Code]:
-    yield _on_curve("base_color", "albedo", "srgb", (8, 8, 8), SRGB)
+    yield _on_curve("base_color", "base_color", "srgb", (8, 8, 8), SRGB)
     # Textures have 8 bits: more would keep nothing that they have.
     for bits in ((7, 7, 6), (7, 7, 7), (8, 8, 8)):
-        yield _on_curve("base_color", "albedo", "square_root", bits)
-    yield _on_curve("base_color", "albedo", ITSELF, (10, 10, 10))
+        yield _on_curve("base_color", "base_color", "square_root", bits)
+    yield _on_curve("base_color", "base_color", ITSELF, (10, 10, 10))
 
 
 def _singles(attribute: str, sizes: Iterable[int], curve: str = ITSELF) -> Iterator[Code]:
@@ -235,9 +235,9 @@ def _light_trip(codec: LightCodec, surfaces: Surfaces) -> Surfaces:
 EMISSION = Attribute(
     "emissive",
     (
-        _emission("RGB9E5", "rgb9e5", "rgb9e5(emission)", (32,), RGB9E5),
-        _emission("R11G11B10F", "r11g11b10f", "emission", (11, 11, 10), FLOAT),
-        _emission("in halves", "rgba16f", "emission", (16, 16, 16), FLOAT),
+        _emission("RGB9E5", "rgb9e5", "rgb9e5(emissive)", (32,), RGB9E5),
+        _emission("R11G11B10F", "r11g11b10f", "emissive", (11, 11, 10), FLOAT),
+        _emission("in halves", "rgba16f", "emissive", (16, 16, 16), FLOAT),
     ),
     32,
 )
@@ -248,7 +248,7 @@ def _reflectances() -> Iterator[Code]:
         # The usual 0.04 lies on a code: one that it lies between is off everywhere, by half a step. Engines' 0.08 is in
         # the range.
         share = (2 ** (bits - 1) - 1) / (2**bits - 1)
-        yield _on_curve("f0", "reflectance", ITSELF, (bits,), limit=_short(DIELECTRIC / share))
+        yield _on_curve("f0", "f0", ITSELF, (bits,), limit=_short(DIELECTRIC / share))
 
 
 def _short(limit: float) -> float:

@@ -21,7 +21,7 @@ def holds_other_quantities(layout: Layout) -> bool:
     """Whether a layout keeps a diffuse colour and an F0, or a specular power, in place of what metal/rough surfaces
     have."""
     words = {word.component for word in layout.words}
-    return "metalness" not in words and bool(words & {"specular.r", "power"})
+    return "metallic" not in words and bool(words & {"f0.r", "power"})
 
 
 def completed(layout: Layout) -> Layout:
@@ -29,7 +29,7 @@ def completed(layout: Layout) -> Layout:
     if holds_other_quantities(layout):
         return layout
     lacks = [COMPONENTS[name][0] for name in NUMBERS if COMPONENTS[name][0] not in layout.components]
-    words = [" ".join(lacks), "" if COMPONENTS["base_color"][0] in layout.components else "albedo -"]
+    words = [" ".join(lacks), "" if COMPONENTS["base_color"][0] in layout.components else "base_color -"]
     return replace(layout, targets=(*layout.targets, *(Target("rgba32f", holds) for holds in words if holds)))
 
 
@@ -45,7 +45,7 @@ def alone(layout: Layout, attribute: str) -> Layout:
     if not is_normal:
         held.append(Target("rgba32f", "normal.x normal.y normal.z -"))
     if attribute != "base_color":
-        held.append(Target("rgba32f", "albedo -"))
+        held.append(Target("rgba32f", "base_color -"))
     others = [FREE if name == attribute else COMPONENTS[name][0] for name in NUMBERS]
     held.append(Target("rgba32f", " ".join(others)))
     changes = (

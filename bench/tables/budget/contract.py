@@ -14,7 +14,7 @@ from .attributes import EMISSION, MOST_PART, NORMAL, SEEN, Attribute, exact_bits
 # Attributes of bits that come back as they are, with the word that a layout has for them.
 EXACT: Mapping[str, str] = MappingProxyType(
     {
-        "id": "kind",
+        "shading_model": "shading_model",
         "flags": "other.flags",
         "shadow": "other.shadow",
         "custom": "other.custom",
@@ -26,7 +26,7 @@ TANGENT = exact_bits("tangent", "other.tangent", 8)
 MOTION, PACKED, IN_LIGHT, STENCIL = "motion", "motion:packed", "emissive:light", "stencil"
 MOST_BITS = 64
 # What hardware can test before shading.
-IN_STENCIL = ("id", "flags")
+IN_STENCIL = ("shading_model", "flags")
 KNOWN = (
     *(*SEEN, MOTION, PACKED, EMISSION.name, IN_LIGHT, TANGENT.name),
     *(f"{name}:BITS" for name in EXACT),
@@ -73,8 +73,8 @@ def _attribute(word: str, speed: float) -> Attribute | None:
     if not size.isdigit() or not 1 <= int(size) <= MOST_BITS:
         raise UsageError(f"--hold {word}: {name} takes 1 to {MOST_BITS} bits, such as {name}:4")
     layout_word = EXACT[name]
-    if layout_word == "kind" and not 2 <= int(size) <= MOST_PART:
-        raise UsageError(f"--hold {word}: a model of shading takes 2 to {MOST_PART} bits")
+    if layout_word == "shading_model" and not 2 <= int(size) <= MOST_PART:
+        raise UsageError(f"--hold {word}: a shading model takes 2 to {MOST_PART} bits")
     return exact_bits(name, layout_word, int(size))
 
 

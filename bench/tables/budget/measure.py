@@ -58,7 +58,7 @@ MORE, WORTH_DB = (1, 2, 4), 0.5
 ONE_WORD = 32
 UNMEASURABLE = (ShaderError, FormatError, LayoutError)
 # What engines may lack, with a word of a layout that has it.
-LACKS = {"motion": "motion.x", "id": "kind", "f0": "reflectance", "ao": "occlusion"}
+LACKS = {"motion": "motion.x", "shading_model": "shading_model", "f0": "f0", "ao": "ao"}
 # Pixels of the two pictures that traffic is said for.
 HD, UHD = 1920 * 1080, 3840 * 2160
 
@@ -409,7 +409,7 @@ class Judged:
         held = {one.name: min(code.total_bits for code in one.codes) for one in self._question.attributes}
         lacks = [held[name] for name, word in LACKS.items() if name in held and word not in kept]
         storages = [(word, layout.targets[word.target].storage) for word in layout.words]
-        more = [word.bits or storage.bits[word.first] for word, storage in storages if "emission" in word.component]
+        more = [word.bits or storage.bits[word.first] for word, storage in storages if "emissive" in word.component]
         return sum(lacks) / 8 - (0 if "emissive" in held else sum(more) / 8)
 
     def _contract_bytes(self, layout: Layout) -> int:

@@ -15,7 +15,7 @@ from .bins import BINS, Bin
 from .solve import LARGE_BITS, READ_BYTES, Rules
 
 # What --hold calls the model of shading.
-MODEL = "id"
+MODEL = "shading_model"
 # A target of signed numbers may as well be one of as many bits without a sign.
 SIGNED = "_snorm"
 
@@ -106,7 +106,7 @@ def _attributes(layout: Layout) -> Iterator[Attribute]:
     rest = [pair for pair in others if not pair[1].component.startswith(("motion.", LIGHT))]
     for at, pair in enumerate(rest):
         component = pair[1].label or pair[1].component
-        yield _as_it_is(MODEL if component == "kind" else f"{component} {at}", layout, [pair])
+        yield _as_it_is(MODEL if component == "shading_model" else f"{component} {at}", layout, [pair])
 
 
 def _texts(layout: Layout, at: int, target: Target) -> Iterator[tuple[str, Word]]:

@@ -37,7 +37,7 @@ WEB, TILE = "webgpu", "tile"
 # Options that name attributes.
 OF_ATTRIBUTES = ("hold", "blend", "read_alone", "readers")
 # What belongs together because it is read together.
-ONE_BYTE = frozenset({"id", "flags"})
+ONE_BYTE = frozenset({"shading_model", "flags"})
 
 
 @dataclass(frozen=True)

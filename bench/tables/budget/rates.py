@@ -33,8 +33,7 @@ EXACT = Layout(
     "exact",
     "a metal/rough surface in 32-bit floats",
     targets_of(
-        "rgba32f: normal.x normal.y normal.z -; rgba32f: albedo kind; "
-        "rgba32f: metalness reflectance roughness occlusion"
+        "rgba32f: normal.x normal.y normal.z -; rgba32f: base_color shading_model; rgba32f: metallic f0 roughness ao"
     ),
     ENCODINGS["xyz"],
     "this project",

@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
+from ....gbuffer.layouts.kept import quantity_of
 from ....gbuffer.layouts.layout import Layout
 from ...ground.options.counts import in_range
 from ...ground.options.words import Names
@@ -19,14 +20,14 @@ MOST = 64.0
 WORDS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
         "normal": ("normal",),
-        "base_color": ("albedo",),
+        "base_color": ("base_color",),
         "roughness": ("roughness", "power"),
-        "metallic": ("metalness",),
-        "f0": ("reflectance", "specular"),
-        "ao": ("occlusion",),
+        "metallic": ("metallic",),
+        "f0": ("f0", "f0.rgb"),
+        "ao": ("ao",),
         "motion": ("motion",),
-        "emissive": ("emission",),
-        "id": ("kind",),
+        "emissive": ("emissive",),
+        "shading_model": ("shading_model",),
     }
 )
 TIMES = {0.0: "never", 1.0: "once", 2.0: "twice"}
@@ -109,5 +110,5 @@ def _bytes_of(layout: Layout, part: Collection[str]) -> int:
         # A quantity that carries a sign of the normal is read with it.
         names |= {layout.carrier.component} if layout.carrier else set()
         names |= {"depth"} if layout.has_signed_depth else set()
-    found = {word.target for word in layout.words if word.component.partition(".")[0] in names}
+    found = {word.target for word in layout.words if quantity_of(word.component) in names}
     return sum(sum(layout.targets[at].storage.bits) // 8 for at in found)

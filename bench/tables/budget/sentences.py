@@ -12,7 +12,14 @@ from .table import IMPROVED, PROPOSAL
 # FLIP's 99th percentile that we call invisible, and acceptable: both are conventions (see `roughness`).
 INVISIBLE, ACCEPTABLE = 0.05, 0.1
 # Codes as a sentence says them.
-WORDS = {"base_color": "base colour", "f0": "F0", "ao": "AO", "square_root": "by its root", "linear": "", "id": "model"}
+WORDS = {
+    "base_color": "base colour",
+    "f0": "F0",
+    "ao": "AO",
+    "square_root": "by its root",
+    "linear": "",
+    "shading_model": "shading model",
+}
 # What free bytes may hold: how many it takes, a word of layouts that have it, and what it is.
 FREE_FOR = ((4, "emissive", "emissive light"), (2, "coat", "a clear coat"), (2, "anisotropy", "anisotropy"))
 # Shares of an error that a sentence names.

@@ -45,8 +45,8 @@ class BudgetOptions(Options):
         Option(
             "--hold",
             "What is stored: normal, base_color, roughness, metallic, f0, ao, tangent; motion in a target "
-            "of its own, or motion:packed; id:BITS, flags:BITS, or either as id:stencil; shadow:BITS, custom:BITS, "
-            "other:BITS; emissive, or emissive:light where the light buffer has it.",
+            "of its own, or motion:packed; shading_model:BITS, flags:BITS, either in the stencil as flags:stencil; "
+            "shadow:BITS, custom:BITS, other:BITS; emissive, or emissive:light where the light buffer has it.",
         ),
     ] = (
         "normal",
@@ -55,7 +55,7 @@ class BudgetOptions(Options):
         "metallic",
         "f0",
         "ao",
-        "id:4",
+        "shading_model:4",
         "flags:4",
         "motion",
         "emissive:light",
@@ -137,8 +137,8 @@ COLUMNS = (
     Column("bytes_per_pixel", "Of the targets, without native depth.", unit="bytes", better="less"),
     Column(
         "contract_bytes",
-        "The same with the motion, ids, reflectance and occlusion of --hold added where it lacks them, and less "
-        "emission that nobody asked for: layouts are compared by it.",
+        "The same with the motion, shading model, F0 and AO of --hold added where it lacks them, and less "
+        "emissive that nobody asked for: layouts are compared by it.",
         unit="bytes",
         better="less",
     ),

@@ -12,6 +12,7 @@ from ....encodings.catalogue import LIGHT_BUFFERS
 from ....gbuffer.display import Display, measured_exposure
 from ....gbuffer.frame.plan import Plan
 from ....gbuffer.gl.device import Device
+from ....gbuffer.layouts.kept import quantity_of
 from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.pipelines import PIPELINES, Pipeline
 from ....gbuffer.render import Rendering, bytes_per_pixel, rendering
@@ -165,7 +166,7 @@ class RenderBench(Bench[RenderCase, Drawn]):
         row |= {"exact": row["mse"] == 0, "psnr_covered_db": _psnr_of_covered(pairs, covered)}
         # Where the G-buffer has a size of its own, its pixels are not the reference's.
         if case.pipeline.has_gbuffer and case.plan.scale == 1 and frames[0].normals is not None:
-            has_kind = "kind" in case.plan.layout.components
+            has_kind = "shading_model" in case.plan.layout.components
             apart = [_normal_error(frame, other, has_kind) for frame, other in pairs]
             row["normal_psnr_db"] = psnr_db(float(np.mean(apart)))
         return row
@@ -254,11 +255,11 @@ def _unread(case: RenderCase) -> list[str]:
     """What a layout keeps and no pass reads, by the names of its quantities."""
     if not case.pipeline.has_gbuffer:
         return []
-    kept = [word.component.partition(".")[0] for word in case.plan.layout.words]
-    read = {"normal", "depth", "albedo", "occlusion", "emission", "roughness" if "roughness" in kept else "power"}
-    read |= {"metalness", "reflectance"} if case.is_metal_rough and "metalness" in kept else {"specular"}
+    kept = [quantity_of(word.component) for word in case.plan.layout.words]
+    read = {"normal", "depth", "base_color", "ao", "emissive", "roughness" if "roughness" in kept else "power"}
+    read |= {"metallic", "f0"} if case.is_metal_rough and "metallic" in kept else {"f0.rgb"}
     # Kinds tell special materials apart, instances what a filter may mix.
-    read |= (set() if case.is_metal_rough else {"kind"}) | ({"instance"} if case.pipeline.scaled else set())
+    read |= (set() if case.is_metal_rough else {"shading_model"}) | ({"instance"} if case.pipeline.scaled else set())
     return list(dict.fromkeys(name for name in kept if name not in read))
 
 

@@ -103,7 +103,7 @@ def skin_light(width: float, translucency: float, transmits: bool) -> Pass:
         partial(_skin_light, numbers),
         after=("lights",),
         expects={"LIGHT_HOLDS": (TERMS, BY_KIND)},
-        needs=frozenset({"kind"}),
+        needs=frozenset({"shading_model"}),
     )
 
 

@@ -36,7 +36,11 @@ DEFAULT = attributes_held(BudgetOptions().hold, BudgetOptions().speed)
 
 # As `budget` asks where nobody says otherwise.
 USUAL = Rules(
-    16, 6, together=(frozenset({"id", "flags"}),), apart=frozenset({"motion"}), read=frozenset({"normal", "roughness"})
+    16,
+    6,
+    together=(frozenset({"shading_model", "flags"}),),
+    apart=frozenset({"motion"}),
+    read=frozenset({"normal", "roughness"}),
 )
 
 
@@ -78,7 +82,9 @@ def test_a_layout_holds_everything_within_its_bytes_and_channels(limit):
     assert layout.bytes_per_pixel <= limit and len(layout.targets) <= 6
     bits = {one.attribute: one for attribute in DEFAULT for one in attribute.codes[:1]}
     kept = {word.component: word.bits or layout.targets[word.target].storage.bits[word.first] for word in layout.words}
-    assert kept["kind"] >= bits["id"].total_bits and kept["motion.x"] == 16 and kept["normal.x"] >= 10
+    assert (
+        kept["shading_model"] >= bits["shading_model"].total_bits and kept["motion.x"] == 16 and kept["normal.x"] >= 10
+    )
     # All bits of a code are there, and nothing else's.
     for one in found.placed:
         for word, size in zip(one.code.words, one.code.bits, strict=True):
@@ -117,7 +123,7 @@ def test_a_number_beside_an_unused_colour_lies_in_the_fourth_channel():
     normal = next(code for code in held.SEEN["normal"].codes if code.name == "octahedral 16:16")
     placed = (Placed(normal, BINS["rg16"], 0), Placed(code, BINS["srgb8_a8"], 0))
     layout = layout_of("mine", Solution(placed, {}))
-    (word,) = [word for word in layout.words if word.component == "occlusion"]
+    (word,) = [word for word in layout.words if word.component == "ao"]
     assert word.first == 3
 
 
@@ -131,7 +137,7 @@ def test_what_is_read_alone_lies_in_few_bytes_with_nothing_large(limit):
     ]
     assert sum(lying[0].bin.bytes for lying in homes) <= 8
     assert not {"base_color", "motion"} & {p.code.attribute for lying in homes for p in lying}
-    (home,) = [lying for lying in by_target(found).values() if any(p.code.attribute == "id" for p in lying)]
+    (home,) = [lying for lying in by_target(found).values() if any(p.code.attribute == "shading_model" for p in lying)]
     assert "flags" in {p.code.attribute for p in home}
 
 
@@ -149,13 +155,13 @@ def test_webgpus_bytes_a_sample_are_the_specifications():
 
 def test_what_no_image_shows_has_its_bits_all_the_same():
     """Ids, flags, custom data and motion at every limit, also where a byte more would be worth much to the image."""
-    hold = "normal,base_color,roughness,metallic,f0,ao,id:4,flags:6,motion,custom:32,other:7"
+    hold = "normal,base_color,roughness,metallic,f0,ao,shading_model:4,flags:6,motion,custom:32,other:7"
     wanted = attributes_held(hold, 64.0)
     for limit in (18, 20, 24):
         found = solved(problem(Rules(limit, 8), wanted))
         assert found is not None
         sizes = {one.code.attribute: one.code.total_bits for one in found.placed}
-        assert sizes["id"] == 4 and sizes["flags"] == 6 and sizes["custom"] == 32 and sizes["other"] == 7
+        assert sizes["shading_model"] == 4 and sizes["flags"] == 6 and sizes["custom"] == 32 and sizes["other"] == 7
         assert sizes["motion"] == 32
 
 
@@ -285,7 +291,7 @@ def test_a_proposal_holds_what_a_layout_holds_in_targets_of_its_formats(layout):
     theirs = Counter(target.format.removesuffix("_snorm") for target in layout.targets)
     assert Counter(target.format for target in made.targets) <= theirs
     # A power is another word for a roughness, and a light of four numbers for one of three.
-    words = [{c for c in one.components if c not in ("power", "emission.a", "normal.z")} for one in (made, layout)]
+    words = [{c for c in one.components if c not in ("power", "emissive.a", "normal.z")} for one in (made, layout)]
     assert words[0] == words[1]
     others = [sum(bits_of(one, word) for word in words_of(one) if word.component == "other") for one in (made, layout)]
     assert others[0] >= others[1]
@@ -307,7 +313,7 @@ def test_codes_share_the_channels_of_ten_bits():
     names = [("normal", "octahedral 11:11"), ("metallic", "linear 5")]
     layout = layout_of("mine", Solution(tuple(Placed(c, home, 0) for c in (*(codes[n] for n in names), flags)), {}))
     (target,) = layout.targets
-    assert target.holds == "normal.x:11 normal.y:11 metalness:5 -:3 other"
+    assert target.holds == "normal.x:11 normal.y:11 metallic:5 -:3 other"
 
 
 @pytest.mark.parametrize("name", ["rg32_uint", "rgba32_uint", "rgba16_uint"])
@@ -347,13 +353,16 @@ def test_the_usual_reflectance_lies_on_a_code():
         (["--bytes", "0"], "--bytes"),
         (["--hold", "base_color,roughness"], "--hold: normal is missing; name for example normal,roughness"),
         (["--classes", "shiny"], "shiny"),
-        (["--hold", "id:4,id:8"], "--hold: id is named twice"),
+        (["--hold", "id:4,id:8"], "--hold: shading_model is named twice"),
         (["--hold", "colour"], f"--hold colour: unknown; known: {', '.join(KNOWN)}"),
-        (["--hold", "id:65"], "--hold id:65: id takes 1 to 64 bits"),
+        (["--hold", "id:65"], "--hold shading_model:65: shading_model takes 1 to 64 bits"),
         (["--blend", "tangent"], "--blend tangent: not held"),
         (["--formats", "rgba7"], "rgba7"),
         (["--limit", "tile:17"], "--limit tile:17"),
-        (["--hold", f"{','.join(held.SEEN)},id:stencil", "--readers", "id"], "it lies in the stencil, whose bytes"),
+        (
+            ["--hold", f"{','.join(held.SEEN)},shading_model:stencil", "--readers", "shading_model"],
+            "it lies in the stencil, whose bytes",
+        ),
         (["--limit", "webgpu", "--light", "rgba32f"], "WebGPU does not render to it"),
         (["--scene", "room"], "room has no metal/rough materials"),
         (["--threshold", "7"], "--threshold"),

@@ -28,8 +28,13 @@ from normalbench.gbuffer.layouts.presets import LAYOUTS
         ("2.5", 40, 40, "2.5 times in full"),
         ("all,all", 32, 32, "twice in full"),
         ("normal", 4, 8, "never in full, once for normal"),
-        ("normal+roughness, id,1", 28, 32, "once in full, once for normal and roughness, once for id"),
-        ("base_color+id", 8, 4, "never in full, once for base_color and id"),
+        (
+            "normal+roughness, shading_model,1",
+            28,
+            32,
+            "once in full, once for normal and roughness, once for shading_model",
+        ),
+        ("base_color+shading_model", 8, 4, "never in full, once for base_color and shading_model"),
         ("f0", 4, 4, "never in full, once for f0"),
         # Neither holds it.
         ("emissive", 0, 0, "never in full, once for emissive"),

@@ -16,7 +16,7 @@ from normalbench.bench.tables.budget.table import BudgetOptions
 def test_every_code_has_a_kernel_in_every_target_that_holds_it():
     """Of all that --hold may name: a code without one would count as dearer than any limit."""
     words = "shadow:8,custom:32,other:5,tangent,emissive,motion:packed"
-    named = f"normal,base_color,roughness,metallic,f0,ao,id:4,flags:4,{words}"
+    named = f"normal,base_color,roughness,metallic,f0,ao,shading_model:4,flags:4,{words}"
     held_all = attributes_held(named, BudgetOptions().speed)
     pairs = [(code, one) for held_one in held_all for code in held_one.codes for one in BINS.values() if one.need(code)]
     assert len(pairs) > 200

@@ -48,7 +48,7 @@ def test_codes_stand_by_bits_the_best_first_and_depth_codes_after_them():
         (("--depth", "metres/r32f"), "unknown depth 'metres'"),
         (("--depth", "linear_sign/packed24"), "does not suit xyz"),
         (("--encoding", "xyz", "--storage", "rg8", "--depth", "none"), "3 components, but RG8 has 2 channels"),
-        (("--layout", "normal_depth", "--depth", "none"), "hybrid needs albedo.b"),
+        (("--layout", "normal_depth", "--depth", "none"), "hybrid needs base_color.b"),
         (("--depth", "none"), "--depth none leaves nothing to measure: name --encoding or --layout"),
         (
             ("--effect", "subsurface", "--pipeline", "deferred"),
@@ -65,7 +65,7 @@ def test_codes_stand_by_bits_the_best_first_and_depth_codes_after_them():
             ("--effect", "ssr", "--pipeline", "prepass"),
             "ssr does not go into pipeline prepass, but into deferred, hybrid",
         ),
-        (("--effect", "ssr", "--layout", "normal_depth", "--depth", "none"), "hybrid needs albedo.b"),
+        (("--effect", "ssr", "--layout", "normal_depth", "--depth", "none"), "hybrid needs base_color.b"),
         (("--rays", "-1"), "--rays -1: from 0"),
         (("--repeats", "-1"), "--repeats -1: from 0"),
         (("--size", "0x5"), "WIDTHxHEIGHT"),

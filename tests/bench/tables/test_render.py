@@ -185,7 +185,7 @@ def test_what_does_not_suit_is_left_out_and_named(run):
         *QUICK[:-4], "--format", "json", "--pipeline", "deferred,prepass", "--layout", "normal_depth"
     )
     assert status == 0 and [row["pipeline"] for row in json.loads(out)] == ["prepass"]
-    assert err.startswith("normalbench: left out: deferred needs albedo.b") and err.count("\n") == 1
+    assert err.startswith("normalbench: left out: deferred needs base_color.b") and err.count("\n") == 1
 
 
 def test_pictures_show_what_was_rendered(run, tmp_path):
@@ -269,7 +269,7 @@ def test_a_pixel_that_is_no_number_counts_in_full():
         (["--layout", "missing.toml"], "missing.toml: there is no such file"),
         (["--layout", "clash.toml"], "normal.x lies in two places"),
         (["--layout", "hybrid", "--encoding", "xy_sign"], "keeps no depth"),
-        (["--layout", "normal_depth", "--pipeline", "deferred"], "deferred needs albedo.b"),
+        (["--layout", "normal_depth", "--pipeline", "deferred"], "deferred needs base_color.b"),
         (["--light-buffer", "rgba8"], "unknown light buffer 'rgba8'"),
         (["--light-buffer", "r11g11b10f", "--light-targets", "1"], "one light target needs an alpha channel"),
         (["--light-targets", "3"], "unknown number of light targets '3'; known: all, 1, 2"),

@@ -81,7 +81,7 @@ def _places(contents: Contents, word: Word) -> Iterator[str]:
 
 
 def _field(contents: Contents, word: Word) -> str:
-    """What a word is called in the structure: `base_colour.x`."""
+    """What a word is called in the structure: `base_color.x`."""
     if word.component.startswith("normal."):
         return word.component
     field = next(field for field in contents.fields if word in field.words or _is_fourth(field.name, word))
@@ -112,4 +112,4 @@ def _kept_text(contents: Contents, word: Word) -> str:
         return word.kept.encoding.name + ("" if is_light or word.kept.range == 1.0 else f", up to {word.kept.range:g}")
     if not word.bits and word.first < storage.curved:
         return "sRGB, by the format"
-    return "as it is" if word.component in (OTHER, "kind", "instance") else "linear"
+    return "as it is" if word.component in (OTHER, "shading_model", "instance") else "linear"

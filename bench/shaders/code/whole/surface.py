@@ -9,7 +9,7 @@ from functools import cached_property
 from .....encodings.catalogue import MOTION_ENCODINGS
 from .....encodings.codecs.light_encoding import LightEncoding
 from .....encodings.storages.storage import DITHERED
-from .....gbuffer.layouts.kept import COLOURS, MOTION, Kept
+from .....gbuffer.layouts.kept import COLOURS, F0, F0_COLOUR, MOTION, Kept, quantity_of
 from .....gbuffer.layouts.layout import Layout
 from .....gbuffer.layouts.words import COMPONENTS, OTHER, Word, all_placed
 from ....ground.output.errors import UsageError
@@ -18,7 +18,7 @@ from ..emit import LANGUAGES
 
 # The types of fields of several numbers.
 NUMBERS = {**dict.fromkeys(COLOURS, ("vec3", "rgb")), MOTION: ("vec2", "xy")}
-WHOLE_NUMBERS = ("kind", "instance")
+WHOLE_NUMBERS = ("shading_model", "instance")
 # What no field is called, so that it has the same name in every language.
 WORDS_OF_LANGUAGES = BUILTINS.union(*(one.writer.reserved for one in LANGUAGES.values()))
 
@@ -69,20 +69,20 @@ class Contents:
 
     def _material_fields(self) -> Iterator[Field]:
         found = {word.component: word for word in self.words if word.component != OTHER}
-        for first in dict.fromkeys(one.partition(".")[0] for one in COMPONENTS):
+        for first in dict.fromkeys(map(quantity_of, COMPONENTS)):
             kind, numbers = NUMBERS.get(first, ("uint" if first in WHOLE_NUMBERS else "float", ""))
-            parts = tuple(f"{first}.{number}" for number in numbers) or (first,)
+            parts = tuple(f"{first.partition('.')[0]}.{number}" for number in numbers) or (first,)
             if first == "normal" or parts[0] not in found:
                 continue
             words = tuple(found[part] for part in parts)
             yield Field(self._name(first), kind, parts, words, words[0].kept)
 
     def _name(self, component: str) -> str:
-        """What a component is called: with a metalness the colour is that of the material, not of what it scatters."""
-        if component == "albedo" and "metalness" in self.layout.components:
-            return "base_colour"
+        """What a component is called: without a metallic the colour is that of the light which it scatters."""
+        if component == "base_color" and "metallic" not in self.layout.components:
+            return "diffuse_color"
         # Of metal/rough materials a roughness lies where others have a power.
-        return {"power": "roughness", "specular": "f0"}.get(component, component)
+        return {"power": "roughness", F0_COLOUR: F0}.get(component, component)
 
     def _other_fields(self) -> Iterator[Field]:
         others = [word for word in self.words if word.component == OTHER]
@@ -107,7 +107,7 @@ def _unwritten(layout: Layout) -> str:
     if {"power", "roughness"} <= {word.component for word in layout.words}:
         return "a power and a roughness in one layout"
     for name, (_, numbers) in NUMBERS.items():
-        there = [f"{name}.{number}" in components for number in numbers]
+        there = [f"{name.partition('.')[0]}.{number}" in components for number in numbers]
         if any(there) and not all(there):
             return f"a part of {name} without the rest"
     return _unwritten_other(layout)

@@ -59,7 +59,7 @@ def _numbers(contents: Contents, field: Field, random: np.random.Generator, view
         largest, share = 1.0, np.where(at_end == 0, 0.0, NEAR * (FAR / NEAR) ** share)
     if field.name == "motion":
         share *= random.choice([-1.0, 1.0], (count, size)) * 2.0 ** random.uniform(-12, 0, (count, 1))
-    if field.name == "emission":
+    if field.name == "emissive":
         largest, share = BRIGHT, share * 2.0 ** random.uniform(-12, 0, (count, 1))
     yield (share * largest).astype(np.float32).view(np.uint32)
 

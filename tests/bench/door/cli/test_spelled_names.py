@@ -57,7 +57,7 @@ READ = {
     "attributes with bits": (
         as_known,
         "Normal, base_color,ID:4,MOTION:Packed",
-        ("normal", "base_color", "id:4", "motion:packed"),
+        ("normal", "base_color", "shading_model:4", "motion:packed"),
     ),
     "attributes read together": (as_known, "2,Base_Color+Roughness,All", ("2", "base_color+roughness", "all")),
     "what is no attribute": (as_known, "normal,colour", ("normal", "colour")),

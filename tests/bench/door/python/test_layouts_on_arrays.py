@@ -28,7 +28,7 @@ holds = "normal.y:12 square_root(roughness):8 metalness:5 other:7"
 """
 
 
-SURFACE = {"normal": [0, 0, 1], "base_colour": [1, 1, 1], "roughness": 0.5, "metalness": 1, "occlusion": 1}
+SURFACE = {"normal": [0, 0, 1], "base_color": [1, 1, 1], "roughness": 0.5, "metallic": 1, "ao": 1}
 
 
 def fields_of(contents, rows) -> dict:
@@ -64,7 +64,7 @@ def test_targets_hold_what_the_renderer_writes_and_come_back_as_it_reads(name, t
 @pytest.mark.parametrize(
     "call, said",
     [
-        (lambda: nb.pack("granite", {"normal": [0, 0, 1]}), "surface lacks base_colour, metalness"),
+        (lambda: nb.pack("granite", {"normal": [0, 0, 1]}), "surface lacks ao, base_color, metallic"),
         (lambda: nb.pack("granite", {**SURFACE, "depth": 1.0}), "surface has no depth; it has normal"),
         (lambda: nb.pack("granite", SURFACE, near=0.1), "settings has no near; it has none"),
         (lambda: nb.unpack("granite", [np.zeros(4)]), "has 3 targets, not 1"),

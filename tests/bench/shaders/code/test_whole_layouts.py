@@ -28,8 +28,8 @@ space = "world"
 
 [[targets]]
 format = "rg32_uint"
-holds = "normal.x:12 normal.y:12 square_root(roughness):8 metalness:5 square_root(albedo.r):7 \
-square_root(albedo.g):7 square_root(albedo.b):6 linear:0.08(reflectance):4 other:3"
+holds = "normal.x:12 normal.y:12 square_root(roughness):8 metallic:5 square_root(base_color.r):7 \
+square_root(base_color.g):7 square_root(base_color.b):6 linear:0.08(f0):4 other:3"
 
 [[targets]]
 format = "r32_uint"
@@ -37,7 +37,7 @@ holds = "sqrt(motion.x):14 sqrt(motion.y):14 other:4"
 
 [[targets]]
 format = "rgba8"
-holds = "occlusion other kind:4 other:12"
+holds = "ao other shading_model:4 other:12"
 """
 
 
@@ -222,13 +222,13 @@ def test_the_table_says_where_each_field_lies(layouts):
     assert ["target_0", "rg32_uint", "8", "x 0-7", "roughness", "square_root"] in lines
     assert ["target_2", "rgba8", "12", "z 0-3, w 0-7", "other_4", "as it is"] in lines
     lines = table(Contents(layouts["unreal4"]))
-    assert any("base_colour.x" in line and "sRGB, by the format" in line for line in lines)
+    assert any("base_color.x" in line and "sRGB, by the format" in line for line in lines)
 
 
 def test_negative_light_and_nan_are_kept_as_none():
     """As the renderer does before it encodes light."""
     text = gbuffer_code(LAYOUTS["bevy"], "glsl").body
-    assert "vec4 emission = gbuffer_rgb9e5_encode(gbuffer_light_or_none(vec4(s.emission, 0.0)));" in text
+    assert "vec4 emissive = gbuffer_rgb9e5_encode(gbuffer_light_or_none(vec4(s.emissive, 0.0)));" in text
 
 
 def test_folded_lines_are_the_same_code():

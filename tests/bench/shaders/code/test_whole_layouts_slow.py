@@ -116,7 +116,9 @@ def test_what_a_layout_calls_by_a_name_is_called_so(tmp_path):
     """Unless the name is a word of some language, another field's, or there twice: it then has a number."""
     require_runner("c")
     words = "other.flags:4 other.half:4 other.roughness:4 other.lit:2 other.lit:2"
-    (tmp_path / "mine.toml").write_text(WORDS.replace("occlusion other kind:4 other:12", f"occlusion {words} kind:8"))
+    (tmp_path / "mine.toml").write_text(
+        WORDS.replace("ao other shading_model:4 other:12", f"ao {words} shading_model:8")
+    )
     (layout,) = layouts_named(str(tmp_path / "mine.toml"))
     names = [field.name for field in Contents(layout).fields if field.components == (field.name,)]
     assert {"flags", "half_4", "roughness_5", "lit_6", "lit_7", "other_1", "other_2"} <= {*names}, names

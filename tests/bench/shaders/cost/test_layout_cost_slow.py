@@ -16,8 +16,8 @@ EXACT = Layout(
     "exact",
     "floats",
     targets_of(
-        "rgba32f: normal.x normal.y normal.z roughness; rgba32f: albedo metalness; "
-        "rgba32f: reflectance occlusion motion.x motion.y; rgba32f: emission -"
+        "rgba32f: normal.x normal.y normal.z roughness; rgba32f: base_color metallic; "
+        "rgba32f: f0 ao motion.x motion.y; rgba32f: emissive -"
     ),
     ENCODINGS["xyz"],
     "this project",
@@ -28,7 +28,7 @@ EXACT = Layout(
 WORDS = Layout(
     "words",
     "fields of whole numbers",
-    targets_of("r32_uint: normal.x:12 normal.y:12 roughness:8; srgb8_a8: albedo kind:4 other:4"),
+    targets_of("r32_uint: normal.x:12 normal.y:12 roughness:8; srgb8_a8: base_color shading_model:4 other:4"),
     ENCODINGS["octahedral"],
     "this project",
     space="world",
