@@ -22,7 +22,7 @@ from ..ground.choose import choose_one
 from ..ground.machine.systems.people import command_line
 from ..ground.options.option import Sources
 from ..ground.options.source_options import in_names
-from ..ground.output.errors import UsageError, tell
+from ..ground.output.errors import SeveralEncodersError, UsageError, tell
 from ..ground.output.writing import check_plot, save_plot, write_text
 from ..ground.user_files import UserFile
 from ..keep.row_files import check_rows, write
@@ -85,6 +85,8 @@ def examine_encoding(
     kept = _storage(storage or STORAGE)
     try:
         found = examined(shader, choose_one("domain", domain, DOMAINS) if domain else ANY)
+    except SeveralEncodersError:
+        raise
     except UsageError as error:
         # What it is of in place of normals is asked once it is none of these.
         if (kind := kind_of(shader, str(error))) is None:
@@ -105,7 +107,8 @@ def examine_encoding(
     # What is wasted is meant where the domain is, or where another storage is; it is said all the same.
     is_meant = bool(domain or rounded)
     wrong, notes = ([*found.wrong], [*worse, *found.notes]) if is_meant else ([*found.wrong, *worse], found.notes)
-    wrong, notes = [*wrong, *no_numbers(kept, row)], [*notes, *halves]
+    failing = [f"{pair} is no pair: {why}; name it to see more" for pair, why in found.failing.items()]
+    wrong, notes = [*wrong, *no_numbers(kept, row), *failing], [*notes, *halves]
     about = {
         "file": shader.path.name,
         "encoding": found.encoding.name,
@@ -188,7 +191,7 @@ def no_numbers(storage: Storage, row: Mapping[str, Any]) -> list[str]:
         return []
     share = f"{row['invalid']} of {row['count']} rounded codes ({100 * row['invalid'] / row['count']:.2g} %)"
     remedy = "rounding may move a code beyond what decode expects; write for example sqrt(max(0.0, ...))"
-    return [f"in {storage.name}, {share} decode to NaN or infinity: {remedy}"]
+    return [f"in {storage.name}, {share} decode to NaN or infinity, and count as 180° off: {remedy}"]
 
 
 def _compared(found: Examined, codec: Codec, row: Mapping[str, Any]) -> list[str]:

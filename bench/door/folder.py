@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 from collections.abc import Iterator, Mapping, Sequence
@@ -13,7 +14,7 @@ from typing import Any
 
 from ...encodings.codecs.codec import Codec
 from ...encodings.codecs.variants import HALF_NAME
-from ...encodings.kinds import kind_spoken_of
+from ...encodings.kinds import kind_spoken_of, words_in
 from ...encodings.storages.storage import BITS_32, STORAGES, Storage
 from ...reports import tables
 from ..ground.compilers.lines import without_comments
@@ -23,9 +24,9 @@ from ..ground.machine.systems.people import command_line
 from ..ground.options.words import Given
 from ..ground.output.errors import MissingError, SeveralEncodersError, UsageError, tell
 from ..ground.output.writing import check_page, check_writable, whole_file, write_text
-from ..ground.user_files import ENDINGS, UserFile
+from ..ground.user_files import ENDINGS, OTHER_LANGUAGES, UserFile
 from ..keep.row_files import check_rows, write
-from ..shaders.languages.pairs import IF_NAMED, IS_OF, NO_PAIR, role, stem
+from ..shaders.languages.pairs import IF_NAMED, IS_OF, NO_PAIR, OF_COLOURS, name_speaks_of_normals, role, stem
 from ..subjects.codecs.kinds.named import examined_code
 from ..subjects.codecs.kinds.own import OwnKind
 from ..subjects.codecs.kinds.table import OWN
@@ -53,7 +54,18 @@ BY_DOMAIN: Mapping[str, str | None] = MappingProxyType({"sphere": None, "hemisph
 # A decoder whose texels a sampler has mixed, and a format of normals that converts colours.
 _FILTERED = r"\b{}\s*\(\s*\w+\.Sample(?:Level|Grad|Bias)?\s*\(\s*(\w*(?:linear|aniso)\w*)"
 _SRGB = re.compile(r"\b\w*(?:normal|gbuffer)\w*\b[^;\n]*\b(\w*srgb\w*)", re.I)
-COLUMNS = ("file", "functions", "storage", "mean_deg", "largest_deg", "slots", "best", "best_mean_deg", "best_slots")
+COLUMNS = (
+    "file",
+    "functions",
+    "domain",
+    "storage",
+    "mean_deg",
+    "largest_deg",
+    "slots",
+    "best",
+    "best_mean_deg",
+    "best_slots",
+)
 # How a patch begins, so that another one may take its place.
 PATCH = "Codes of normals by normalbench doctor"
 
@@ -142,12 +154,13 @@ def examine_folder(
     for pair in pairs:
         pair.findings += _of_target(folder / pair.file, pair.functions)
     _measure([pair for pair in pairs if pair.looked.is_measurable])
+    others = [each for each in others if each.why or each.findings]
     patch = _patch(folder, pairs) if diff or report else ""
     told = Told(folder, len(files), [*pairs, *others])
     _write(told, format, output)
     if diff:
         _save(diff, patch)
-        tell(f"the patch is in {diff}; nothing is applied")
+        tell(f"the patch is in {diff}; nothing is applied" if "@@" in patch else f"{diff} is empty: nothing to change")
     if report:
         from ...reports.page.folder import folder_html
 
@@ -173,11 +186,13 @@ def files_below(folder: Path) -> Iterator[Path]:
     Raises:
         UsageError: there are too many.
     """
-    count = 0
+    count, seen = 0, set[Path]()
     for path in sorted(folder.rglob("*")):
         parts = path.relative_to(folder).parts
         is_left_out = any(part in SKIPPED or part.startswith(".") for part in parts)
-        if path.suffix.lower() in ENDINGS and not is_left_out and path.is_file():
+        is_shader = path.suffix.lower() in (*ENDINGS, *OTHER_LANGUAGES) and path.is_file()
+        if is_shader and not is_left_out and path.resolve() not in seen:
+            seen.add(path.resolve())
             count += 1
             if count > MOST_FILES:
                 raise UsageError(f"{folder}: it has more than {MOST_FILES} shader files; name a folder below it")
@@ -185,8 +200,15 @@ def files_below(folder: Path) -> Iterator[Path]:
 
 
 def may_hold_a_pair(path: Path) -> bool:
-    """Whether a file defines a function that encodes or decodes by its name."""
-    return any(map(role, _DEFINED.findall(_text(path))))
+    """Whether a file defines a function that encodes or decodes by its name, or cannot be read as text."""
+    return any(map(role, _DEFINED.findall(_text(path)))) or not _is_text(path)
+
+
+def _is_text(path: Path) -> bool:
+    try:
+        return b"\0" not in path.read_bytes().decode("utf-8").encode()
+    except (OSError, ValueError):
+        return False
 
 
 def _text(path: Path) -> str:
@@ -213,15 +235,30 @@ def _of_normals(folder: Path, storage: Storage | None, word: str) -> list[Pair |
     file = path.relative_to(folder).as_posix()
     try:
         pair = _pair(file, word, storage)
-        return [pair, *(Other(file, note) for note in pair.looked.notes if note.endswith(IF_NAMED))]
+        broken = _of_pairs(folder, storage, word, [*pair.looked.failing])
+        return [pair, *broken, *(Other(file, note) for note in pair.looked.notes if note.endswith(IF_NAMED))]
     except SeveralEncodersError as error:
-        words = [UserFile(word).with_pair(pair).word for pair in error.pairs]
-        measured = (each for pair in words[:MOST_PAIRS] for each in _of_normals(folder, storage, pair))
-        return [*measured, *(Other(file, IF_NAMED, pair) for pair in error.pairs[MOST_PAIRS:])]
+        return _of_pairs(folder, storage, word, [*error.pairs, *error.failing])
     except OneFunctionError as error:
-        return [Other(file, _without(path, error), error.function, error)]
+        is_of_colours = OF_COLOURS & words_in(error.function) and not name_speaks_of_normals(error.function)
+        return [] if is_of_colours else [Other(file, _without(path, error), error.function, error)]
     except (UsageError, MissingError) as error:
-        return [] if NO_PAIR in str(error) else [Other(file, _without(path, error))]
+        return [] if NO_PAIR in str(error) and not _names_a_pair(path) else [Other(file, _without(path, error))]
+
+
+def _names_a_pair(path: Path) -> bool:
+    """Whether two functions of a file are an encoder of normals and its decoder by their names."""
+    names = [name for name in _DEFINED.findall(_text(path)) if role(name) and name_speaks_of_normals(name)]
+    roles = {name: role(name) for name in names}
+    return any(roles[one] != roles[other] and stem(one) == stem(other) for one in names for other in names)
+
+
+def _of_pairs(folder: Path, storage: Storage | None, word: str, pairs: Sequence[str]) -> list[Pair | Other]:
+    """What there is to say of some pairs of a file."""
+    words = [UserFile(word).with_pair(pair).word for pair in pairs]
+    measured = (each for pair in words[:MOST_PAIRS] for each in _of_normals(folder, storage, pair))
+    file = UserFile(word).path.relative_to(folder).as_posix()
+    return [*measured, *(Other(file, IF_NAMED, pair) for pair in pairs[MOST_PAIRS:])]
 
 
 def _without(path: Path, error: Exception) -> str:
@@ -232,7 +269,7 @@ def _kinds_by_names(path: Path) -> Iterator[OwnKind]:
     """The kinds, other than normals, of which a file's functions are an encoder and a decoder by their names."""
     names = [name for name in _DEFINED.findall(_text(path)) if role(name)]
     for kind, own in OWN.items():
-        if len({role(name) for name in names if kind_spoken_of(name) is kind}) > 1:
+        if len({role(name) for name in names if kind_spoken_of(name) is kind and not name_speaks_of_normals(name)}) > 1:
             yield own
 
 
@@ -272,17 +309,26 @@ def _across_files(
 ) -> Iterator[Pair]:
     """Pairs of an encoder and a decoder in two files. Readers that are not of their writer's code get a finding."""
     lone = [(each, each.lone) for each in others if each.lone]
-    writers = {stem(one.function): (other, one) for other, one in lone if one.side == "encode"}
     for other, reader in ((other, one) for other, one in lone if one.side == "decode"):
-        if stem(reader.function) not in writers:
+        writers = [
+            each for each in lone if each[1].side == "encode" and stem(each[1].function) == stem(reader.function)
+        ]
+        if not writers:
             other.findings += _disagreements(reader, pairs)
             continue
-        writer, wrote = writers[stem(reader.function)]
+        # Of several the one whose folder is nearest, and no other if one lies in the same folder.
+        writer, wrote = max(writers, key=lambda each: _shared_folders(each[0].file, other.file))
         word = f"{folder / writer.file}:{wrote.function},{folder / other.file}:{reader.function}"
         try:
             yield _pair(f"{writer.file}, {other.file}", word, storage)
+            writer.why = other.why = ""
         except (UsageError, MissingError) as error:
             other.findings.append(f"{reader.function} does not undo {wrote.function} of {writer.file}: {error}")
+
+
+def _shared_folders(file: str, other: str) -> int:
+    """How many folders two files have in common."""
+    return len(Path(os.path.commonpath([f"/{file}", f"/{other}"])).parts)
 
 
 def _disagreements(reader: OneFunctionError, pairs: Sequence[Pair]) -> Iterator[str]:
@@ -317,7 +363,7 @@ def _measure(pairs: Sequence[Pair]) -> None:
     for (storage, domain), asked in by_question.items():
         rows = _picked(storage, BY_DOMAIN[domain], asked)
         best = next((row for row in rows if BEST in places_of(row)), None)
-        by_name = {row["encoding"].removesuffix(HALF_NAME): row for row in rows}
+        by_name = {row["encoding"].removesuffix(HALF_NAME): row for row in rows if row["storage"] == storage}
         for pair in asked:
             row = by_name[pair.looked.encoding.name]
             pair.row = _figures(row, best)
@@ -376,9 +422,10 @@ class Told:
 
 
 def _row(told: Pair | Other) -> Row:
-    figures, storage, whys = ({}, None, [told.why]) if isinstance(told, Other) else (told.row, told.storage.name, [])
-    row = {"file": told.file, "functions": told.functions, "storage": storage}
-    row |= {name: figures.get(name) for name in COLUMNS[3:]}
+    of_pair = {} if isinstance(told, Other) else {"domain": told.looked.domain.name, "storage": told.storage.name}
+    figures, whys = ({}, [told.why]) if isinstance(told, Other) else (told.row | of_pair, [])
+    row = {"file": told.file, "functions": told.functions}
+    row |= {name: figures.get(name) for name in COLUMNS[2:]}
     return row | {"findings": len(told.findings), "says": "; ".join([*told.findings, *whys]) or None}
 
 

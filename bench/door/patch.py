@@ -17,12 +17,15 @@ from ..shaders.code.files import code_of
 from ..shaders.languages.embedded import shader_text
 from ..shaders.languages.items import Item, items
 from ..shaders.languages.language import name_of
+from ..shaders.languages.pairs import name_speaks_of_normals
 from ..subjects.codecs.user_encodings import examined
 from .examine import row_of
 from .folder import PATCH, Pair
 
 # How far the patched file may be off from the best code, as a share of its mean error.
 NEARLY = 0.02
+# What a patch says of a last line that does not end.
+NO_END = "\\ No newline at end of file"
 # What follows the functions that a patch has.
 _PACKING = "\n// The texel as an integer of 32 bits"
 _PARAMETER = re.compile(r"\(\s*(?:(\w+)\s*:|[^,():]*?(\w+)\s*(?:[,):\[]))")
@@ -35,15 +38,23 @@ def patch_of(folder: Path, pairs: Sequence[Pair]) -> str:
     """
     by_file: dict[str, list[Pair]] = {}
     for pair in pairs:
-        if pair.row.get("best_mean_deg"):
+        if pair.row.get("best_mean_deg") and _is_of_normals(pair):
             by_file.setdefault(pair.file, []).append(pair)
     return "".join([f"{PATCH}\n", *(_part_of(folder, file, several) for file, several in by_file.items())])
+
+
+def _is_of_normals(pair: Pair) -> bool:
+    """Whether a code is of normals beyond doubt: its functions' names say so, or it is one of the catalogue."""
+    is_sure = bool(pair.looked.like) or name_speaks_of_normals(pair.functions)
+    if not is_sure:
+        tell(f"{pair.file} {pair.functions} is not in the patch: its names do not say that it is of normals")
+    return is_sure
 
 
 def _part_of(folder: Path, file: str, pairs: Sequence[Pair]) -> str:
     """The part of a file."""
     try:
-        text = was = (folder / file).read_bytes().decode("utf-8")
+        text = was = "" if "," in file else (folder / file).read_bytes().decode("utf-8")
     except (OSError, ValueError) as error:
         tell(f"{file} is not in the patch: {error}")
         return ""
@@ -58,7 +69,8 @@ def _part_of(folder: Path, file: str, pairs: Sequence[Pair]) -> str:
         said.append(f"{file} {pair.functions}: {best}, {mean:.4g} degrees on average in place of {before:.4g}\n")
         text = patched
     before, after = (version.splitlines(keepends=True) for version in (was, text))
-    return "".join([*said, *difflib.unified_diff(before, after, f"a/{file}", f"b/{file}")])
+    lines = difflib.unified_diff(before, after, f"a/{file}", f"b/{file}")
+    return "".join([*said, *(line if line.endswith("\n") else f"{line}\n{NO_END}\n" for line in lines)])
 
 
 def _mean_of(patched: str, path: Path, pair: Pair) -> float:
@@ -82,6 +94,8 @@ def patched_text(text: str, pair: Pair) -> str:
     Raises:
         UsageError: it cannot be changed so; a sentence.
     """
+    if "," in pair.file:
+        raise UsageError("its functions lie in two files")
     looked, best = pair.looked, ENCODINGS.get(pair.row["best"])
     if best is None or (best.components, best.sign_bits) != (looked.encoding.components, 0):
         raise UsageError(f"{pair.row['best']} has another number of components")
@@ -90,6 +104,9 @@ def patched_text(text: str, pair: Pair) -> str:
     language = {"GLSL": "glsl", "WGSL": "wgsl"}.get(name_of(UserFile(pair.word)), "hlsl")
     prefix = f"nb_{best.name}"
     code = code_of(Codec(best, pair.storage), language, prefix).body.partition(_PACKING)[0].rstrip()
+    # By other names than an encoder's and a decoder's, so that the file's own stay its pair.
+    to, back_from = f"{prefix}_write", f"{prefix}_read"
+    code = code.replace(f"{prefix}_encode(", f"{to}(").replace(f"{prefix}_decode(", f"{back_from}(")
     bare = without_comments(text)
     places = {item.name: item for item in items(bare) if item.function}
     names = [name.rpartition("::")[2] for name in pair.functions.split(":") if name]
@@ -98,12 +115,13 @@ def patched_text(text: str, pair: Pair) -> str:
     out, back = (" * 0.5 + 0.5", " * 2.0 - 1.0") if looked.encoding.is_unit else ("", "")
     encode, decode = (places[name] for name in names)
     calls = {
-        encode: f"{{ return {prefix}_encode({_parameter(bare, encode)}){out}; }}",
-        decode: f"{{ return {prefix}_decode({_parameter(bare, decode)}{back}); }}",
+        encode: f"{{ return {to}({_parameter(bare, encode)}){out}; }}",
+        decode: f"{{ return {back_from}({_parameter(bare, decode)}{back}); }}",
     }
     first = min(calls, key=lambda item: item.start)
-    start = _line_start(bare, first)
-    is_there = f"{prefix}_encode(" in text
+    # Behind a mark of the order of bytes.
+    start = max(_line_start(bare, first), int(text.startswith("\ufeff")))
+    is_there = f"{to}(" in text
     changes = [(item.body, item.end, call) for item, call in calls.items()]
     changes += [] if is_there else [(start, start, f"{code}\n\n")]
     ending = "\r\n" if "\r\n" in text else "\n"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import Any
@@ -72,11 +72,12 @@ class SeveralEncodersError(UsageError):
     Attributes:
         pairs: the names of each and its decoder, ENCODE:DECODE.
         alone: the file with its only function that is one by its name, translated; None where there is none.
+        failing: the names of pairs that do not undo themselves.
     """
 
-    def __init__(self, said: str, pairs: list[str], alone: Any = None):
+    def __init__(self, said: str, pairs: list[str], alone: Any = None, failing: Sequence[str] = ()):
         super().__init__(said)
-        self.pairs, self.alone = pairs, alone
+        self.pairs, self.alone, self.failing = pairs, alone, failing
 
 
 class MissingError(Exception):

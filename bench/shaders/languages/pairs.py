@@ -25,7 +25,10 @@ CODES = ("oct", "hemi", "sphere", "stereo", "uv", "packed", "encoded")
 # In the name of a function that takes or gives a normal, in lower case.
 NORMALS = ("norm", "nrm", "oct", "unitvec", "direction")
 # A word in that of one of colours, depths and the like.
-OF_COLOURS = {"color", "colour", "rgb", "rgbe", "rgbm", "radiance", "irradiance", "luminance", "hdr", "depth", "albedo"}
+OF_COLOURS = {
+    *("color", "colour", "rgb", "rgbe", "rgbm", "radiance", "irradiance", "luminance", "hdr", "depth", "albedo"),
+    *("ycocg", "co", "cg", "ycbcr", "yuv", "hsv", "hsl", "luv", "xyy", "srgb", "tonemap", "tint"),
+}
 
 # Encoders times decoders of a file that are tried with each other; to look through more takes seconds.
 MOST_PAIRED = 10_000
@@ -219,6 +222,7 @@ def pair_of(
         raise NoPairError(other)
     best = named or _by_size(mine) or _by_size(pairs)
     # Others are of colours or motion.
+    best = [pair for pair in best if not has_side_of_colours(pair)]
     best = [pair for pair in best if speaks_of_normals(pair)] or [pair for pair in best if not speaks_of_others(pair)]
     # Overloads differ in the view alone.
     names = list(dict.fromkeys(pair.named for pair in best))
@@ -304,7 +308,19 @@ def _by_parameter(found: Sequence[Function], best: Sequence[Pair]) -> str:
 
 def speaks_of_normals(pair: Pair) -> bool:
     """Whether the names of a pair say that it is of normals, and not of colours or motion."""
-    return any(word in pair.named.lower() for word in NORMALS)
+    return name_speaks_of_normals(pair.named)
+
+
+def name_speaks_of_normals(name: str) -> bool:
+    """Whether a function's name says that it is of normals."""
+    return any(word in name.lower() for word in NORMALS)
+
+
+def has_side_of_colours(pair: Pair) -> bool:
+    """Whether the name of one function alone says that it is of normals, and that of the other one of colours."""
+    sides = pair.encode.name, pair.decode.name
+    is_of_colours = [bool(OF_COLOURS & words_in(name)) and not name_speaks_of_normals(name) for name in sides]
+    return any(is_of_colours) and speaks_of_normals(pair)
 
 
 def speaks_of_others(pair: Pair) -> bool:
@@ -367,7 +383,7 @@ def alone(found: Sequence[Function]) -> Pair | None:
 def _of_something_else(found: Sequence[Function], file: str, among: Collection[kinds.Kind] = kinds.KINDS) -> str:
     """That a file without a pair is of something else, by the names of its functions; else empty."""
     for name in (one.name for one in found if role(one.name)):
-        if (kind := kind_spoken_of(name)) and kind in among:
+        if (kind := kind_spoken_of(name)) and kind in among and not name_speaks_of_normals(name):
             return OF_OTHERS.format(name, kind.plural, kinds.NORMAL.plural, kind.command.format(file))
     return ""
 

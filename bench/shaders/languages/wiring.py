@@ -23,6 +23,7 @@ from .pairs import (
     NoPairError,
     Pair,
     Place,
+    has_side_of_colours,
     role,
     speaks_of_others,
     stem,
@@ -276,7 +277,7 @@ def candidates(found: Sequence[Function]) -> list[tuple[Wiring, Wiring]]:
 
 def _of_normals(pairs: Sequence[tuple[Function, Function]]) -> list[tuple[Function, Function]]:
     """Those pairs whose names do not say that they are of something else."""
-    return [pair for pair in pairs if not speaks_of_others(Pair(*pair))]
+    return [pair for pair in pairs if not speaks_of_others(Pair(*pair)) and not has_side_of_colours(Pair(*pair))]
 
 
 def _is_of_other_names(wirings: tuple[Wiring, Wiring]) -> bool:

@@ -43,7 +43,7 @@ from ...ground.output.errors import MissingError, SeveralEncodersError, UsageErr
 from ...ground.user_files import UserFile
 from ...shaders.code.twin import NoTwinError
 from ...shaders.languages.language import GLSL_NAME
-from ...shaders.languages.pairs import NO_PAIR
+from ...shaders.languages.pairs import NO_PAIR, role, stem
 from ...shaders.languages.translated import AloneError, Translated
 from ...shaders.languages.wiring import Wiring, wiring_of
 from .doctor.diagnoses import bad, diagnosed
@@ -61,6 +61,7 @@ from .user_encodings import ANY, encoding_alone, file_with, read_encoding, twin_
 SIDES = ("encode", "decode")
 # Of directions that a picture is marked with.
 MOST_BAD = 4000
+TWO_NAMES = re.compile(r"((?:\w+::)*\w+):((?:\w+::)*\w+)")
 # How many pairs of a file are tried, and how near directions come back from one, in degrees.
 MOST_PAIRS, MOST_WIRINGS, OF_A_PAIR_DEG, OF_A_WIRING_DEG = 12, 12, 5.0, 0.1
 # Of pairs that a line gives a reason for.
@@ -109,7 +110,8 @@ def _first_look(file: UserFile, domain: str, by: str) -> dict[str, Any]:
             named = ", ".join(dict.fromkeys(str(file.with_pair(one)) for one in error.pairs[:MOST_PAIRS]))
             return {"error": f"{file}: name one of its pairs, which none is tried of here ({missing}): {named}"}
         if len(kept) == 1:
-            return _look_at_one(file.with_pair(kept[0]), domain, by) | {"pair": kept[0]}
+            found = _look_at_one(file.with_pair(kept[0]), domain, by)
+            return found | {"pair": kept[0], "failing": _alike(failing)}
         if not kept and error.alone:
             of_one = _of_one(file, error.alone)
             return of_one | {"error": f"{file}: {of_one['error']}"}
@@ -117,7 +119,18 @@ def _first_look(file: UserFile, domain: str, by: str) -> dict[str, Any]:
             return {"error": f"{file}: {_why_none(failing)}"}
         named = ", ".join(str(file.with_pair(one)) for one in kept)
         how = f"{len(kept)} of its pairs undo themselves; name one: {named}"
-        return {"error": f"{file}: {how}{_untried(failing)}", "pairs": kept}
+        return {"error": f"{file}: {how}{_untried(failing)}", "pairs": kept, "failing": _alike(failing)}
+
+
+def _alike(failing: Mapping[str, str]) -> dict[str, str]:
+    """Those of pairs that are an encoder and its decoder by their names, with why they do not undo themselves."""
+    return {pair: why for pair, why in failing.items() if why and _is_pair(pair)}
+
+
+def _is_pair(pair: str) -> bool:
+    """Whether the names of two functions, ENCODE:DECODE, are alike but for what each does."""
+    match = TWO_NAMES.fullmatch(pair)
+    return bool(match) and [*map(role, match.groups())] == ["encode", "decode"] and stem(match[1]) == stem(match[2])
 
 
 def _why_none(failing: Mapping[str, str]) -> str:

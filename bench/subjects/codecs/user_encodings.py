@@ -96,6 +96,7 @@ class Examined(NamedTuple):
         bad: directions that come back elsewhere, in its own axes.
         lattice: the steps that it rounds codes to by itself; None where it does not.
         functions: its encoder and its decoder, ENCODE:DECODE.
+        failing: by other pairs of the file, ENCODE:DECODE, why they do not undo themselves.
     """
 
     encoding: Encoding
@@ -107,6 +108,7 @@ class Examined(NamedTuple):
     bad: list[list[float]]
     lattice: Lattice | None
     functions: str
+    failing: Mapping[str, str]
 
 
 def examined(file: UserFile, domain: str = ANY) -> Examined:
@@ -130,7 +132,7 @@ def examined(file: UserFile, domain: str = ANY) -> Examined:
     if "missing" in found.glsl:
         raise MissingError(found.glsl["missing"])
     if pairs := found.glsl.get("pairs"):
-        raise SeveralEncodersError(found.glsl["error"], pairs)
+        raise SeveralEncodersError(found.glsl["error"], pairs, failing=[*found.glsl["failing"]])
     if alone := found.glsl.get("alone"):
         raise OneFunctionError(found.glsl["error"], *alone)
     if "error" in found.glsl:
@@ -144,7 +146,7 @@ def examined(file: UserFile, domain: str = ANY) -> Examined:
     wrong = [*broken, *found.wrong, *of_twin]
     lattice = Lattice(*found.glsl["lattice"]) if "lattice" in found.glsl else None
     functions = _functions_in(found.file, found.glsl.get("by", ""))
-    close = found.glsl.get("like", ""), found.glsl.get("bad", []), lattice, functions
+    close = found.glsl.get("like", ""), found.glsl.get("bad", []), lattice, functions, found.glsl.get("failing", {})
     return Examined(encoding, found.domain, wrong, notes, not broken, *close)
 
 

@@ -21,6 +21,7 @@ float3 UnpackDir(float2 e) {
     return normalize(n);
 }
 """
+HALVES = OCTAHEDRAL[: OCTAHEDRAL.index("float3 Unpack")], OCTAHEDRAL[OCTAHEDRAL.index("float3 Unpack") :]
 SIGNS = "float2 signs_of(float2 v) { return float2(v.x >= 0.0 ? 1.0 : -1.0, v.y >= 0.0 ? 1.0 : -1.0); }\n"
 SPHEREMAP = """// Spheremap, as an old engine has it.\r
 float2 EncodeNormal(float3 normal)\r
@@ -77,6 +78,17 @@ vec4 packDepth(float d) {
 }
 float unpackDepth(vec4 c) { return dot(c, vec4(1.0, 1.0 / 256.0, 1.0 / 65536.0, 1.0 / 16777216.0)); }
 """
+# A code of colours of three numbers, and a pair that turns a direction over next to one that is right.
+COLOURS = """
+float3 EncodeYCoCg(float3 c) {
+    return float3(dot(c, float3(0.25, 0.5, 0.25)), 0.5 * (c.x - c.z), dot(c, float3(-0.25, 0.5, -0.25)));
+}
+float3 DecodeYCoCg(float3 c) { return float3(c.x + c.y - c.z, c.x + c.z, c.x - c.y - c.z); }
+"""
+BROKEN = """
+float3 EncodeB(float3 n) { return n * 0.5 + 0.5; }
+float3 DecodeB(float3 e) { e = e * 2.0 - 1.0; return normalize(float3(e.x, -e.y, e.z)); }
+"""
 FILES = {
     "deferred/pack.hlsl": WHOLE,
     "deferred/old.hlsl": SPHEREMAP,
@@ -96,6 +108,12 @@ FILES = {
     "split/read.hlsl": READER,
     "lost/unity.hlsl": LOST,
     "post/packing.glsl": PACKING,
+    "post/colours.hlsl": COLOURS,
+    "deferred/without_end.hlsl": SPHEREMAP.rstrip().replace("\r", ""),
+    "deferred/beside.hlsl": WHOLE + BROKEN,
+    # Each folder has its own code by the same names.
+    **{f"a/{name}.hlsl": SIGNS + body for name, body in zip(("write", "read"), HALVES, strict=True)},
+    "b/write.hlsl": "float2 PackDir(float3 n) { return n.xy / sqrt(n.z * 8.0 + 8.0) + 0.5; }\n",
     "post/blur.hlsl": "float4 blur(float4 a, float4 b) { return 0.5 * (a + b); }\n",
 }
 
@@ -134,13 +152,20 @@ def test_each_pair_of_a_folder_has_a_row(told):
     assert octahedral == {
         *("deferred/pack.hlsl", "deferred/modules.slang", "deferred/header.slang"),
         *("other/own.hlsl", "other/endless.slang", "other/intrinsic.slang"),
+        *("deferred/beside.hlsl", "a/write.hlsl, a/read.hlsl"),
     }
     assert rows["stride/Store.sdsl"]["mean_deg"] == pytest.approx(0.170, abs=0.001)
     assert all(rows[name]["best"] == "octahedral" for name in ("deferred/old.hlsl", "web/normals.js"))
     assert rows["deferred/old.hlsl"]["mean_deg"] > 0.35
-    assert not {"web/build/made.js", "post/blur.hlsl", "common/signs.slang"} & {*rows}
+    assert not {"post/colours.hlsl", "web/build/made.js", "post/blur.hlsl", "common/signs.slang"} & {*rows}
     assert "OtherNormal_Decode is the decode of octahedral" in rows["split/read.hlsl"]["says"]
     assert not rows["split/read.hlsl"]["findings"]
+
+
+def test_a_broken_pair_next_to_a_right_one_has_its_row(told):
+    _, _, rows = told
+    (row,) = [row for row in rows if row["functions"] == "EncodeB:DecodeB"]
+    assert row["findings"] == 1 and "every direction comes back with y reversed" in row["says"]
 
 
 def test_all_codes_of_a_file_have_a_line(told):
@@ -165,9 +190,10 @@ def test_the_patch_is_applied_and_measured_again(told, engine):
     _, patch, _ = told
     subprocess.run(["git", "init", "-q"], cwd=engine, check=True)
     subprocess.run(["git", "apply", str(patch)], cwd=engine, check=True)
+    assert (engine / "deferred/without_end.hlsl").read_text().endswith("}")
     text = (engine / "deferred/old.hlsl").read_bytes().decode()
-    assert "nb_octahedral_encode(normal) * 0.5 + 0.5" in text and "\n" not in text.replace("\r\n", "")
+    assert "nb_octahedral_write(normal) * 0.5 + 0.5" in text and "\n" not in text.replace("\r\n", "")
     (row,) = [row for row in doctor(engine) if row["functions"] == "EncodeNormal:DecodeNormal" and "old" in row["file"]]
     assert row["mean_deg"] == pytest.approx(0.336, abs=0.005) and row["best"] == "as good"
     page = patch.with_name("page.html").read_text()
-    assert "nb_octahedral_encode" in page and "deferred/old.hlsl" in page
+    assert "nb_octahedral_write" in page and "deferred/old.hlsl" in page

@@ -30,7 +30,7 @@ SHIFTED, MOST = 1.2, 24.0
 HALF, NEARLY = 0.5, 0.1
 
 CUT_OFF = "codes are cut off instead of rounded: rounding would {}"
-SHIFT = "codes are shifted: {:.0f} % of the error would be left without that; are they cut off, or scaled by a step?"
+SHIFT = "codes are shifted: without that the error would be {:.0f} % of this; are they cut off, or scaled by a step?"
 
 
 def cut_off(held: Trip, probe: Probe) -> Iterator[str]:
