@@ -23,8 +23,9 @@ from ...ground.output.errors import UsageError
 from ...measures.metrics.totals import psnr_db
 from ..table import Row, Tick
 from . import changes
-from .attributes import COMPONENTS, WITHOUT, Attribute, Surfaces, usual
+from .attributes import COMPONENTS, EMISSION, WITHOUT, Attribute, Surfaces, usual
 from .bins import webgpu_cost
+from .contract import IN_LIGHT
 from .cost import Slots, least, whole, within
 from .own import Own, own
 from .question import Question
@@ -263,7 +264,7 @@ class Judged:
         """The row of somebody's layout, and that of a proposal that holds the same in targets of the same formats."""
         row = self.row_of(MINE, layout)
         if changes.holds_other_quantities(layout):
-            said = "it keeps no metalness: its materials are other quantities than these codes are for"
+            said = "it keeps no metallic: its materials are other quantities than these codes are for"
             yield row | {"changes": said}
             return
         asked = own(layout, self._question.rules[0])
@@ -271,7 +272,8 @@ class Judged:
         self._take(asked.attributes, lambda _: None)
         best = self._best(f"{layout.name}_improved", asked, layout.depth)
         if best is None:
-            yield row | {"changes": "no codes of the floors' bits hold its attributes in its targets"}
+            within = " within WebGPU's bytes" if asked.rules.webgpu is not None else ""
+            yield row | {"changes": f"no codes of the floors' bits hold its attributes in its targets{within}"}
             return
         found, _, improved = best
         yield row | {"changes": self._changes(layout, found)}
@@ -307,14 +309,17 @@ class Judged:
     def _dropped(self, problem: Problem) -> str:
         """Say without which attributes a layout fits, those that an image loses least by first."""
         losses = {one.name: loss for one in problem.attributes if (loss := self._loss(one)) is not None}
-        order = sorted(losses, key=lambda name: (losses[name] > HALF_STEP, losses[name]))
+        order = sorted(losses, key=lambda name: (name != EMISSION.name, losses[name] > HALF_STEP, losses[name]))
         fits = partial(_fits_without, problem)
         count = next((count for count in range(1, len(order) + 1) if fits(order[:count])), 0)
         dropped = order[:count]
         for name in reversed(order[:count]):
             dropped = kept if fits(kept := [other for other in dropped if other != name]) else dropped
-        said = [f"{name} ({_loss_text(losses[name])})" for name in dropped]
-        return f". It fits without {' and '.join(said)}" if said else ""
+        # The light buffer holds what is given off for nothing.
+        light = [f"with {EMISSION.name} in the light buffer ({IN_LIGHT})"] if EMISSION.name in dropped else []
+        said = [f"{name} ({_loss_text(losses[name])})" for name in dropped if name != EMISSION.name]
+        without = [f"without {' and '.join(said)}"] if said else []
+        return f". It fits {', and '.join([*light, *without])}" if dropped else ""
 
     def _loss(self, attribute: Attribute) -> float | None:
         """Return the error of the worst class without an attribute: 0 of what no image reads; None of what an image
@@ -491,7 +496,7 @@ def _constant(name: str, value: float, surfaces: Surfaces) -> Surfaces:
 def _loss_text(loss: float) -> str:
     if not loss:
         return "not measured"
-    return "does not show here" if loss <= HALF_STEP else f"{psnr_db(loss):.0f} dB"
+    return "does not show here" if loss <= HALF_STEP else f"the worst class falls to {psnr_db(loss):.0f} dB"
 
 
 def _in_channels(problem: Problem) -> Problem:

@@ -33,7 +33,7 @@ def own(layout: Layout, asked: Rules) -> Own:
     """What a layout is compared by: what it holds in as many targets of its formats.
 
     Args:
-        asked: rules of the question. What the layout itself does not keep to is left out.
+        asked: rules of the question. What the layout itself does not keep to is left out, but for a limit of WebGPU.
     """
     formats = Counter(_format(target) for target in layout.targets)
     attributes = list(_attributes(layout))
@@ -48,7 +48,6 @@ def own(layout: Layout, asked: Rules) -> Own:
         read=asked.read if _reads_little(layout, asked.read) else frozenset(),
         apart=frozenset(),
         formats=formats,
-        webgpu=None,
     )
     return Own(attributes, [one for name, count in formats.items() for one in _bins(name, count)], rules)
 

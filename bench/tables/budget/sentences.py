@@ -103,8 +103,11 @@ def _rules(row: Row) -> str:
     )
     if row["webgpu_bytes"] is None:
         said.append("WebGPU does not render to all of its formats.")
+    elif row["webgpu_bytes"] > WEBGPU_BYTES:
+        over = row["webgpu_bytes"] - WEBGPU_BYTES
+        said.append(f"It exceeds WebGPU's limit of {WEBGPU_BYTES} bytes a sample by {over}.")
     else:
-        said.append(f"WebGPU counts {row['webgpu_bytes']} of {WEBGPU_BYTES} bytes a sample for it.")
+        said.append(f"It uses {row['webgpu_bytes']} of WebGPU's {WEBGPU_BYTES} bytes a sample.")
     if row["in_tile"] is not None:
         fits = ", which fit the tile" if row["in_tile"] else ": it takes tiles of half the size"
         said.append(f"With the light buffer it takes {row['tile_bytes']} bytes in a tile{fits}.")

@@ -345,6 +345,10 @@ def test_the_usual_reflectance_lies_on_a_code():
             "8 bytes are too few: the attributes need 96 bits, and by these rules the smallest layout has 12 bytes. It "
             "fits without motion (not measured)",
         ),
+        (
+            ["--bytes", "12", "--hold", "normal,base_color,roughness,metallic,ao,emissive,motion"],
+            "It fits with emissive in the light buffer (emissive:light)",
+        ),
         (["--hold", "normal,base_color,roughness,metallic,f0,ao,id:17"], "takes 2 to 16 bits"),
         (["--read-alone", "normal,colour"], "--read-alone colour: not held"),
         (["--formats", "rgba16", "--limit", "webgpu"], "no target is left"),
