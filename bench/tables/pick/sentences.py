@@ -70,8 +70,9 @@ FREE_SLOTS, ENOUGH = (8, 32), (0.5, 1.5)
 # How far the mirror's image is, in metres, and the map that it shows.
 FAR, MAP = 10.0, "a 1k environment map"
 OF_SPACE = {
-    "hemisphere": "For tangent space, terrain and maps, where z >= 0. In world space a G-buffer's code must hold every "
-    "direction.",
+    "hemisphere": "For tangent space and terrain, where every normal with z >= 0 is as likely. The normals of a map "
+    "lie near z: `normalbench maps` measures them in the formats of maps. In world space a G-buffer's code must hold "
+    "every direction.",
     "view": "In view space a code that ends 100° from the line of sight gains at most 2.3 dB over one of every "
     "direction. But its steps crawl when the camera turns: 26.0 dB on a slow mirror panel, 36.6 dB in world space.",
 }
@@ -89,7 +90,7 @@ def told(group: Sequence[Row]) -> list[str]:
     where = question(group[0])
     if best is None:
         return [f"{where}: no code qualifies{_constraints_text(group[0])}.", *_instead(group)]
-    others = [*not_held(best), *(_elsewhere_text(row, best) for row in _much_better(group, best))]
+    others = [*_of_maps(best), *not_held(best), *(_elsewhere_text(row, best) for row in _much_better(group, best))]
     made = [" ".join([f"{where}: take {called(best)}.", *others])]
     made += [
         f"{_error_sentences(best)} {_seen_sentences(best)}",
@@ -100,6 +101,12 @@ def told(group: Sequence[Row]) -> list[str]:
     made += [*rungs(group, best), *_hangs_on(group, best)]
     made += [f"Images: {best['image_conditions']}."] if best.get("image_conditions") and images(best) else []
     return made + [_rival_sentence(row, best) for row in group if row["against"] and row is not best]
+
+
+def _of_maps(best: Row) -> Iterator[str]:
+    """That texture maps, which are filtered, are another question."""
+    if best["needs"] == "hemisphere" and "filter" in (best.get("mixing") or "").split(","):
+        yield "This is of all normals with z >= 0. Those of a texture map lie near z: ask normalbench maps."
 
 
 def _space_sentences(best: Row) -> str:
@@ -180,7 +187,7 @@ def _hangs_on(group: Sequence[Row], best: Row) -> Iterator[str]:
             others.setdefault(code, []).append(said)
     if others:
         found = "; ".join(f"{code} {' or '.join(said)}" for code, said in others.items())
-        yield f"Another constant gives another answer: {found}."
+        yield f"Under other assumptions: {found}."
 
 
 def called(row: Row) -> str:
@@ -236,8 +243,8 @@ def _seen_sentences(row: Row) -> str:
     texels = " and ".join(f"{value / TEXEL_DEG:.2g}" for value in moved)
     far = " and ".join(_length_text(100 * FAR * math.tan(math.radians(value))) for value in moved)
     said += f"{texels} texels of {MAP}, {far} cm at {FAR:g} m."
-    enough = " That is enough for such a map." if is_enough(row) else ""
-    return f"{said}{enough} {_roughness_command(row)} says from which roughness on no step shows."
+    enough = f" That is within --enough {row['enough']:.2g}; steps may show." if is_enough(row) else ""
+    return f"{said}{enough} {_roughness_command(row)} says from which roughness on none does."
 
 
 def _roughness_command(row: Row) -> str:
@@ -327,7 +334,7 @@ def _mixing_text(row: Row) -> str:
         return ""
     upsampled = "Upsampling decodes each texel before it weighs it, which no code minds. "
     said = upsampled if UPSAMPLE in row["mixing"].split(",") else ""
-    left = f"mean error {degrees(mean(row))}, largest {degrees(largest_mixed(row))}"
+    left = f"then mean error {degrees(mean(row))}, largest {degrees(largest_mixed(row))}"
     edges = f". Across an edge: {row['mixed_across']}" if row["mixed_across"] else " and across an edge"
     return f"{said}It survives {_uses_text(row)}, inside a surface ({left}){edges}."
 
