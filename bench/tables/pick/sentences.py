@@ -244,7 +244,7 @@ def _seen_sentences(row: Row) -> str:
     far = " and ".join(_length_text(100 * FAR * math.tan(math.radians(value))) for value in moved)
     said += f"{texels} texels of {MAP}, {far} cm at {FAR:g} m."
     enough = f" That is within --enough {row['enough']:.2g}; steps may show." if is_enough(row) else ""
-    return f"{said}{enough} {_roughness_command(row)} says from which roughness on none does."
+    return f"{said}{enough} {_roughness_command(row)} says from which roughness on no step shows."
 
 
 def _roughness_command(row: Row) -> str:
