@@ -26,7 +26,7 @@ from normalbench.bench.run.workers import places
 from normalbench.bench.show import report, site_command
 from normalbench.gbuffer.scenes.mesh import sphere
 
-MOST_LINES = 150
+MOST_LINES = 130
 
 
 FENCE = re.compile(r"^```.*?^```$", re.S | re.M)

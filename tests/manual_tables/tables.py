@@ -28,7 +28,7 @@ HALVES = {
 # The first words of what is shown of the answer, in part.
 ANSWERED = {
     "rg8": ("rg8, on sphere: take", "Its mean", "It takes", "More exact: octahedral_precise", "Most exact"),
-    "rgb10a2": ("rgb10a2, on sphere: take", "Its mean", "Fewer bits"),
+    "rgb10a2": ("rgb10a2, on sphere: take",),
 }
 ON_SPHERE, AT_A_QUARTER = {"normals": "sphere"}, {"turn_deg": 0.25}
 BY_JAX = {**ON_SPHERE, "backend": "jax"}
