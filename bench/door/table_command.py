@@ -48,8 +48,9 @@ def table_command(
     Raises:
         UsageError, MissingError: see measuring.asked; MissingError also in the end, where a part could not be measured.
     """
-    is_alone = not (output or report or on) and outputs == table.outputs()
-    key = answers.key_of_answer(table, options, format) if table.is_kept and is_alone else ""
+    writes = any(isinstance(value, Path) for value in vars(outputs).values())
+    is_alone = not (output or report or on or writes)
+    key = answers.key_of_answer(table, options, format, repr(outputs)) if table.is_kept and is_alone else ""
     return answers.answered(key, lambda: _command(table, options, outputs, format, output, report, on))
 
 

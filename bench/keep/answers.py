@@ -47,16 +47,16 @@ def answered(key: str, command: Callable[[], int]) -> int:
     return status
 
 
-def key_of_answer(table: Table, options: Any, format: str) -> str:
-    """Return the key of an answer: what is asked, the program, and what computes. Empty if the question names files,
-    which change."""
+def key_of_answer(table: Table, options: Any, *printed: str) -> str:
+    """Return the key of an answer: what is asked, how it is printed, the program, and what computes. Empty if the
+    question names files, which change."""
     asked = [(field.name, getattr(options, field.name)) for field in fields(options)]
     values = [value for _, given in asked for value in _flat(given)]
     if not all(isinstance(value, Value) for value in values) or any(map(_may_be_a_file, values)):
         return ""
     width = shutil.get_terminal_size((120, 40)).columns
     machine = [platform.platform(), *processor_kind(), *map(str, settings().items()), *_packages(), *states()]
-    return cache.key_of("answer", table.name, repr(asked), format, str(width), sources(), *machine)
+    return cache.key_of("answer", table.name, repr(asked), *printed, str(width), sources(), *machine)
 
 
 def _flat(value: Any) -> Iterator[Any]:

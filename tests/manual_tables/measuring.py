@@ -37,13 +37,10 @@ def printed(command: str) -> str:
 
 
 def answers() -> list[Row]:
-    """Each sentence or item of `pick`, by the storage that it is of."""
-    _, *parts = re.split(r"^(?=(\w+), on \w+: take )", printed("pick --format markdown"), flags=re.M)
-    return [
-        {"storage": storage, "said": " ".join(text.split())}
-        for storage, part in zip(parts[::2], parts[1::2], strict=True)
-        for text in re.split(r"^- |\n\n", part, flags=re.M)
-    ]
+    """Each line that `pick` prints, by the storage that it is of."""
+    _, *parts = re.split(r"^(?=(\w+), on \w+: take )", printed("pick"), flags=re.M)
+    answered = zip(parts[::2], parts[1::2], strict=True)
+    return [{"storage": storage, "said": line} for storage, part in answered for line in part.rstrip().split("\n")]
 
 
 def simulated() -> list[Row]:

@@ -25,11 +25,6 @@ HALVES = {
     "rg8": "octahedral,latitude_longitude,spherical,spheremap_classic,spheremap,equal_area_octahedral",
     "rgb10a2": "warped_cube,cube,xyz_renormalised,signed_octahedral,octahedral",
 }
-# The first words of what is shown of the answer, in part.
-ANSWERED = {
-    "rg8": ("rg8, on sphere: take", "Its mean", "It takes", "More exact: octahedral_precise", "Most exact"),
-    "rgb10a2": ("rgb10a2, on sphere: take",),
-}
 ON_SPHERE, AT_A_QUARTER = {"normals": "sphere"}, {"turn_deg": 0.25}
 BY_JAX = {**ON_SPHERE, "backend": "jax"}
 TWO, THREE, FOUR = "{:.2f}".format, "{:.3f}".format, "{:.4f}".format
@@ -127,7 +122,6 @@ ALL = (
         rows=measuring.answers,
         columns=(key("", "storage"), key("", "said")),
         needs=("gl", "radv"),
-        takes=lambda row: row["said"].startswith(ANSWERED.get(row["storage"], ())),
         text=writing.answer,
         end=END,
     ),

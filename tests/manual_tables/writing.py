@@ -1,7 +1,5 @@
 """How figures of the manual are written, and texts that are no plain table."""
 
-import textwrap
-
 from .table import Measured, Table
 
 WIDTH = 120
@@ -23,14 +21,9 @@ def percent(value: float) -> str:
 
 
 def answer(_: Table, kept: Measured) -> str:
-    """Each storage, and below it a list."""
-    texts = [
-        textwrap.fill(said, WIDTH, initial_indent="- ", subsequent_indent="  ")
-        if not said.startswith(storage)
-        else "\n" + textwrap.fill(said, WIDTH)
-        for storage, said in kept.lines
-    ]
-    return "\n".join(texts).strip()
+    """The lines of the first storage as they are printed."""
+    first, _ = kept.lines[0]
+    return "\n".join(["```text", *(line for storage, line in kept.lines if storage == first), "```"])
 
 
 def published(table: Table, kept: Measured) -> str:

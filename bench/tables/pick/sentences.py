@@ -103,6 +103,41 @@ def told(group: Sequence[Row]) -> list[str]:
     return made + [_rival_sentence(row, best) for row in group if row["against"] and row is not best]
 
 
+def in_short(group: Sequence[Row]) -> list[str]:
+    """What to take, what it loses and what it costs; the alternatives are a table's."""
+    best = next((row for row in group if BEST in places_of(row)), None)
+    if best is None:
+        return [*told(group), *left_out(group)]
+    first, *_ = told(group)
+    takes = "What it costs is not known on this machine."
+    if best["slots"] is not None:
+        slots = f"{best['encode_slots']:g} issue slots to encode and {best['decode_slots']:g} to decode"
+        takes = f"{slots} on {best['dearest_family']}: {best['slots']:g} with {best['readers']} readers."
+    pole = _pole_sentence(best, "").strip() if images(best) else ""
+    others = [_mixing_text(best), _reservation_sentence(best).strip(), _spaces_short(best)]
+    return [
+        f"{first} {_error_sentences(best)}",
+        " ".join(filter(None, [takes, _bits_sentence(best), pole])),
+        *filter(None, others),
+    ]
+
+
+def _spaces_short(best: Row) -> str:
+    return _space_sentences(best) if best["needs"] in OF_SPACE else ""
+
+
+def conditions(group: Sequence[Row]) -> Iterator[str]:
+    """What was left out, and how images were made, a line each."""
+    if not any(BEST in places_of(row) for row in group):
+        return
+    count = sum(bool(row["left_out"]) and not row["against"] for row in group)
+    more = f"Left out: {count} of {len(group)} codes. " if count else ""
+    yield f"{more}-v says why, and what each alternative gains."
+    shown = next((row["image_conditions"] for row in group if row.get("image_conditions") and images(row)), "")
+    if shown:
+        yield f"Images: {shown}."
+
+
 def _of_maps(best: Row) -> Iterator[str]:
     """That texture maps, which are filtered, are another question."""
     if best["needs"] == "hemisphere" and "filter" in (best.get("mixing") or "").split(","):
@@ -317,15 +352,16 @@ def _spread_text(row: Row) -> str:
     return f" (standard error {error:.1f} dB over orientations)" if error is not None else ""
 
 
-def _pole_sentence(row: Row) -> str:
-    """Say how an encoding's z axis should lie and how to write that, if that is worth more than its error."""
+def _pole_sentence(row: Row, names: str | None = None) -> str:
+    """Say how an encoding's z axis should lie, if that is worth more than its error; `names` says how to write that."""
     pole, cost = row.get("image_pole"), row.get("image_wrong_pole_db") or 0.0
     if not pole or cost < max(STEP, ERRORS * (row.get("image_se_db") or 0.0)):
         return ""
     where, ups = ("up", "yz") if pole == "y" else ("sideways", "zy")
     name, known = row["encoding"], ENCODINGS.get(row["encoding"])
-    names = f": {name}:axis=y if {ups[0]} is up in your world, {name} if {ups[1]} is"
-    return f" Point its z axis {where}{names if known and known.can_turn else ''}; the worst axis costs {cost:.1f} dB."
+    if names is None and known and known.can_turn:
+        names = f": {name}:axis=y if {ups[0]} is up in your world, {name} if {ups[1]} is"
+    return f" Point its z axis {where}{names or ''}; the worst axis costs {cost:.1f} dB."
 
 
 def _mixing_text(row: Row) -> str:

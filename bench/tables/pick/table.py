@@ -121,6 +121,9 @@ class PickOutputs:
 
     images: Images = None
     live: Live = None
+    verbose: Annotated[
+        bool, Option("--verbose", "Print every sentence of the answer, and every column that fits.", letter="-v")
+    ] = False
 
 
 COLUMNS = (

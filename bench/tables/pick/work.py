@@ -33,10 +33,10 @@ from ..families_named import families_named
 from ..mix.table import USES
 from ..table import COMPILERS, GL, Measured, Row, Sheet, Step, Tick, Work
 from . import measure, pictures
-from .answer import AIMS, answered, asked_of, groups, largest
+from .answer import AIMS, ELSEWHERE, answered, asked_of, groups, images, largest, largest_mixed, mean
 from .charts import charts
 from .choices import extras
-from .sentences import left_out, told
+from .sentences import called, conditions, in_short, left_out, told
 from .table import TABLE, PickOptions, PickOutputs
 
 MOST_READERS, MOST_WORTH, MOST_ENOUGH = 64, 100.0, 360.0
@@ -278,6 +278,24 @@ def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
         yield Sheet(title if front else "", front, TABLE.drops(front), said=said, aside=aside, keys=keys)
 
 
+def _short_sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
+    """For each question the answer in a dozen lines."""
+    for group in groups(rows).values():
+        # The first sentence has what lies in another storage.
+        placed = [_alternative(row) for row in group if row["place"] and row["place"] != ELSEWHERE]
+        if len({row["bits"] for row in placed}) == 1:
+            # The sentence says it.
+            placed = [{name: value for name, value in row.items() if name != "bits"} for row in placed]
+        yield Sheet("", placed, (), said=tuple(in_short(group)), notes=tuple(conditions(group)))
+
+
+def _alternative(row: Row) -> Row:
+    """A code that has a place in the answer, as its short table has it: errors in degrees, the image in decibels."""
+    figures = {"mean": mean(row), "worst": largest_mixed(row), "slots": row["slots"], "bits": row["bits"]}
+    worst = min(images(row).values(), default=None)
+    return {"encoding": called(row), "place": row["place"]} | figures | {"image": worst}
+
+
 def _short(row: Row) -> Row:
     row = row | {"largest_deg": largest(row)}
     return {name: row[name] for pattern in SHOWN for name in row if fnmatchcase(name, pattern)}
@@ -303,7 +321,7 @@ WORK = Work(
     steps=_steps,
     measure=_measure,
     finish=answered,
-    shown=lambda done: _sheets(done.rows),
+    shown=lambda done: _sheets(done.rows) if done.outputs.verbose else _short_sheets(done.rows),
     summary=_sheets,
     failures=_failures,
     write=_write,

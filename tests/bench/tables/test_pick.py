@@ -2,6 +2,7 @@
 
 import json
 import re
+from collections import Counter
 
 import pytest
 from manual import ROOT
@@ -80,13 +81,21 @@ def test_what_cannot_be_asked_is_one_line(run, words, said):
     assert (status, out) == (2, "") and said in err and err.count("\n") == 1, err
 
 
+def test_the_default_answer_has_a_dozen_lines():
+    kept = json.loads((ROOT / "tests/manual_tables/kept/answer-normalbench-pick.json").read_text())["lines"]
+    counts = Counter(storage for storage, _ in kept)
+    assert set(counts) == {"rg8", "rgb10a2"} and max(counts.values()) <= 12, counts
+
+
 def test_a_run_measures_the_codes_that_the_default_answer_names():
     """Those that it takes in every table that a run measures of several codes; those of the ladder in quality, render
     and cost."""
     kept = ROOT / "tests/manual_tables/kept/answer-normalbench-pick.json"
     said = [line[1] for line in json.loads(kept.read_text())["lines"]]
     taken = {match[1] for text in said if (match := re.search(r": take (\w+)\.", text))}
-    ladder = {match[1] for text in said if (match := re.match(r"(?:Mor|Mos|Few|Che)\w+(?: [\w.]+)*: (\w+),", text))}
+    ladder = {
+        match[1] for text in said if (match := re.match(r"(\w+) +(?:more exact|most exact|cheaper|fewer bits) ", text))
+    }
     assert taken == {"octahedral", "xyz_largest"} and ladder >= {"octahedral_precise", "spherical_fibonacci"}
     assert taken | ladder <= set(COMMON) and len(COMMON) <= 20
     for name in ("quality", "render", "cost", "mix", "effects"):
