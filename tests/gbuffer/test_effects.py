@@ -142,7 +142,7 @@ def test_what_a_pass_does_not_declare_it_cannot_use(gl, tmp_path):
 
 
 def test_what_a_pipeline_needs_and_holds_follows_from_its_passes():
-    facts = {n: (p.light_targets, p.scaled, p.starts_light, "kind" in p.needs) for n, p in PIPELINES.items()}
+    facts = {n: (p.light_targets, p.scaled, p.starts_light, "shading_model" in p.needs) for n, p in PIPELINES.items()}
     assert facts == {
         "forward": ((), False, False, False),
         "forward_multipass": ((), False, False, False),

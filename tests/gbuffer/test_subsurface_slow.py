@@ -393,7 +393,9 @@ def test_a_layout_that_does_not_tell_skin_is_refused_in_one_line(gl):
     made = PIPELINES["prepass"].with_effect(passes({}))
     plan = plan_of(layout=LAYOUTS["normal_depth_material"])
     with (
-        pytest.raises(LayoutError, match=r"^prepass needs kind, which layout normal_depth_material does not keep$"),
+        pytest.raises(
+            LayoutError, match=r"^prepass needs shading_model, which layout normal_depth_material does not keep$"
+        ),
         rendering(gl, made, scene_of("head"), plan),
     ):
         pass

@@ -90,7 +90,7 @@ def told(group: Sequence[Row]) -> list[str]:
     where = question(group[0])
     if best is None:
         return [f"{where}: no code qualifies{_constraints_text(group[0])}.", *_instead(group)]
-    others = [*_of_maps(best), *not_held(best), *(_elsewhere_text(row, best) for row in _much_better(group, best))]
+    others = [*not_held(best), *(_elsewhere_text(row, best) for row in _much_better(group, best))]
     made = [" ".join([f"{where}: take {called(best)}.", *others])]
     made += [
         f"{_error_sentences(best)} {_seen_sentences(best)}",
@@ -108,13 +108,15 @@ def in_short(group: Sequence[Row]) -> list[str]:
     best = next((row for row in group if BEST in places_of(row)), None)
     if best is None:
         return [*told(group), *left_out(group)]
-    first, *_ = told(group)
+    first = " ".join([told(group)[0], *_of_maps(best)])
     takes = "What it costs is not known on this machine."
     if best["slots"] is not None:
         slots = f"{best['encode_slots']:g} issue slots to encode and {best['decode_slots']:g} to decode"
-        takes = f"{slots} on {best['dearest_family']}: {best['slots']:g} with {best['readers']} readers."
+        takes = f"{slots} on {best['dearest_family']}{_recorded_clause(best)}: {best['slots']:g} with "
+        takes += f"{best['readers']} readers."
     pole = _pole_sentence(best, "").strip() if images(best) else ""
     others = [_mixing_text(best), _reservation_sentence(best).strip(), _spaces_short(best)]
+    others += [_rival_sentence(row, best) for row in group if row["against"] and row is not best]
     return [
         f"{first} {_error_sentences(best)}",
         " ".join(filter(None, [takes, _bits_sentence(best), pole])),

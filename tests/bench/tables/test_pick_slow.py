@@ -332,7 +332,7 @@ SOME = ("--storage rg8",)
 @pytest.mark.parametrize("words", SOME)
 def test_the_answer_is_what_an_expert_expects(run, words):
     code, more = EXPECTED[words]
-    status, out, err = run("pick", *words.split(), "--format", "markdown")
+    status, out, err = run("pick", *words.split(), "--format", "markdown", "-v")
     text = " ".join(out.split())
     first = text.partition(". ")[0]
     assert status == (not code) and (f": take {code}" in first) == bool(code) and more in text, err + text

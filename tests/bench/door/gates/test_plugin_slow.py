@@ -315,7 +315,8 @@ def test_a_run_that_does_not_use_it_imports_nothing_of_it_but_its_options(pytest
                 *rooms, ".door.pytest_plugin.plugin", ".door.pytest_plugin.own_options", ".ground.options.option",
                 ".ground.options.counts", ".ground.options.gpu_families", ".ground.options.source_options",
                 ".ground.options.words", ".ground.user_files", ".ground.output.errors",
-                ".ground.spelling", ".ground.choose", "normalbench.reports", "normalbench.reports.sheets"
+                ".ground.spelling", ".ground.choose", "normalbench.reports", "normalbench.reports.sheets",
+                "normalbench.gbuffer", "normalbench.gbuffer.layouts", "normalbench.gbuffer.layouts.names"
             }
             light = (".table", ".registry", ".rates")
             assert all(m.endswith(light) or m.count(".") == 2 for m in named if ".tables." in m)
