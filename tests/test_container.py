@@ -1,7 +1,7 @@
 """Dockerfile: its lines run in a chroot of Debian end in the rows of this machine."""
 
 from containers import DOCKERFILE, Container, context, instructions, suite
-from manual import PAGES, README
+from manual import PAGES, ROOT
 
 
 def test_the_dockerfile_has_only_what_the_chroot_can_do():
@@ -11,9 +11,9 @@ def test_the_dockerfile_has_only_what_the_chroot_can_do():
     assert [text for word, text in lines if word == "USER"] == ["bench"], "it runs as somebody who is not root"
 
 
-def test_the_readme_has_its_two_commands():
+def test_the_page_on_installing_has_its_two_commands():
     shown = [line.lstrip("# ") for line in DOCKERFILE.read_text().splitlines() if line.startswith("#     docker ")]
-    assert len(shown) == 2 and all(f"    {line}\n" in PAGES[README] for line in shown)
+    assert len(shown) == 2 and all(f"    {line}\n" in PAGES[ROOT / "docs" / "install.md"] for line in shown)
 
 
 def test_docker_gets_the_package_and_no_tests():
