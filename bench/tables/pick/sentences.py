@@ -87,20 +87,23 @@ def sentences(group: Sequence[Row]) -> list[str]:
 def told(group: Sequence[Row]) -> list[str]:
     """The same without what does not qualify."""
     best = next((row for row in group if BEST in places_of(row)), None)
-    where = question(group[0])
     if best is None:
-        return [f"{where}: no code qualifies{_constraints_text(group[0])}.", *_instead(group)]
-    others = [*not_held(best), *(_elsewhere_text(row, best) for row in _much_better(group, best))]
-    made = [" ".join([f"{where}: take {called(best)}.", *others])]
-    made += [
+        return [f"{question(group[0])}: no code qualifies{_constraints_text(group[0])}.", *_instead(group)]
+    made = [
+        _first_sentences(group, best),
         f"{_error_sentences(best)} {_seen_sentences(best)}",
         f"{_price_sentence(best)} {_bits_sentence(best)}{_reservation_sentence(best)}",
     ]
     made += list(filter(None, [_images_text(best), _mixing_text(best)]))
-    made += [_space_sentences(best)] if best["needs"] in OF_SPACE else []
-    made += [*rungs(group, best), *_hangs_on(group, best)]
+    made += [*filter(None, [_space_sentences(best)]), *rungs(group, best), *_hangs_on(group, best)]
     made += [f"Images: {best['image_conditions']}."] if best.get("image_conditions") and images(best) else []
     return made + [_rival_sentence(row, best) for row in group if row["against"] and row is not best]
+
+
+def _first_sentences(group: Sequence[Row], best: Row) -> str:
+    """What to take, what it does not hold, and what is much better in another storage."""
+    others = [*not_held(best), *(_elsewhere_text(row, best) for row in _much_better(group, best))]
+    return " ".join([f"{question(best)}: take {called(best)}.", *others])
 
 
 def in_short(group: Sequence[Row]) -> list[str]:
@@ -108,24 +111,20 @@ def in_short(group: Sequence[Row]) -> list[str]:
     best = next((row for row in group if BEST in places_of(row)), None)
     if best is None:
         return [*told(group), *left_out(group)]
-    first = " ".join([told(group)[0], *_of_maps(best)])
+    first = " ".join([_first_sentences(group, best), *_of_maps(best)])
     takes = "What it costs is not known on this machine."
     if best["slots"] is not None:
         slots = f"{best['encode_slots']:g} issue slots to encode and {best['decode_slots']:g} to decode"
         takes = f"{slots} on {best['dearest_family']}{_recorded_clause(best)}: {best['slots']:g} with "
         takes += f"{best['readers']} readers."
     pole = _pole_sentence(best, "").strip() if images(best) else ""
-    others = [_mixing_text(best), _reservation_sentence(best).strip(), _spaces_short(best)]
+    others = [_mixing_text(best), _reservation_sentence(best).strip(), _space_sentences(best)]
     others += [_rival_sentence(row, best) for row in group if row["against"] and row is not best]
     return [
         f"{first} {_error_sentences(best)}",
         " ".join(filter(None, [takes, _bits_sentence(best), pole])),
         *filter(None, others),
     ]
-
-
-def _spaces_short(best: Row) -> str:
-    return _space_sentences(best) if best["needs"] in OF_SPACE else ""
 
 
 def conditions(group: Sequence[Row]) -> Iterator[str]:
@@ -147,6 +146,9 @@ def _of_maps(best: Row) -> Iterator[str]:
 
 
 def _space_sentences(best: Row) -> str:
+    """What the space of a code means; empty where none was asked for."""
+    if best["needs"] not in OF_SPACE:
+        return ""
     angles = best.get("image_view_angles")
     return OF_SPACE[best["needs"]] + (f" {angles}." if angles else "")
 
