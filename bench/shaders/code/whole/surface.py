@@ -71,7 +71,7 @@ class Contents:
         found = {word.component: word for word in self.words if word.component != OTHER}
         for first in dict.fromkeys(map(quantity_of, COMPONENTS)):
             kind, numbers = NUMBERS.get(first, ("uint" if first in WHOLE_NUMBERS else "float", ""))
-            parts = tuple(f"{first.partition('.')[0]}.{number}" for number in numbers) or (first,)
+            parts = _components(first, numbers)
             if first == "normal" or parts[0] not in found:
                 continue
             words = tuple(found[part] for part in parts)
@@ -96,6 +96,11 @@ class Contents:
             yield Field(name, "uint" if is_whole else "float", (name,), (word,))
 
 
+def _components(quantity: str, numbers: str) -> tuple[str, ...]:
+    """The components of a quantity of several numbers; itself where it is one."""
+    return tuple(f"{quantity.partition('.')[0]}.{number}" for number in numbers) or (quantity,)
+
+
 def _unwritten(layout: Layout) -> str:
     """What of a layout is not written, in words; empty where all is."""
     encoding, components = layout.encoding, layout.components - {"power"}
@@ -107,7 +112,7 @@ def _unwritten(layout: Layout) -> str:
     if {"power", "roughness"} <= {word.component for word in layout.words}:
         return "a power and a roughness in one layout"
     for name, (_, numbers) in NUMBERS.items():
-        there = [f"{name.partition('.')[0]}.{number}" in components for number in numbers]
+        there = [component in components for component in _components(name, numbers)]
         if any(there) and not all(there):
             return f"a part of {name} without the rest"
     return _unwritten_other(layout)
