@@ -130,8 +130,8 @@ def guarded(gl, encoding: Encoding) -> list[Comparison]:
 
 
 def step_of(codec: Codec, component: int, values: np.ndarray):
-    """The distance between neighbouring codes. Half floats are finer near zero than float32 arithmetic on numbers near
-    1 is exact: there the step is two of its units."""
+    """The distance between neighbouring codes. Half floats are finer near zero than the languages agree before storage:
+    there the step is what the encoding says they may differ by."""
     storage, levels = codec.storage, codec.encoding.levels_of(component)
     if levels:
         return 2 / (levels - 1)
@@ -139,7 +139,8 @@ def step_of(codec: Codec, component: int, values: np.ndarray):
         texels = np.maximum(values.astype(np.float64) * 0.5 + 0.5, 2.0**-14)
         return 2 * 2.0 ** (np.floor(np.log2(texels)) - (storage.bits[component] - 5))
     if storage.kind == "float":
-        return np.maximum(np.spacing(np.abs(values).astype(np.float16)).astype(np.float64), 2 * ULP)
+        spacing = np.spacing(np.abs(values).astype(np.float16)).astype(np.float64)
+        return np.maximum(spacing, codec.encoding.ulps[0] * ULP)
     return (2 if storage.kind == "unorm" else 1) / storage.scale(component)
 
 
