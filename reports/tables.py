@@ -179,6 +179,10 @@ def to_terminal(rows: Sequence[dict[str, Any]], width: int, expendable: Sequence
     columns = _fitting(shown, width, expendable)
     table = Table(box=None, pad_edge=False, padding=(0, GAP, 0, 0), header_style="bold")
     widths = _widths(shown, columns)
+    for i, column in enumerate(columns):
+        # Prose takes what width is left.
+        longest, spare = max(len(text_of(row[column])) for row in shown), width - sum(widths) - GAP * len(columns)
+        widths[i] += max(0, min(longest - widths[i], spare))
     for column, needed in zip(columns, widths, strict=True):
         side = "right" if is_numeric(shown, column) else "left"
         table.add_column(escape(column.replace("_", " ")), justify=side, width=needed, overflow="fold")

@@ -26,7 +26,7 @@ from normalbench.bench.run.workers import places
 from normalbench.bench.show import report, site_command
 from normalbench.gbuffer.scenes.mesh import sphere
 
-MOST_LINES = 130
+MOST_LINES = 120
 
 
 FENCE = re.compile(r"^```.*?^```$", re.S | re.M)
@@ -76,6 +76,9 @@ def users_files(folder: Path) -> None:
     (folder / "millimetres.png").write_bytes(png_bytes((depths[..., None] * 1000).astype(np.uint16)))
     as_document([sphere(1.0, 16, 8)]).write(folder / "scene.glb")
     shutil.copy(ROOT / "tests" / "inputs" / "normals" / "points.ply", folder)
+    # What the command before it writes.
+    (folder / "layouts").mkdir()
+    (folder / "layouts" / "budget_16.toml").write_text(FILES["mine.toml"])
 
 
 def readers_devices(folder: Path) -> None:

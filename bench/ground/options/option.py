@@ -111,6 +111,9 @@ Live = Annotated[
     Option("--live", "Write the GLSL ES of each codec, which a page runs in the reader's browser, into this folder."),
 ]
 Plot = Annotated[Path | None, Option("--plot", "Draw the table into this PNG, SVG or PDF file.")]
+Verbose = Annotated[
+    bool, Option("--verbose", "Print every sentence of the answer, and every column that fits.", letter="-v")
+]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Mapping
 
+from ....encodings.storages.storage import TARGET_FORMATS
 from ..table import Row
 from .bins import WEBGPU_BYTES
 from .readers import times
@@ -16,8 +18,6 @@ WORDS = {
     "base_color": "base colour",
     "f0": "F0",
     "ao": "AO",
-    "square_root": "by its root",
-    "linear": "",
     "shading_model": "shading model",
 }
 # What free bytes may hold: how many it takes, a word of layouts that have it, and what it is.
@@ -27,76 +27,115 @@ NAMED = 3
 
 
 def told(row: Row) -> Iterator[str]:
-    """What to take for a limit, what is seen of it, where its error comes from, and what the next bytes bring."""
+    """Yield the answer for a limit, where its error comes from, what more bytes gain, its rules and its cost."""
     if row["skipped"]:
         yield f"{row['skipped'].rstrip('.')}."
         return
-    yield f"{_subject(row)}: {_answer(row)}{_free(row)}"
-    yield _codes(row)
+    yield " ".join(filter(None, [_answer(row), _free(row)]))
     yield _errors(row)
     yield _rules(row)
-    yield _price(row)
+    yield _cost(row)
+
+
+def in_short(row: Row) -> Iterator[str]:
+    """Yield the answer and what it costs."""
+    if row["skipped"]:
+        yield f"{row['skipped'].rstrip('.')}."
+        return
+    yield _answer(row)
+    slots = "not counted on this machine"
+    if row["pack_slots"] is not None:
+        parts = f"{row['pack_slots']:g} issue slots to pack and {row['unpack_slots']:g} to unpack"
+        slots = f"{parts} on {row['dearest_family']}: {row['slots']:g} per pixel"
+    yield " ".join(filter(None, [f"Cost: {slots}. {row['mb_1080p']:.0f} MB per frame at 1080p.", _next(row)]))
+
+
+def targets(row: Row) -> list[Row]:
+    """Return the targets as a table has them: format, bytes, and the code of each attribute in words."""
+    # The other words of a layout of yours are shown as they are.
+    codes = dict(text.split(" ", 1) for text in row["codes"].split("; ") if text) if row["codes"] else {}
+    if row["kind"] == IMPROVED:
+        codes.pop("other", None)
+    table = []
+    for number, text in enumerate((row["targets"] or "").split("; ") if row["targets"] else ()):
+        name, words = text.split(": ", 1)
+        size = TARGET_FORMATS[name].texel_bytes
+        held = dict.fromkeys(_held(word, codes) for word in words.split())
+        table.append({"target": f"{number}: {name}, {size} byte{'s' * (size > 1)}", "holds": ", ".join(held)})
+    return table
+
+
+def _held(word: str, codes: Mapping[str, str]) -> str:
+    """What a word of a layout holds: an attribute and its code, or the word itself where that is nobody's."""
+    attribute = next((name for name in reversed(re.findall(r"[a-z_0-9]+", word)) if name in codes), None)
+    return word if attribute is None else _code(f"{attribute} {codes[attribute]}")
 
 
 def _subject(row: Row) -> str:
     if row["kind"] == IMPROVED:
         return f"The same attributes in the same formats, {row['layout']}"
-    return f"{row['limit']} bytes a pixel"
+    return f"{row['limit']} bytes per pixel"
 
 
 def _answer(row: Row) -> str:
-    """What to take, and what is seen of it."""
-    formats = " + ".join(target.partition(":")[0] for target in row["targets"].split("; "))
-    fewer = f" ({row['bytes_per_pixel']} bytes)" if row["bytes_per_pixel"] != row["limit"] else ""
-    return f"take {formats}{fewer}. {_seen(row['flip_p99'])}the worst surfaces have {row['worst_db']:.1f} dB."
+    """What to take, its worst class of surfaces, and whether errors are visible."""
+    fewer = f"{row['bytes_per_pixel']:g} are enough, for " if row["bytes_per_pixel"] != row["limit"] else ""
+    scene, _, surfaces = row["worst_class"].rpartition(" ")
+    worst = f"{row['worst_db']:.1f} dB in the worst class ({surfaces} in {scene})"
+    frame = f"{row['psnr_db']:.1f} dB in the frame"
+    return f"{_subject(row)}: {fewer}{worst}, {frame}. {_visible(row['flip_p99'])}"
 
 
 def _free(row: Row) -> str:
     """What the bytes that a limit leaves may hold, of what the layout does not."""
     free = (row["limit"] or 0) - row["bytes_per_pixel"] if row["kind"] == PROPOSAL else 0
     uses = [use for size, word, use in FREE_FOR if size <= free and word not in row["targets"]]
-    which = f": for {' or '.join(uses)}" if uses else ""
-    return f" More bring nothing that shows; {free:g} stay free{which}." if free >= 1 else ""
+    which = f" for {' or '.join(uses)}" if uses else ""
+    return f"{free:g} {'bytes are' if free > 1 else 'byte is'} free{which}." if free >= 1 else ""
 
 
-def _seen(flip: float) -> str:
+def _visible(flip: float) -> str:
     if flip <= INVISIBLE:
-        return "Its errors are not seen in a still picture; "
-    return f"Its errors are seen{' side by side' if flip <= ACCEPTABLE else ''}; "
-
-
-def _codes(row: Row) -> str:
-    codes = [_code(one) for one in row["codes"].split("; ") if not one.startswith("other ")]
-    rest = ", and the other bits as they are" if "; other " in row["codes"] and row["kind"] == IMPROVED else ""
-    return f"The codes are {', '.join(codes)}{rest}."
+        return "Errors are invisible in a still image."
+    return f"Errors are visible{' side by side' if flip <= ACCEPTABLE else ''}."
 
 
 def _code(text: str) -> str:
-    """A code in words: base colour by its root 7:7:6."""
-    return " ".join(filter(None, (WORDS.get(word, word) for word in text.split())))
+    """An attribute and its code in words, such as base colour 7:7:6 as square root."""
+    name, _, code = text.partition(" ")
+    code, is_root = code.removeprefix("square_root "), code.startswith("square_root ")
+    code, _, most = code.removeprefix("linear ").replace("in halves", "in half floats").partition(" to ")
+    words = [WORDS.get(name, name), f"{code} bits" if code.isdigit() else code, "as square root" if is_root else ""]
+    return " ".join(filter(None, [*words, f"up to {float(most):.2g}" if most else ""]))
+
+
+def _names(names: str) -> str:
+    return ", ".join(WORDS.get(name, name) for name in names.split(", "))
 
 
 def _errors(row: Row) -> str:
-    scene, _, name = row["worst_class"].rpartition(" ")
-    said = [f"Worst are {name} surfaces of {scene}, {row['worst_db']:.1f} dB; the frame has {row['psnr_db']:.1f} dB."]
+    said = []
     if "," in row["scene"] and row["held_back_db"] is not None:
         said.append(f"Scenes that did not choose it have {row['held_back_db']:.1f} dB in their worst class.")
-    said.append(f"FLIP's 99th percentile is {row['flip_p99']:.3f}; up to {INVISIBLE:g} we call invisible.")
+    said.append(f"FLIP (99th percentile) is {row['flip_p99']:.3f}; up to {INVISIBLE:g} counts as invisible.")
     if row["error_from"]:
-        parts = [_code(one) for one in row["error_from"].split(", ")[:NAMED]]
-        said.append(f"The error of the worst is of {', '.join(parts)}.")
-    if row["next_bytes"]:
-        more = "One byte more brings" if row["next_bytes"] == 1 else f"{row['next_bytes']} bytes more bring"
-        said.append(f"{more} {row['next_db']:.1f} dB there.")
-    return " ".join(said)
+        parts = [_code(part) for part in row["error_from"].split(", ")[:NAMED]]
+        said.append(f"The error of the worst class comes from {', '.join(parts)}.")
+    return " ".join([*said, *filter(None, [_next(row)])])
+
+
+def _next(row: Row) -> str:
+    if not row["next_bytes"]:
+        return ""
+    more = "One more byte gains" if row["next_bytes"] == 1 else f"{row['next_bytes']} more bytes gain"
+    return f"{more} {row['next_db']:.1f} dB."
 
 
 def _rules(row: Row) -> str:
-    blended = [_code(name) for name in (row["blends"] or "").split(", ") if name]
-    into = f"Decals blend into {', '.join(blended)}; the fourth channel of a target there is the blend factor."
-    said = [into if blended else "No decals are blended by hardware."]
+    into = f"Decals blend into {_names(row['blends'] or '')}; the alpha of a target there is the blend factor."
+    said = [into if row["blends"] else "Not checked for hardware decal blending; use --blend to require it."]
     if "_uint: " in row["targets"]:
-        said.append("Whole numbers gain 3 dB or more here, and are not blended, filtered or resolved.")
+        said.append("Integer targets gain 3 dB or more here, and are not blended, filtered or resolved.")
     said.append(
         f"The G-buffer moves {row['mb_1080p']:.0f} MB at 1080p and {row['mb_4k']:.0f} MB at 4K, without compression, "
         f"written {times(row['overdraw'])}, read {row['readers']}."
@@ -105,20 +144,30 @@ def _rules(row: Row) -> str:
         said.append("WebGPU does not render to all of its formats.")
     elif row["webgpu_bytes"] > WEBGPU_BYTES:
         over = row["webgpu_bytes"] - WEBGPU_BYTES
-        said.append(f"It exceeds WebGPU's limit of {WEBGPU_BYTES} bytes a sample by {over}.")
+        said.append(f"It exceeds WebGPU's limit of {WEBGPU_BYTES} bytes per sample by {over}.")
     else:
-        said.append(f"It uses {row['webgpu_bytes']} of WebGPU's {WEBGPU_BYTES} bytes a sample.")
+        said.append(f"It uses {row['webgpu_bytes']} of WebGPU's {WEBGPU_BYTES} bytes per sample.")
     if row["in_tile"] is not None:
         fits = ", which fit the tile" if row["in_tile"] else ": it takes tiles of half the size"
         said.append(f"With the light buffer it takes {row['tile_bytes']} bytes in a tile{fits}.")
-    if row["by_contract"]:
-        said.append(f"By contract, not measured: {', '.join(_code(name) for name in row['by_contract'].split(', '))}.")
-    return " ".join(said)
+    return " ".join([*said, *unmeasured(row)])
 
 
-def _price(row: Row) -> str:
+def unmeasured(row: Row) -> tuple[str, ...]:
+    """Return a sentence on the attributes that no scene shows; none where there are none."""
+    names = row["by_contract"]
+    return (f"Not measured, because no scene shows them: {_names(names)}.",) if names else ()
+
+
+def conditions(row: Row) -> str:
+    """Return what the figures hold for, and what was not measured."""
+    images = f"Images: {row['scene'].replace(',', ', ')} at {row['size']}."
+    return " ".join(filter(None, [_free(row), images, *unmeasured(row), "-v says more."]))
+
+
+def _cost(row: Row) -> str:
     if row["pack_slots"] is None:
-        return "What it costs to pack and unpack is not known on this machine."
+        return "The cost of packing and unpacking is not known on this machine."
     parts = f"Packing takes {row['pack_slots']:g} issue slots and unpacking {row['unpack_slots']:g}"
     often = f"written {times(row['overdraw'])} and read {row['readers'].partition(', ')[0]}"
-    return f"{parts} on {row['dearest_family']}: {row['slots']:g} a pixel that is {often}."
+    return f"{parts} on {row['dearest_family']}: {row['slots']:g} per pixel, {often}."

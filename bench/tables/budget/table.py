@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Annotated
 
 from ....reports.sheets import View
-from ...ground.options.option import Families, Option, Options, Plot, Size
+from ...ground.options.option import Families, Option, Options, Plot, Size, Verbose
 from ...ground.options.words import Names
 from .. import shared_columns as shared
 from ..table import Column, Group, Role, Section, Table
@@ -123,6 +123,7 @@ class BudgetOutputs:
 
     layouts: Annotated[Path | None, Option("--layouts", "Folder for the layouts, as TOML files.")] = None
     plot: Plot = None
+    verbose: Verbose = False
 
 
 COLUMNS = (

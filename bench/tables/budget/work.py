@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from ....encodings.storages.storage import TARGET_FORMATS
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.output.errors import tell
 from ...ground.output.writing import check_folder, write_text
@@ -12,7 +11,7 @@ from ..table import Measured, Row, Sheet, Step, Tick, Work
 from .charts import charts
 from .measure import in_order, measure
 from .question import question
-from .sentences import told
+from .sentences import conditions, in_short, targets, told
 from .table import IMPROVED, MINE, PROPOSAL, TABLE, BudgetOptions, BudgetOutputs
 from .written import file_of
 
@@ -68,19 +67,35 @@ def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
         if row["kind"] == MINE and row["changes"]:
             yield Sheet("", [], said=(f"{row['layout']}: {row['changes']}",))
         if row["kind"] in WRITTEN:
-            words = row["targets"].split("; ") if row["targets"] else []
-            targets = [_target_row(at, text) for at, text in enumerate(words)]
             name = f"{row['limit']} bytes" if row["kind"] == PROPOSAL else row["layout"]
-            yield Sheet(f"{name}, target by target" if targets else "", targets, said=tuple(told(row)))
+            held = targets(row)
+            yield Sheet(f"{name}, target by target" if held else "", held, said=tuple(told(row)))
+    yield from _compared(rows)
+
+
+def _compared(rows: Sequence[Row], said: Sequence[str] = ()) -> Iterator[Sheet]:
     shown = [{name: row[name] for name in SHOWN} for row in rows if row["worst_db"] is not None]
     if shown:
-        yield Sheet("layouts, by bytes", shown, TABLE.drops(shown))
+        yield Sheet("layouts, by bytes", shown, TABLE.drops(shown), said=tuple(said))
 
 
-def _target_row(at: int, text: str) -> Row:
-    name, holds = text.split(": ", 1)
-    size = TARGET_FORMATS[name].texel_bytes
-    return {"target": f"{at}: {name}, {size} byte{'s' * (size > 1)}", "holds": holds}
+def _short_sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
+    """For each limit the answer in a dozen lines, and all layouts where there are several."""
+    answered: set[str] = set()
+    rest = [f"{row['layout']}: {row['changes']}" for row in rows if row["kind"] == MINE and row["changes"]]
+    for row in rows:
+        if row["kind"] not in WRITTEN:
+            continue
+        if row["skipped"] or row["targets"] in answered:
+            # A layout that a smaller limit has is shown there.
+            rest.append(next(told(row)))
+            continue
+        answered.add(row["targets"])
+        yield Sheet("", targets(row), said=tuple(in_short(row)), notes=(conditions(row),))
+    if sum(row["worst_db"] is not None for row in rows) > 1:
+        yield from _compared(rows, rest)
+    elif rest:
+        yield Sheet("", [], said=tuple(rest))
 
 
 def _failures(rows: Sequence[Row]) -> Iterator[str]:
@@ -93,7 +108,7 @@ WORK = Work(
     steps=_steps,
     measure=_measure,
     finish=in_order,
-    shown=lambda done: _sheets(done.rows),
+    shown=lambda done: _sheets(done.rows) if done.outputs.verbose else _short_sheets(done.rows),
     summary=_sheets,
     failures=_failures,
     write=_write,

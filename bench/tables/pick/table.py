@@ -20,6 +20,7 @@ from ...ground.options.option import (
     Scenes,
     Seed,
     StorageNames,
+    Verbose,
 )
 from ...ground.options.source_options import SourceOptions
 from ...ground.options.words import Names
@@ -121,9 +122,7 @@ class PickOutputs:
 
     images: Images = None
     live: Live = None
-    verbose: Annotated[
-        bool, Option("--verbose", "Print every sentence of the answer, and every column that fits.", letter="-v")
-    ] = False
+    verbose: Verbose = False
 
 
 COLUMNS = (

@@ -26,10 +26,10 @@ def test_every_code_has_a_kernel_in_every_target_that_holds_it():
 
 
 # Few scenes, targets and kernels.
-FEW_KINDS = ["budget", "--scene", "ramps", "--size", "64x48", "--bytes", "20", "--classes", "rough", "--format", "json"]
+FEW_KINDS = ["budget", "--scene", "ramps", "--size", "64x48", "--bytes", "20", "--classes", "rough"]
 
 
-FEW_KINDS += ["--no-fields", "--formats", "rgba8,srgb8_a8,rgb10a2,rg16f,rg8"]
+FEW_KINDS += ["--no-fields", "--formats", "rgba8,srgb8_a8,rgb10a2,rg16f,rg8", "--format", "json"]
 
 
 @pytest.mark.usefixtures("gl", "radv")
@@ -43,7 +43,17 @@ def test_rows_have_the_slots_of_the_emitted_code_and_the_bytes_of_readers(run):
     assert mine["mb_1080p"] == pytest.approx(1920 * 1080 * (1.5 * 16 + 16 + 8) / 1e6)
     assert proposal["dearest_family"] == "navi21" and proposal["slots"] > 0
     said = next(sentence for sentence in told(proposal) if sentence.startswith("Packing takes"))
-    assert said.endswith(f"{proposal['slots']:g} a pixel that is written 1.5 times and read once in full.")
+    assert said.endswith(f"{proposal['slots']:g} per pixel, written 1.5 times and read once in full.")
+
+
+@pytest.mark.usefixtures("gl", "radv")
+def test_the_answer_for_a_limit_has_a_dozen_lines(run, monkeypatch):
+    """Of 80 columns; -v prints more of the same figures."""
+    monkeypatch.setenv("COLUMNS", "80")
+    (status, short, err), (_, verbose, _) = (run(*FEW_KINDS[:-2], *more) for more in ((), ("-v",)))
+    assert status == 0 and short.count("\n") <= 12 < verbose.count("\n"), (short, err)
+    (db,) = re.findall(r"bytes per pixel: .*?([0-9.]+) dB in the worst", short)
+    assert f"{db} dB in the worst" in verbose and " to pack and " in short, (short, verbose)
 
 
 @pytest.mark.usefixtures("gl", "radv")
