@@ -197,8 +197,8 @@ class Rendering:
                 taken[name].append(clock.measure(run))
             taken["frame"].append(clock.measure(self.draw))
         quartiles = {name: np.percentile(times, [25, 50, 75]) for name, times in taken.items()}
-        found = {n: Timing(float(q[1]), float(q[2] - q[0]), tuple(taken[n])) for n, q in quartiles.items()}
-        return found, clock.name
+        timings = {n: Timing(float(q[1]), float(q[2] - q[0]), tuple(taken[n])) for n, q in quartiles.items()}
+        return timings, clock.name
 
     def triangles(self) -> dict[str, int]:
         """Triangles that each pass sends to the rasteriser, counted by the device."""

@@ -66,9 +66,9 @@ class Column:
 
 def column_called(name: str, columns: Iterable[Column]) -> Column | None:
     """The column that a row or a summary calls so; None where there is none."""
-    found = [column for column in columns if column.is_called(name)]
+    matches = [column for column in columns if column.is_called(name)]
     # `ms_frame` is itself and not one of `ms_*`.
-    return max(found, key=lambda column: len(column.name), default=None)
+    return max(matches, key=lambda column: len(column.name), default=None)
 
 
 def undefined(name: str) -> Column:

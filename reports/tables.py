@@ -95,8 +95,8 @@ def to_csv(rows: Sequence[dict[str, Any]]) -> str:
     """A header and a line for each row."""
     import pandas as pd
 
-    made = [{_no_formula(name): _no_formula(value) for name, value in row.items()} for row in rows]
-    return pd.DataFrame(made, dtype=object).to_csv(index=False, lineterminator="\n")
+    records = [{_no_formula(name): _no_formula(value) for name, value in row.items()} for row in rows]
+    return pd.DataFrame(records, dtype=object).to_csv(index=False, lineterminator="\n")
 
 
 def _no_formula(value: Any) -> Any:
@@ -131,7 +131,7 @@ def _captioned(rows: Sequence[dict[str, Any]], total: str) -> tuple[list[dict[st
     """The columns that a table shows, and the line below it."""
     if not total:
         return without_constants(rows)
-    return [{k: v for k, v in row.items() if any(text_of(one[k]) for one in rows)} for row in rows], total
+    return [{k: v for k, v in row.items() if any(text_of(other[k]) for other in rows)} for row in rows], total
 
 
 def without_constants(rows: Sequence[dict[str, Any]]) -> tuple[list[dict[str, Any]], str]:

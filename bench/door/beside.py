@@ -45,7 +45,7 @@ class Sent:
 
     def __init__(self, folder: Path, send: Send):
         run = read_run(folder)
-        self._rows = {key_text(one["table"], one["key"]): one["rows"] for one in (*run.steps, *run.parts)}
+        self._rows = {key_text(step["table"], step["key"]): step["rows"] for step in (*run.steps, *run.parts)}
         self._send = send
 
     def find(self, table: str, step: Step) -> list[Row] | None:

@@ -60,8 +60,8 @@ def code_command(options: CodeOptions, format: str, output: Path | None) -> int:
     if options.prefix and len(codecs) > 1 and not options.check:
         raise UsageError(f"--prefix {options.prefix}: names of {len(codecs)} codecs would collide; name one codec")
     if options.check:
-        made = _all_made(codecs, languages, options.prefix)
-        return check_codes(made, verified, ("encoding", "storage", "rounding"), format, output)
+        codes = _all_made(codecs, languages, options.prefix)
+        return check_codes(codes, verified, ("encoding", "storage", "rounding"), format, output)
     if output and output.is_file():
         raise UsageError(f"{output} is a file; code writes into a folder")
     if output and output.suffix in {language.ending for language in LANGUAGES.values()}:
@@ -77,10 +77,10 @@ def _of_named(word: str) -> str:
     known = (*NAMED, LAYOUT)
     if not word:
         return ""
-    found = spelled("kind", word, known)
-    if not found:
+    kind = spelled("kind", word, known)
+    if not kind:
         raise unknown_name("kind", [word], known)
-    return found
+    return kind
 
 
 def _check_prefix(prefix: str) -> None:
@@ -99,17 +99,17 @@ def _codecs(options: CodeOptions) -> list[Any]:
     Raises:
         UsageError: none does, or an unknown name.
     """
-    found: list[Any] = []
+    codecs: list[Any] = []
     complaints: list[str] = []
     for kind, names in kinds_named(options.codec, options.of).items():
         if kind is NORMAL:
-            found += _normals(names, options)
+            codecs += _normals(names, options)
             continue
         try:
-            found += _of_kind(kind, names, options)
+            codecs += _of_kind(kind, names, options)
         except UsageError as error:
             complaints.append(str(error))
-    return what_is_left(found, complaints)
+    return what_is_left(codecs, complaints)
 
 
 def _of_kind(kind: Kind, names: Names, options: CodeOptions) -> list[Any]:
@@ -136,22 +136,22 @@ def _write(codecs: Sequence[Any], languages: Sequence[str], options: CodeOptions
 def _prefix(codec: Any, codecs: Sequence[Any], options: CodeOptions) -> str:
     """What a codec's names begin with; empty for what they usually do. Codecs of one kind, which lie in one folder and
     may be used together, have names of their own."""
-    is_alone = sum(usual_prefix(one) == usual_prefix(codec) for one in codecs) == 1
+    is_alone = sum(usual_prefix(other) == usual_prefix(codec) for other in codecs) == 1
     return options.prefix or ("" if is_alone else stem_of(codec))
 
 
 def _write_codec(codec: Any, languages: Sequence[str], prefix: str, output: Path | None) -> int:
     """A codec in each language; 1 where one differs from the catalogue's."""
     status = 0
-    for one in proven(codec, languages, prefix):
-        language = one.code.language
-        if one.why_not:
+    for proof in proven(codec, languages, prefix):
+        language = proof.code.language
+        if proof.why_not:
             status = 1
-            tell(f"{codec.name} in {language}: {one.why_not}; it is not written")
+            tell(f"{codec.name} in {language}: {proof.why_not}; it is not written")
             continue
-        if one.row["verdict"] == NOT_RUN:
-            tell(f"{codec.name} in {language}: {one.row['says']}")
-        save(one.code, one.head(), output)
+        if proof.row["verdict"] == NOT_RUN:
+            tell(f"{codec.name} in {language}: {proof.row['says']}")
+        save(proof.code, proof.head(), output)
     return status
 
 
@@ -174,11 +174,13 @@ class Proven:
 def proven(codec: Any, languages: Sequence[str], prefix: str = "") -> Iterator[Proven]:
     """A codec's code in each language, run and compared. Raises UsageError where it can be written in none."""
     # Measured once, and only where something is written.
-    said = cache(partial(figures, codec) if isinstance(codec, Codec) else list)
+    cached_figures = cache(partial(figures, codec) if isinstance(codec, Codec) else list)
     own = replace(codec, encoding=getattr(codec.encoding, "own", None) or codec.encoding)
-    made = [(code, verified(code)) for code in _all_made([own], languages, prefix)]
-    for code, row in made:
-        yield Proven(code, row, _why_not(code, row, made), partial(_proven_head, code, codec, prefix, row, said))
+    pairs = [(code, verified(code)) for code in _all_made([own], languages, prefix)]
+    for code, row in pairs:
+        yield Proven(
+            code, row, _why_not(code, row, pairs), partial(_proven_head, code, codec, prefix, row, cached_figures)
+        )
 
 
 def _proven_head(code: Code, codec: Any, prefix: str, row: Row, said: Callable[[], list[str]]) -> list[str]:
@@ -201,7 +203,7 @@ def _why_not(code: Code, row: Row, made: Sequence[tuple[Code, Row]]) -> str:
     others = [pair for pair in made if pair[0] is not code]
     if row["verdict"] == NOT_RUN:
         others = others or witness((code_of(code.codec, name, code.prefix) for name in WITNESSES), verified)
-    wrong = [other.language for other, said in others if said["verdict"] == DIFFERS]
+    wrong = [other.language for other, other_row in others if other_row["verdict"] == DIFFERS]
     return f"its translation is seen to be wrong in {wrong[0]}" if wrong else ""
 
 
@@ -211,14 +213,14 @@ def _all_made(codecs: Sequence[Any], languages: Sequence[str], prefix: str) -> l
     Raises:
         UsageError: nothing can be.
     """
-    made, complaints = [], []
+    codes, complaints = [], []
     for codec in codecs:
         for language in languages:
             try:
-                made.append(code_of(codec, language, prefix))
+                codes.append(code_of(codec, language, prefix))
             except (UsageError, ShaderError) as error:
                 complaints.append(str(error))
-    return what_is_left(made, complaints)
+    return what_is_left(codes, complaints)
 
 
 def _command(codec: Any, language: str, prefix: str) -> str:

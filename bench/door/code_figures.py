@@ -90,8 +90,8 @@ def _largest(supremum: float | None, met: float) -> str:
     """The largest error in words: of exact arithmetic, and what float32 makes of it where that is more."""
     if supremum is None:
         return f"the largest of these is {met:.4g} degrees"
-    said = f"the largest of all directions is {supremum:.4g} degrees"
-    return said + (f"; {met:.4g} was met in float32" if met > supremum * (1 + SAME) else "")
+    text = f"the largest of all directions is {supremum:.4g} degrees"
+    return text + (f"; {met:.4g} was met in float32" if met > supremum * (1 + SAME) else "")
 
 
 def _instructions(codec: Codec) -> Iterator[str]:

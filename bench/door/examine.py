@@ -84,7 +84,7 @@ def examine_encoding(
     check_plot(plot)
     kept = _storage(storage or STORAGE)
     try:
-        found = examined(shader, choose_one("domain", domain, DOMAINS) if domain else ANY)
+        examination = examined(shader, choose_one("domain", domain, DOMAINS) if domain else ANY)
     except SeveralEncodersError:
         raise
     except UsageError as error:
@@ -95,29 +95,33 @@ def examine_encoding(
         if option := next((name for name, value in given.items() if value), ""):
             raise UsageError(f"{shader}: --{option} is of normals, and this file is of {kind.kind.plural}") from None
         return _examine_own(shader, kind, format, output)
-    codec = Codec(found.encoding, kept)
+    codec = Codec(examination.encoding, kept)
     if storage and codec.misfit:
         raise UsageError(f"{codec.name}: {codec.misfit}")
-    is_measured = found.is_measurable and not codec.misfit
+    is_measured = examination.is_measurable and not codec.misfit
     row = row_of(codec) if is_measured else {}
-    worse = _compared(found, codec, row) if is_measured else []
-    rounded = _rounded_for(found, codec) if worse else ""
+    worse = _compared(examination, codec, row) if is_measured else []
+    rounded = _rounded_for(examination, codec) if worse else ""
     worse = [f"{line}; {rounded}" if rounded else line for line in worse]
     halves = _half_note(codec, row) if is_measured else []
     # What is wasted is meant where the domain is, or where another storage is; it is said all the same.
     is_meant = bool(domain or rounded)
-    wrong, notes = ([*found.wrong], [*worse, *found.notes]) if is_meant else ([*found.wrong, *worse], found.notes)
-    failing = [f"{pair} is no pair: {why}; name it to see more" for pair, why in found.failing.items()]
+    wrong, notes = (
+        ([*examination.wrong], [*worse, *examination.notes])
+        if is_meant
+        else ([*examination.wrong, *worse], examination.notes)
+    )
+    failing = [f"{pair} is no pair: {why}; name it to see more" for pair, why in examination.failing.items()]
     wrong, notes = [*wrong, *no_numbers(kept, row), *failing], [*notes, *halves]
     about = {
         "file": shader.path.name,
-        "encoding": found.encoding.name,
-        "domain": _domain(found),
-        "functions": found.functions,
+        "encoding": examination.encoding.name,
+        "domain": _domain(examination),
+        "functions": examination.functions,
     }
     _write(about, wrong, notes, format, output)
-    if plot and found.is_measurable:
-        save_plot(plot, _picture(codec, found))
+    if plot and examination.is_measurable:
+        save_plot(plot, _picture(codec, examination))
         tell(f"the error over the sphere is in {plot}")
     return int(bool(wrong))
 
@@ -134,13 +138,13 @@ def _examine_own(file: UserFile, kind: OwnKind, format: str, output: Path | None
 
 
 def _write(about: dict[str, str], wrong: Sequence[str], notes: Sequence[str], format: str, output: Path | None) -> None:
-    said = [*_lines("finding", wrong), *([] if wrong else [(RIGHT, "verdict")]), *_lines("note", notes)]
+    lines = [*_lines("finding", wrong), *([] if wrong else [(RIGHT, "verdict")]), *_lines("note", notes)]
     if format in FOR_PEOPLE:
         check_rows(output)
         write_text(lambda: _text(about, wrong, notes, format), output, is_checked=True)
     else:
         functions = about.pop("functions")
-        rows = [about | {"finding": line, "kind": kind, "functions": functions} for line, kind in said]
+        rows = [about | {"finding": line, "kind": kind, "functions": functions} for line, kind in lines]
         write(rows, format, output)
 
 
@@ -174,10 +178,10 @@ def bulleted(lines: Sequence[str], format: str) -> str:
 
 def _storage(name: str) -> Storage:
     """Raises UsageError where it is not one."""
-    found = storages_named((name,))
-    if len(found) != 1:
+    storages = storages_named((name,))
+    if len(storages) != 1:
         raise UsageError(f"--storage {name}: doctor measures in one storage")
-    return found[0]
+    return storages[0]
 
 
 def _domain(found: Examined) -> str:
@@ -219,9 +223,9 @@ def _half_note(codec: Codec, row: Mapping[str, Any]) -> list[str]:
     in_half_row, own = row_of(half), _means(row)
     if in_half_row["skipped"]:
         return [f"it declares numbers of 16 bits, and is computed in 32: {in_half_row['skipped']}"]
-    said = "{:.3g} degrees on average and {:.3g} at most".format(*_means(in_half_row))
-    said += f"; in 32 bits {own[0]:.3g} and {own[1]:.3g}"
-    return [f"in the half arithmetic that it declares, {codec.storage.name} has {said}"]
+    text = "{:.3g} degrees on average and {:.3g} at most".format(*_means(in_half_row))
+    text += f"; in 32 bits {own[0]:.3g} and {own[1]:.3g}"
+    return [f"in the half arithmetic that it declares, {codec.storage.name} has {text}"]
 
 
 def _rounded_for(found: Examined, codec: Codec) -> str:
@@ -229,7 +233,7 @@ def _rounded_for(found: Examined, codec: Codec) -> str:
     lattice, size = found.lattice, codec.encoding.components
     if lattice is None or lattice.is_of(codec.storage, size):
         return ""
-    fitting = [one for one in STORAGES.values() if one.channels >= size and lattice.is_of(one, size)]
+    fitting = [storage for storage in STORAGES.values() if storage.channels >= size and lattice.is_of(storage, size)]
     named = min(fitting, key=lambda one: one.channels, default=None)
     return f"encode rounds to 1/{lattice.steps} itself" + (f": try --storage {named.name}" if named else "")
 

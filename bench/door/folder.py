@@ -250,7 +250,7 @@ def _names_a_pair(path: Path) -> bool:
     """Whether two functions of a file are an encoder of normals and its decoder by their names."""
     names = [name for name in _DEFINED.findall(_text(path)) if role(name) and name_speaks_of_normals(name)]
     roles = {name: role(name) for name in names}
-    return any(roles[one] != roles[other] and stem(one) == stem(other) for one in names for other in names)
+    return any(roles[name] != roles[other] and stem(name) == stem(other) for name in names for other in names)
 
 
 def _of_pairs(folder: Path, storage: Storage | None, word: str, pairs: Sequence[str]) -> list[Pair | Other]:
@@ -309,7 +309,7 @@ def _across_files(
 ) -> Iterator[Pair]:
     """Pairs of an encoder and a decoder in two files. Readers that are not of their writer's code get a finding."""
     lone = [(each, each.lone) for each in others if each.lone]
-    for other, reader in ((other, one) for other, one in lone if one.side == "decode"):
+    for other, reader in ((other, candidate) for other, candidate in lone if candidate.side == "decode"):
         writers = [
             each for each in lone if each[1].side == "encode" and stem(each[1].function) == stem(reader.function)
         ]

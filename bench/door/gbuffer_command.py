@@ -48,13 +48,15 @@ def gbuffer_command(options: CodeOptions, languages: Sequence[str], format: str,
     if options.prefix and len(layouts) > 1 and not options.check:
         raise UsageError(f"--prefix {options.prefix}: names of {len(layouts)} layouts would collide; name one layout")
     # Layouts that lie in one folder may be used together.
-    prefixes = {one.name: options.prefix or (identifier(one.name) if len(layouts) > 1 else "") for one in layouts}
-    made = [gbuffer_code(layout, language, prefixes[layout.name]) for layout in layouts for language in languages]
+    prefixes = {
+        layout.name: options.prefix or (identifier(layout.name) if len(layouts) > 1 else "") for layout in layouts
+    }
+    codes = [gbuffer_code(layout, language, prefixes[layout.name]) for layout in layouts for language in languages]
     if options.check:
-        return check_codes(made, verified, ("layout", "bytes_per_pixel"), format, output)
-    check_place(output, len(made))
+        return check_codes(codes, verified, ("layout", "bytes_per_pixel"), format, output)
+    check_place(output, len(codes))
     return max(
-        _write_layout(layout, made, replace(options, prefix=prefixes[layout.name]), output) for layout in layouts
+        _write_layout(layout, codes, replace(options, prefix=prefixes[layout.name]), output) for layout in layouts
     )
 
 
@@ -67,7 +69,7 @@ def _write_layout(layout: Layout, made: Sequence[GBufferCode], options: CodeOpti
     for row in wrong:
         tell(f"{layout.name} in {row['language']}: {row['says']}; {layout.name} is not written")
     for code, row in rows if not wrong else ():
-        if code.language in {one.language for one in made}:
+        if code.language in {other.language for other in made}:
             save(code, head(code, _command(code, options), row["says"]), output)
     return int(bool(wrong))
 

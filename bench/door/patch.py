@@ -58,7 +58,7 @@ def _part_of(folder: Path, file: str, pairs: Sequence[Pair]) -> str:
     except (OSError, ValueError) as error:
         tell(f"{file} is not in the patch: {error}")
         return ""
-    said: list[str] = []
+    summaries: list[str] = []
     for pair in pairs:
         try:
             patched = patched_text(text, pair)
@@ -66,11 +66,11 @@ def _part_of(folder: Path, file: str, pairs: Sequence[Pair]) -> str:
         except (UsageError, MissingError) as error:
             tell(f"{file} {pair.functions} is not in the patch: {error}")
             continue
-        said.append(f"{file} {pair.functions}: {best}, {mean:.4g} degrees on average in place of {before:.4g}\n")
+        summaries.append(f"{file} {pair.functions}: {best}, {mean:.4g} degrees on average in place of {before:.4g}\n")
         text = patched
     before, after = (version.splitlines(keepends=True) for version in (was, text))
     lines = difflib.unified_diff(before, after, f"a/{file}", f"b/{file}")
-    return "".join([*said, *(line if line.endswith("\n") else f"{line}\n{NO_END}\n" for line in lines)])
+    return "".join([*summaries, *(line if line.endswith("\n") else f"{line}\n{NO_END}\n" for line in lines)])
 
 
 def _mean_of(patched: str, path: Path, pair: Pair) -> float:

@@ -68,7 +68,7 @@ def options_of(table: Table, said: Mapping[str, Any]) -> list[Any]:
 
 def _read_so(values: dict[str, Any]) -> dict[str, Any]:
     """Options, less how users' files are read where none is named."""
-    return values if names_files(values) else {name: one for name, one in values.items() if name not in SETTINGS}
+    return values if names_files(values) else {name: option for name, option in values.items() if name not in SETTINGS}
 
 
 def asked_of(request: Any, folder: Path) -> list[Asked]:
@@ -78,22 +78,22 @@ def asked_of(request: Any, folder: Path) -> list[Asked]:
         UsageError: an unknown table, or an option that cannot be.
         MissingError: this machine can measure none of them.
     """
-    made: list[Asked] = []
+    asks: list[Asked] = []
     reasons: dict[str, list[str]] = {}
     chosen = chosen_tables(request.tables, given(request))
     _check_taken(chosen, given(request))
     for table in chosen:
         try:
-            made.append(_asked(table, given(request), folder))
+            asks.append(_asked(table, given(request), folder))
         except MissingError as error:
             reasons.setdefault(str(error), []).append(table.name)
         except UsageError as error:
             raise UsageError(f"{table.name}: {error}") from error
-    if not made:
+    if not asks:
         raise MissingError("; ".join(reasons))
     for reason, names in reasons.items():
         leave_out(f"{', '.join(names)}: {reason}")
-    return made
+    return asks
 
 
 def _check_taken(chosen: Iterable[Table], said: Mapping[str, Any]) -> None:

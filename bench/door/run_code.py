@@ -34,18 +34,18 @@ def keep_code(folder: Path, done: Done) -> None:
     codecs = _codecs(row for rows in finished.values() for row in rows)
     best = _codecs(row for name, rows in finished.items() for row in _best(name, rows))
     written = {label: _written(codec, label in best) for label, codec in islice({**best, **codecs}.items(), MOST)}
-    if made := {label: one for label, one in written.items() if one.texts}:
-        write_code(folder, {name: language.title for name, language in LANGUAGES.items()}, made)
+    if codes := {label: code for label, code in written.items() if code.texts}:
+        write_code(folder, {name: language.title for name, language in LANGUAGES.items()}, codes)
 
 
 def _codecs(rows: Iterable[Row]) -> dict[str, Codec]:
     """The catalogue's codecs of rows, by label."""
-    found: dict[str, Codec] = {}
+    codecs: dict[str, Codec] = {}
     for row in rows:
         key = CodecKey.said_by(row)
-        if key and key.label not in found and (codec := codec_of(key)) and codec.fits:
-            found[key.label] = codec
-    return found
+        if key and key.label not in codecs and (codec := codec_of(key)) and codec.fits:
+            codecs[key.label] = codec
+    return codecs
 
 
 def _best(name: str, rows: list[Row]) -> Iterator[Row]:
@@ -65,10 +65,10 @@ def _written(codec: Codec, is_proven: bool) -> Written:
 def _written_now(codec: Codec, is_proven: bool) -> Written:
     try:
         if is_proven:
-            made = [(one.code, one.head()) for one in proven(codec, list(LANGUAGES)) if not one.why_not]
+            pairs = [(proof.code, proof.head()) for proof in proven(codec, list(LANGUAGES)) if not proof.why_not]
         else:
-            made = [(code, unproven_head(code)) for code in (code_of(codec, name) for name in LANGUAGES)]
+            pairs = [(code, unproven_head(code)) for code in (code_of(codec, name) for name in LANGUAGES)]
     except (UsageError, MissingError, ShaderError, *UNEXPECTED):
         return Written({})
-    texts = {code.language: code.text(head) for code, head in made}
-    return Written(texts, is_proven, any(code.interface.tables for code, _ in made))
+    texts = {code.language: code.text(head) for code, head in pairs}
+    return Written(texts, is_proven, any(code.interface.tables for code, _ in pairs))

@@ -12,21 +12,21 @@ from ..tables.registry import TABLES
 
 def _shared() -> dict[str, Field]:
     """The options that `run` takes, by their names in Python; of several tables' the first says what they are."""
-    found: dict[str, Field] = {}
+    options: dict[str, Field] = {}
     for table in TABLES.values():
-        for name, one in fields_of(table.options).items():
-            if one.option.in_run:
-                found.setdefault(name, one)
-    return found
+        for name, option_field in fields_of(table.options).items():
+            if option_field.option.in_run:
+                options.setdefault(name, option_field)
+    return options
 
 
 def _options_class() -> type:
     others = ", ".join(name for name, table in TABLES.items() if not table.in_all)
-    said = f"{', '.join(TABLES)}; comma-separated, or all, which is all but {others}."
-    tables = Annotated[Names, Option("--tables", said)]
+    help_text = f"{', '.join(TABLES)}; comma-separated, or all, which is all but {others}."
+    tables = Annotated[Names, Option("--tables", help_text)]
     typed: list[tuple[str, Any, Any]] = [("tables", tables, field(default=("all",)))]
-    for name, one in _shared().items():
-        typed.append((name, Annotated[one.type | None, one.option], field(default=None)))
+    for name, option_field in _shared().items():
+        typed.append((name, Annotated[option_field.type | None, option_field.option], field(default=None)))
     return make_dataclass("RunOptions", typed, bases=(Options,), frozen=True, kw_only=True)
 
 

@@ -99,11 +99,11 @@ def _measured(ask: Asked, kept: Beside | None, where: Place) -> Measured:
 
     total = sum(1 for _ in with_parts(ask.steps))
     if kept:
-        found = sum(kept.find(ask.table.name, step) is not None for step in with_parts(ask.steps))
-        if found < len(kept):
+        kept_count = sum(kept.find(ask.table.name, step) is not None for step in with_parts(ask.steps))
+        if kept_count < len(kept):
             other = f"{kept.path} keeps {len(kept)} steps of another {ask.table.name}"
             raise UsageError(f"{other}; run that one, delete it, or name another file")
-        tell(f"{found} of {total} steps were measured before")
+        tell(f"{kept_count} of {total} steps were measured before")
     try:
         return measured(ask, Nothing() if kept is None else kept, where)
     except (KeyboardInterrupt, SystemExit):

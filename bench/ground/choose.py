@@ -52,7 +52,7 @@ def unknown_name(what: str, names: Iterable[str], known: Collection[str], listed
         listed: what is known, where that is more than the names.
     """
     listed = listed or ", ".join(known)
-    guess = "".join(f" {said}" for name in names if (said := meant(name, known, what)))
+    guess = "".join(f" {hint}" for name in names if (hint := meant(name, known, what)))
     return UsageError(f"unknown {what} {quoted(names)};{guess} known: {listed}")
 
 

@@ -73,10 +73,10 @@ def spelled(what: str, word: str, known: Iterable[str]) -> str | None:
     if word in known:
         return word
     wanted = OTHER_WORDS.get(what, {}).get(plain(_API.sub("", word.lower())), word)
-    found = [name for name in known if plain(name) == plain(wanted)]
-    if not found and what.endswith("storage") and (channels := channels_of(word)):
-        found = [name for name in known if channels_of(name) == channels]
-    return found[0] if len(found) == 1 else None
+    matches = [name for name in known if plain(name) == plain(wanted)]
+    if not matches and what.endswith("storage") and (channels := channels_of(word)):
+        matches = [name for name in known if channels_of(name) == channels]
+    return matches[0] if len(matches) == 1 else None
 
 
 def channels_of(word: str) -> tuple[str, ...]:

@@ -138,18 +138,18 @@ class UserFile:
     def settings(self) -> Settings:
         """How it is read. Raises UsageError for a macro or a language that cannot be."""
         match = _match(self.word)
-        said = re.findall(_SETTING, match["settings"], re.I) if match else []
-        of = {kind: tuple(value for name, value in said if name.lower() == kind) for kind in SETTINGS}
-        if odd := [f"{kind}={value}" for kind, value in said if not (value and value.isprintable())]:
+        pairs = re.findall(_SETTING, match["settings"], re.I) if match else []
+        of = {kind: tuple(value for name, value in pairs if name.lower() == kind) for kind in SETTINGS}
+        if odd := [f"{kind}={value}" for kind, value in pairs if not (value and value.isprintable())]:
             raise UsageError(f"{odd[0]!r}: nothing can be called so; leave it out")
-        if wrong := [one for one in of[DEFINE] if not _MACRO.fullmatch(one)]:
+        if wrong := [macro for macro in of[DEFINE] if not _MACRO.fullmatch(macro)]:
             raise UsageError(
                 f"-D {wrong[0]!r}: it is NAME or NAME=VALUE; write a macro with a comma in a file for --prelude"
             )
-        names = [one for name in of[LANGUAGE] for one in LANGUAGES if one.lower() == name.lower()]
+        names = [language for name in of[LANGUAGE] for language in LANGUAGES if language.lower() == name.lower()]
         if of[LANGUAGE] and not names:
             raise UsageError(f"--language {of[LANGUAGE][0]}: it is one of {', '.join(LANGUAGES).lower()}")
-        roots = tuple(_root(one) for one in of[INCLUDE])
+        roots = tuple(_root(folder) for folder in of[INCLUDE])
         return Settings(of[DEFINE], of[PRELUDE], roots, names[0] if names else "", "".join(of[FORMAT][:1]))
 
     @property
@@ -197,7 +197,7 @@ def with_settings(words: Iterable[Word], **settings: Iterable[Word]) -> Names:
         UsageError: a value that no word can have.
     """
     more = [f":{kind}={value}" for kind, values in settings.items() for value in values]
-    if wrong := next((one for one in more if ":" in one[1:]), ""):
+    if wrong := next((setting for setting in more if ":" in setting[1:]), ""):
         raise UsageError(
             f"--{wrong[1:].replace('=', ' ', 1)}: a colon ends a setting; write it in a file for --prelude"
         )
@@ -207,7 +207,7 @@ def with_settings(words: Iterable[Word], **settings: Iterable[Word]) -> Names:
 def _with_settings(word: str, more: Sequence[str]) -> str:
     if names_an_encoder(word):
         there = [match[0] for match in re.finditer(_SETTING, word, re.I)]
-        return word + "".join(one for one in more if one not in there)
+        return word + "".join(setting for setting in more if setting not in there)
     before, is_chain, then = word.rpartition(CHAIN)
     name, is_codec, storage = before.rpartition("/")
     if not (is_chain and is_codec):
@@ -236,7 +236,7 @@ def parts_of(word: str) -> list[str]:
         return [word]
     before, is_chain, then = word.rpartition(CHAIN)
     parts = (before.rpartition("/")[0], then) if is_chain and not is_file(Path(), word) else ()
-    return [one for part in parts for one in parts_of(part)] or files_in(word)
+    return [name for part in parts for name in parts_of(part)] or files_in(word)
 
 
 def names_an_encoder(word: str) -> bool:
@@ -266,14 +266,14 @@ def files_in(word: str, folder: Path = Path()) -> list[str]:
     whole = match["file"] if match else whole_file_of(word)
     if is_file(folder, whole):
         settings = UserFile(word).settings
-        others = [one for one in (*map(str, UserFile(word).paths[1:]), *settings.preludes) if is_file(folder, one)]
+        others = [path for path in (*map(str, UserFile(word).paths[1:]), *settings.preludes) if is_file(folder, path)]
         folders = [root for _, root in settings.roots if (folder / root).is_dir()]
         return list(dict.fromkeys([whole, *others, *folders]))
-    found = [value for setting in re.split(r":(?![\\/])", word) if is_file(folder, value := setting.partition("=")[2])]
+    files = [value for setting in re.split(r":(?![\\/])", word) if is_file(folder, value := setting.partition("=")[2])]
     # A chain is ENCODING/STORAGE+ENCODING.
     before, is_chain, then = word.rpartition(CHAIN)
     parts = (before.rpartition("/")[0], then) if is_chain else ()
-    return list(dict.fromkeys([*found, *(one for part in parts for one in files_in(part, folder))]))
+    return list(dict.fromkeys([*files, *(file for part in parts for file in files_in(part, folder))]))
 
 
 def is_file(folder: Path, text: str) -> bool:

@@ -41,9 +41,11 @@ def answered(key: str, command: Callable[[], int]) -> int:
             (errors.tell if is_error else say)(text)
         errors.tell(f"kept from {kept['date']}; --anew measures again")
         return kept["status"]
-    with errors.hearing() as said:
+    with errors.hearing() as messages:
         status = command()
-    cache.write(key, {"date": time.strftime("%Y-%m-%d %H:%M"), "status": status, "said": said, "files": _libraries()})
+    cache.write(
+        key, {"date": time.strftime("%Y-%m-%d %H:%M"), "status": status, "said": messages, "files": _libraries()}
+    )
     return status
 
 

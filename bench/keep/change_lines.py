@@ -49,9 +49,9 @@ def sentences(before: Done, after: Done, changes: Sequence[Row]) -> list[str]:
     groups: dict[str, list[Row]] = {}
     for change in changes:
         groups.setdefault(_subject(change["table"], change["keys"]), []).append(change)
-    said = [_sentence(name, counts[name], group) for name, group in groups.items()]
-    more = len(said) - SENTENCES
-    return said if more <= 0 else [*said[:SENTENCES], f"and {more} more of {len(counts)}"]
+    lines = [_sentence(name, counts[name], group) for name, group in groups.items()]
+    more = len(lines) - SENTENCES
+    return lines if more <= 0 else [*lines[:SENTENCES], f"and {more} more of {len(counts)}"]
 
 
 def _share_a_row(before: Done, after: Done) -> bool:
@@ -91,11 +91,11 @@ def _sentence(name: str, count: int, changes: Sequence[Row]) -> str:
     rows = rows_of(changes)
     verdicts = Counter(map(_verdict_word, rows))
     first, *others = (verdict for verdict in VERDICTS if verdicts[verdict])
-    said = [
+    phrases = [
         f"{first} in {_share_text(verdicts[first], count)}",
         *(f"{verdict} in {verdicts[verdict]}" for verdict in others),
     ]
-    return f"{name}: {', '.join(said)}{_figures_said(rows[0], name)}"
+    return f"{name}: {', '.join(phrases)}{_figures_said(rows[0], name)}"
 
 
 def _share_text(some: int, count: int) -> str:
@@ -107,8 +107,8 @@ def _figures_said(row: Sequence[Row], name: str) -> str:
     """Where a row is, and its figures in degrees and in decibels before and after; empty where none changed."""
     where = " ".join(row[0]["row"].replace(name, " ", 1).split())
     known = (f"{change['column']} {_before_and_after(change)}" for change in known_figures(row, UNITS))
-    said = ", ".join(known)
-    return f"; most in {row[0]['table']} {where}: {said}" if said else ""
+    figure_text = ", ".join(known)
+    return f"; most in {row[0]['table']} {where}: {figure_text}" if figure_text else ""
 
 
 def _before_and_after(change: Row) -> str:
@@ -163,17 +163,17 @@ def total(changes: Sequence[Row]) -> str:
     """How many rows and figures changed, and how many of the rows are worse, better, gone and so on."""
     rows = rows_of(changes)
     counts = Counter(map(_verdict_word, rows))
-    said = ", ".join(f"{_count_text(counts[verdict], 'row')} {verdict}" for verdict in VERDICTS if counts[verdict])
+    summary = ", ".join(f"{_count_text(counts[verdict], 'row')} {verdict}" for verdict in VERDICTS if counts[verdict])
     is_any_small = any(counts[verdict] for verdict in SLIGHTLY.values())
     note = f" (slightly: by less than {LITTLE})" if is_any_small else ""
-    return f"{_count_text(len(rows), 'row')}, {_count_text(_figure_count(changes), 'figure')}: {said}{note}"
+    return f"{_count_text(len(rows), 'row')}, {_count_text(_figure_count(changes), 'figure')}: {summary}{note}"
 
 
 def _verdict_word(row: Sequence[Row]) -> str:
     """One of VERDICTS of all that changed in a row."""
-    found = {SLIGHTLY[change["verdict"]] if is_small(change) else change["verdict"] for change in row}
-    found |= {NEW for change in row if presence(change) == ONLY[False]}
-    return next((verdict for verdict in VERDICTS if verdict in found), VERDICTS[-1])
+    verdicts = {SLIGHTLY[change["verdict"]] if is_small(change) else change["verdict"] for change in row}
+    verdicts |= {NEW for change in row if presence(change) == ONLY[False]}
+    return next((verdict for verdict in VERDICTS if verdict in verdicts), VERDICTS[-1])
 
 
 def _count_text(count: int, what: str) -> str:

@@ -21,10 +21,10 @@ def commit_of(named: str | None, folder: Path) -> Row:
     """
     if named:
         return {"name": named}
-    if not (said := _git(folder, "log", "-1", "--no-show-signature", "--format=%H%n%ct%n%s")):
+    if not (log := _git(folder, "log", "-1", "--no-show-signature", "--format=%H%n%ct%n%s")):
         return {}
     # A commit may have no message.
-    name, time, subject = (*said.split("\n", 2), "")[:3]
+    name, time, subject = (*log.split("\n", 2), "")[:3]
     # Of a clone that is not deep, the rank is the same for all.
     rank = _git(folder, "rev-list", "--count", f"--max-age={time}", "HEAD") or "0"
     about = {"name": name, "time": int(time), "rank": int(rank), "subject": subject.strip()}

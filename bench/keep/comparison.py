@@ -55,14 +55,14 @@ def _tables_and_rows(before: Done, after: Done) -> Iterator[tuple[Table, Mapping
 
 def measured_otherwise(before: Done, after: Done) -> list[str]:
     """The conditions under which rows of both runs were measured otherwise, in words; those of most rows first."""
-    found: Counter[tuple[str, Any, Any]] = Counter()
+    counts: Counter[tuple[str, Any, Any]] = Counter()
     for _, ours, theirs in _tables_and_rows(before, after):
         for row, other in ((row, theirs[key]) for key, row in ours.items() if key in theirs):
             known = [column for column in CONDITIONS if None not in (row.get(column), other.get(column))]
-            found.update((column, row[column], other[column]) for column in known if row[column] != other[column])
+            counts.update((column, row[column], other[column]) for column in known if row[column] != other[column])
     return [
-        f"{column} was {one} and is {other} in {count} row{'s' * (count > 1)}"
-        for (column, one, other), count in found.most_common()
+        f"{column} was {previous} and is {other} in {count} row{'s' * (count > 1)}"
+        for (column, previous, other), count in counts.most_common()
     ]
 
 
@@ -144,13 +144,13 @@ def named_rows(table: Table, rows: Sequence[Row]) -> dict[tuple[str, int], Row]:
 
 def in_turn(rows: Sequence[Row], name_of: Callable[[Row], T]) -> dict[tuple[T, int], Row]:
     """Rows by their names, and those of one name by their order."""
-    found: dict[tuple[T, int], Row] = {}
+    by_name: dict[tuple[T, int], Row] = {}
     counts: dict[T, int] = {}
     for row in rows:
         name = name_of(row)
-        found[name, counts.setdefault(name, 0)] = row
+        by_name[name, counts.setdefault(name, 0)] = row
         counts[name] += 1
-    return found
+    return by_name
 
 
 def row_changes(table: Table, ours: Mapping[Any, Row], theirs: Mapping[Any, Row], same_machine: bool) -> Iterator[Row]:
@@ -171,9 +171,9 @@ def _change_row(
     verdict = "worse" if severity > 0 else "better" if severity < 0 else ""
     keys = {c.name: row.get(c.name) for c in table.of_role(Role.KEY)}
     known = table.column(column) if column else None
-    made: Row = {"table": table.name, "row": called, "column": column, "before": before, "after": after}
-    made |= {"change": difference(before, after), "verdict": verdict, "severity": severity, "keys": keys}
-    return made | {"unit": known.unit if known else ""}
+    line: Row = {"table": table.name, "row": called, "column": column, "before": before, "after": after}
+    line |= {"change": difference(before, after), "verdict": verdict, "severity": severity, "keys": keys}
+    return line | {"unit": known.unit if known else ""}
 
 
 def _column_changes(table: Table, called: str, one: Row, other: Row, same_machine: bool) -> Iterator[Row]:

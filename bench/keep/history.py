@@ -61,20 +61,22 @@ class Series:
         """The columns of figures, times and speeds of which one way is better."""
         names = dict.fromkeys(name for _, row in self.rows for name in row)
         columns = ((name, self.table.column(name)) for name in names)
-        return [name for name, one in columns if one and one.better and one.role in (Role.FIGURE, Role.TIME)]
+        return [
+            name for name, column in columns if column and column.better and column.role in (Role.FIGURE, Role.TIME)
+        ]
 
     def values(self, column: str) -> list[tuple[int, Any]]:
         """A column's value, and the first run that has it so."""
-        return [(at, row.get(column)) for at, row in self.rows]
+        return [(run, row.get(column)) for run, row in self.rows]
 
     def over_all(self, column: str) -> list[tuple[int, Any]]:
         """A column's value in every run that has the row."""
-        found, rest = [], list(self.rows)
+        pairs, rest = [], list(self.rows)
         for run in self.runs:
             while len(rest) > 1 and rest[1][0] <= run:
                 rest.pop(0)
-            found.append((run, rest[0][1].get(column)))
-        return found
+            pairs.append((run, rest[0][1].get(column)))
+        return pairs
 
 
 @dataclass(frozen=True)
@@ -97,20 +99,20 @@ class Change:
 def series_of(runs: Sequence[Past]) -> list[Series]:
     """Each row over some runs in their order."""
     asked = [_asked_text(past) for past in runs]
-    found: dict[tuple[str, tuple[Called, int]], Series] = {}
+    by_key: dict[tuple[str, tuple[Called, int]], Series] = {}
     read = Rows()
-    for at, past in enumerate(runs):
+    for run_index, past in enumerate(runs):
         machine = json.dumps(past.done.facts.get("machine"), sort_keys=True)
         for table, rows in read.of(past):
             for key, row in rows.items():
-                if not (series := found.get((table.name, key))):
-                    series = found[table.name, key] = Series(table, key[0][0])
-                elif series.runs[-1] != at - 1:
-                    _close_gap(series, at, asked, at)
-                _add(series, at, row, machine)
-    for series in found.values():
+                if not (series := by_key.get((table.name, key))):
+                    series = by_key[table.name, key] = Series(table, key[0][0])
+                elif series.runs[-1] != run_index - 1:
+                    _close_gap(series, run_index, asked, run_index)
+                _add(series, run_index, row, machine)
+    for series in by_key.values():
         _close_gap(series, len(runs), asked, None)
-    return list(found.values())
+    return list(by_key.values())
 
 
 def _asked_text(past: Past) -> str:
@@ -173,20 +175,24 @@ def _clocks(table: Table, row: Row) -> Iterator[str]:
 
 def changes_of(series: Sequence[Series]) -> list[Change]:
     """What got worse, or better than it ever was, in any of some rows."""
-    tests = sum(len(times) - 1 for one in series for times in one.times.values())
-    return [change for one in series for change in (*_figures(one), *_gone(one), *_times(one, tests))]
+    tests = sum(len(times) - 1 for row_series in series for times in row_series.times.values())
+    return [
+        change
+        for row_series in series
+        for change in (*_figures(row_series), *_gone(row_series), *_times(row_series, tests))
+    ]
 
 
 def _figures(series: Series) -> Iterator[Change]:
     known: Row = {}
-    for (_, one), (at, other) in pairwise(series.rows):
+    for (_, row), (run, other) in pairwise(series.rows):
         # A figure that a run did not look for is that of the last run that did.
-        known |= {name: value for name, value in one.items() if value is not None or name in series.reasons}
+        known |= {name: value for name, value in row.items() if value is not None or name in series.reasons}
         for line in row_changes(series.table, {(series.called, 0): known}, {(series.called, 0): other}, False):
             name = line["column"]
-            column = series.table.column(name) if one.get(name) is not None or other.get(name) is not None else None
-            if line["verdict"] and column and _is_told(series, line, at, column):
-                yield Change(line, at, _mended_at(series, line, at, column), series)
+            column = series.table.column(name) if row.get(name) is not None or other.get(name) is not None else None
+            if line["verdict"] and column and _is_told(series, line, run, column):
+                yield Change(line, run, _mended_at(series, line, run, column), series)
 
 
 def _is_told(series: Series, line: Row, at: int, column: Column) -> bool:
@@ -208,10 +214,10 @@ def _mended_at(series: Series, line: Row, at: int, column: Column) -> int | None
 
 
 def _gone(series: Series) -> Iterator[Change]:
-    for lost, found in series.gaps:
-        row = [row for at, row in series.rows if at < lost][-1]
+    for lost, mended in series.gaps:
+        row = [row for run, row in series.rows if run < lost][-1]
         for line in row_changes(series.table, {(series.called, 0): row}, {}, same_machine=False):
-            yield Change(line, lost, found, series)
+            yield Change(line, lost, mended, series)
 
 
 def _times(series: Series, tests: int) -> Iterator[Change]:
@@ -222,7 +228,7 @@ def _times(series: Series, tests: int) -> Iterator[Change]:
         for number, begin in enumerate(begins, 1):
             before, after = middles[number - 1 : number + 1]
             line = time_change(series.table, series.rows[0][1], series.called, column, before, after)
-            later = (ends[at] for at in range(number + 1, len(middles)) if not _is_worse(line, middles[at]))
+            later = (ends[i] for i in range(number + 1, len(middles)) if not _is_worse(line, middles[i]))
             mended = next(later, None) if line["verdict"] == "worse" else None
             if line["verdict"] == "worse" or all(_is_better(line, middle) for middle in middles[:number]):
                 yield Change(line, times[begin][0], None if mended is None else times[mended][0], series)

@@ -60,8 +60,8 @@ def history_command(folders: Sequence[Path], wanted: Wanted, by: str, format: st
     everything = series_of(runs)
     series = _chosen(everything, wanted)
     columns, shown = _columns(series, wanted), set(map(id, series))
-    found = [change for change in changes_of(everything) if id(change.series) in shown]
-    changes = [change for change in found if not columns or change.line["column"] in columns]
+    all_changes = [change for change in changes_of(everything) if id(change.series) in shown]
+    changes = [change for change in all_changes if not columns or change.line["column"] in columns]
     groups = _groups(changes)
     figures = _figures(groups, series, columns)
     _tell_what_else(runs, groups)
@@ -86,16 +86,16 @@ def history_command(folders: Sequence[Path], wanted: Wanted, by: str, format: st
 
 def _chosen(series: Sequence[Series], wanted: Wanted) -> list[Series]:
     """The wanted rows. Raises UsageError for a name that no row has."""
-    found = list(series)
+    remaining = list(series)
     for what in ("tables", "encoding", "storage"):
         names: Names | None = getattr(wanted, what)
         if names:
-            known = dict.fromkeys(name for one in series if (name := _name(one, what)))
+            known = dict.fromkeys(name for row_series in series if (name := _name(row_series, what)))
             chosen = choose(what.removesuffix("s"), names, {str(name): name for name in known})
-            found = [one for one in found if _name(one, what) in chosen]
-    if not found:
+            remaining = [row_series for row_series in remaining if _name(row_series, what) in chosen]
+    if not remaining:
         raise UsageError("the runs have no row of these names together")
-    return found
+    return remaining
 
 
 def _name(series: Series, what: str) -> Any:
@@ -104,19 +104,19 @@ def _name(series: Series, what: str) -> Any:
 
 def _columns(series: Sequence[Series], wanted: Wanted) -> set[str]:
     """The names of the wanted columns; none for all. Raises UsageError for a name that no row has."""
-    known = dict.fromkeys(name for one in series for name in one.judged)
+    known = dict.fromkeys(name for row_series in series for name in row_series.judged)
     return set(choose("column", wanted.column, {name: name for name in known})) if wanted.column else set()
 
 
 def _groups(changes: Sequence[Change]) -> list[Group]:
     """Changes that were made at one commit and mended at one: what is worse first, then what was mended, the worst of
     each first."""
-    found: dict[tuple[str, int, int | None], list[Change]] = {}
+    by_commit: dict[tuple[str, int, int | None], list[Change]] = {}
     for change in changes:
         is_worse = change.line["verdict"] in ("worse", GONE)
         kind = BETTER if not is_worse else WORSE if change.mended is None else MENDED
-        found.setdefault((kind, change.at, change.mended), []).append(change)
-    groups = [Group(*key, _ranked(several)) for key, several in found.items()]
+        by_commit.setdefault((kind, change.at, change.mended), []).append(change)
+    groups = [Group(*key, _ranked(several)) for key, several in by_commit.items()]
     kinds = (WORSE, MENDED, BETTER)
     return sorted(groups, key=lambda group: (kinds.index(group.kind), rank_key(headline(group.lines)), group.at))
 
@@ -129,44 +129,44 @@ def _ranked(changes: Sequence[Change]) -> list[Change]:
 def _figures(groups: Sequence[Group], series: Sequence[Series], columns: set[str]) -> list[tuple[Series, str]]:
     """The figures that are shown over the runs: of each row that changed the one that says most, or those named."""
     if columns:
-        return [(one, name) for one in series for name in one.judged if name in columns]
-    found: dict[tuple[Any, ...], tuple[Series, str]] = {}
+        return [(shown_series, name) for shown_series in series for name in shown_series.judged if name in columns]
+    figures: dict[tuple[Any, ...], tuple[Series, str]] = {}
     for group in groups:
         for row in _by_series(group.changes):
-            line, one = headline([change.line for change in row]), row[0].series
+            line, row_series = headline([change.line for change in row]), row[0].series
             # Of rows that changed from the same to the same, the first.
-            alike = (one.table.name, group.at, group.mended, line["column"], line["before"], line["after"])
-            if line["column"] and (one, line["column"]) not in found.values():
-                found.setdefault(alike, (one, line["column"]))
-    return list(found.values())
+            alike = (row_series.table.name, group.at, group.mended, line["column"], line["before"], line["after"])
+            if line["column"] and (row_series, line["column"]) not in figures.values():
+                figures.setdefault(alike, (row_series, line["column"]))
+    return list(figures.values())
 
 
 def _by_series(changes: Sequence[Change]) -> list[list[Change]]:
-    found: dict[int, list[Change]] = {}
+    by_series: dict[int, list[Change]] = {}
     for change in changes:
-        found.setdefault(id(change.series), []).append(change)
-    return list(found.values())
+        by_series.setdefault(id(change.series), []).append(change)
+    return list(by_series.values())
 
 
 def _tell_what_else(runs: Sequence[Past], groups: Sequence[Group]) -> None:
     """On standard error, what else changed at the commits that are named."""
     apart = list(named_apart(runs))
-    for at in dict.fromkeys(group.at for group in groups):
-        if apart[at]:
-            tell(f"at {runs[at].name} something else changed too: {apart[at]}")
+    for index in dict.fromkeys(group.at for group in groups):
+        if apart[index]:
+            tell(f"at {runs[index].name} something else changed too: {apart[index]}")
 
 
 def _lead(runs: Sequence[Past], series: Sequence[Series], groups: Sequence[Group]) -> str:
     """The runs, what is not compared, and a sentence for each commit that made something worse."""
     first, last = runs[0], runs[-1]
-    said = [f"{len(runs)} run{'s' * (len(runs) > 1)}, from {_called(first)} to {_called(last)}"]
+    lines = [f"{len(runs)} run{'s' * (len(runs) > 1)}, from {_called(first)} to {_called(last)}"]
     others = len(series) - len({(each.table.name, each.called) for each in series})
-    said += [f"rows of other counts of normals are not compared: {others} rows"] if others else []
+    lines += [f"rows of other counts of normals are not compared: {others} rows"] if others else []
     worse = [group for group in groups if group.kind != BETTER]
-    said += [_sentence(runs, group) for group in worse[:SENTENCES]]
+    lines += [_sentence(runs, group) for group in worse[:SENTENCES]]
     more = len(worse) - SENTENCES
-    said += [f"and {more} more"] if more > 0 else []
-    return "\n".join(said if worse else [*said, "no figure got worse"])
+    lines += [f"and {more} more"] if more > 0 else []
+    return "\n".join(lines if worse else [*lines, "no figure got worse"])
 
 
 def _called(past: Past) -> str:
@@ -175,10 +175,10 @@ def _called(past: Past) -> str:
 
 def _sentence(runs: Sequence[Past], group: Group) -> str:
     before = max(run for run in group.changes[0].series.runs if run < group.at)
-    found = sentences(runs[before].done, runs[group.at].done, group.lines)
-    more = f"; and {len(found) - 1} more" if len(found) > 1 else ""
+    lines = sentences(runs[before].done, runs[group.at].done, group.lines)
+    more = f"; and {len(lines) - 1} more" if len(lines) > 1 else ""
     mended = f"; mended at {_called(runs[group.mended])}" if group.mended is not None else ""
-    return f"since {_called(runs[group.at])}: {found[0]}{more}{mended}"
+    return f"since {_called(runs[group.at])}: {lines[0]}{more}{mended}"
 
 
 def _lines(runs: Sequence[Past], groups: Sequence[Group]) -> list[Row]:
@@ -206,24 +206,24 @@ def _line(runs: Sequence[Past], change: Change) -> Row:
 
 
 def _about(past: Past) -> Row:
-    made = datetime.fromtimestamp(past.seconds, UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
-    return {"commit": past.full_name, "time": made, "subject": past.subject}
+    time_text = datetime.fromtimestamp(past.seconds, UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+    return {"commit": past.full_name, "time": time_text, "subject": past.subject}
 
 
 def _across(runs: Sequence[Past], figures: Sequence[tuple[Series, str]]) -> list[Row]:
     """A line for each run, and a column for each figure; lines that say what the one above says are left out."""
-    values = {f"{name} {one.called}": dict(one.over_all(name)) for one, name in figures[:MOST]}
-    made = [{called: found.get(at) for called, found in values.items()} for at in range(len(runs))]
-    kept = [at for at, row in enumerate(made) if at in (0, len(runs) - 1) or row != made[at - 1]]
-    return [{"commit": runs[at].name, "date": runs[at].day} | made[at] for at in kept] if figures else []
+    values = {f"{name} {row_series.called}": dict(row_series.over_all(name)) for row_series, name in figures[:MOST]}
+    rows = [{called: by_run.get(i) for called, by_run in values.items()} for i in range(len(runs))]
+    kept = [i for i, row in enumerate(rows) if i in (0, len(runs) - 1) or row != rows[i - 1]]
+    return [{"commit": runs[i].name, "date": runs[i].day} | rows[i] for i in kept] if figures else []
 
 
 def _long(runs: Sequence[Past], figures: Sequence[tuple[Series, str]]) -> list[Row]:
     """A line for each figure in each run."""
     return [
-        _about(runs[at]) | {"table": one.table.name, "row": one.called, "column": name, "value": value}
-        for one, name in figures
-        for at, value in one.over_all(name)
+        _about(runs[index]) | {"table": row_series.table.name, "row": row_series.called, "column": name, "value": value}
+        for row_series, name in figures
+        for index, value in row_series.over_all(name)
     ]
 
 

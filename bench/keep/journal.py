@@ -132,7 +132,7 @@ def _whole_lines(path: Path, content: bytes, known: dict[bytes, Line] | None = N
     """The lines that have their end: what was being written when the process was killed has none."""
     whole = content[: content.rfind(b"\n") + 1].split(b"\n")[:-1]
     # An editor may leave an empty line.
-    numbered = [(f"{path}, line {at}", line) for at, line in enumerate(whole, 1) if line.strip()]
+    numbered = [(f"{path}, line {number}", line) for number, line in enumerate(whole, 1) if line.strip()]
     if known is None:
         return [_parsed_line(place, line) for place, line in numbered]
     return [known.get(line) or known.setdefault(line, _parsed_line(place, line)) for place, line in numbered]
@@ -140,9 +140,9 @@ def _whole_lines(path: Path, content: bytes, known: dict[bytes, Line] | None = N
 
 def _parsed_line(place: str, line: bytes) -> Line:
     try:
-        found = json.loads(line)
+        record = json.loads(line)
     except (ValueError, RecursionError):
-        found = None
-    if not isinstance(found, dict):
+        record = None
+    if not isinstance(record, dict):
         raise UsageError(f"{place} was damaged: it is not a line of JSON; take it out to measure it again")
-    return found
+    return record

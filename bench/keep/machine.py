@@ -81,7 +81,7 @@ def _compiler_facts() -> dict[str, str]:
 
 def require_compilers() -> None:
     """Raises MissingError where a compiler of shaders is missing."""
-    missing = [said for said in _compiler_facts().values() if said in (spirv.NO_COMPILER, spirv.NO_OPTIMISER)]
+    missing = [fact for fact in _compiler_facts().values() if fact in (spirv.NO_COMPILER, spirv.NO_OPTIMISER)]
     if missing:
         raise MissingError("; ".join(missing))
 

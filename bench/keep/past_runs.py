@@ -64,8 +64,8 @@ def past_runs(folders: Sequence[Path]) -> list[Past]:
         UsageError: a folder has no run, or a run cannot be read.
     """
     shared = Shared()
-    found = dict.fromkeys(run for folder in folders for run in _run_folders(folder))
-    runs = sorted((_past(run, read_to_show(run, shared)) for run in found), key=lambda past: past.order)
+    run_folders = dict.fromkeys(run for folder in folders for run in _run_folders(folder))
+    runs = sorted((_past(run, read_to_show(run, shared)) for run in run_folders), key=lambda past: past.order)
     for past in runs:
         if not past.done.steps:
             leave_out(f"{past.name}: it has no rows")
@@ -106,8 +106,8 @@ def _seconds(text: str) -> float:
 def named_apart(runs: Sequence[Past]) -> Iterator[str]:
     """What sets the run before each apart from it, besides the commit: facts of the machine, and this program."""
     yield ""
-    for one, other in pairwise(runs):
-        there, here = (past.done.facts.get("machine") or {} for past in (one, other))
+    for previous, other in pairwise(runs):
+        there, here = (past.done.facts.get("machine") or {} for past in (previous, other))
         names = [name for name in dict.fromkeys([*there, *here]) if there.get(name) != here.get(name)]
-        is_another = one.done.facts.get("sources") != other.done.facts.get("sources")
+        is_another = previous.done.facts.get("sources") != other.done.facts.get("sources")
         yield ", ".join([*["normalbench"] * is_another, *(name for name in names if name != "normalbench")])

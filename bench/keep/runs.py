@@ -61,20 +61,20 @@ class Done:
     def tables(self) -> dict[str, list[Row]]:
         """The rows of each table that this version has, as they were measured. A row that was measured again replaces
         the older one."""
-        found: dict[str, list[Row]] = {}
+        by_table: dict[str, list[Row]] = {}
         last: dict[tuple[str, str], int] = {}
-        made: list[tuple[int, str, str, Row]] = []
-        for at, step in enumerate(self.steps):
+        numbered_rows: list[tuple[int, str, str, Row]] = []
+        for index, step in enumerate(self.steps):
             if (name := step["table"]) not in TABLES:
                 continue
-            found.setdefault(name, [])
+            by_table.setdefault(name, [])
             for identity, row in self.identified(step):
-                last[name, identity] = at
-                made.append((at, name, identity, row))
-        for at, name, identity, row in made:
-            if last[name, identity] == at:
-                found[name].append(row)
-        return found
+                last[name, identity] = index
+                numbered_rows.append((index, name, identity, row))
+        for index, name, identity, row in numbered_rows:
+            if last[name, identity] == index:
+                by_table[name].append(row)
+        return by_table
 
     def finished_rows(self, name: str) -> list[Row]:
         """The finished rows of a table, which this is the one place to finish; those that are asked for, once.
@@ -102,10 +102,10 @@ class Done:
     def finished(self) -> bool:
         """Whether every step has its rows, of every request that was made of the folder."""
         before = self.facts.get("before")
-        requests = [one for one in before if isinstance(one, dict)] if isinstance(before, list) else []
+        requests = [facts for facts in before if isinstance(facts, dict)] if isinstance(before, list) else []
         # The same request may have been made again since.
-        last = {json.dumps(one.get("request"), sort_keys=True): one for one in [*requests, self.facts]}
-        return all(one.get("finished") for one in last.values())
+        last = {json.dumps(facts.get("request"), sort_keys=True): facts for facts in [*requests, self.facts]}
+        return all(facts.get("finished") for facts in last.values())
 
 
 def facts_of(command: Sequence[str]) -> Row:
@@ -167,12 +167,12 @@ def _check_steps(folder: Path, lines: Sequence[Row], checked: set[int]) -> None:
     from .schema import Keys, check_step
 
     keys: Keys = {}
-    for at, line in enumerate(lines, 1):
+    for number, line in enumerate(lines, 1):
         if id(line) in checked:
             continue
         checked.add(id(line))
         try:
-            check_step(line, f"{folder / ROWS}, line {at}", keys)
+            check_step(line, f"{folder / ROWS}, line {number}", keys)
         except UsageError as error:
             raise UsageError(f"{error}; mend the line, or take it out, which measures it again") from None
 
@@ -239,7 +239,7 @@ class Run:
     def arrange(self, steps: Iterable[tuple[str, Step]]) -> None:
         """Put the rows in the order of a request's steps, each with its table: workers bring them in any. Rows of
         earlier requests stay in front; those of parts go once their step is whole. Raises UsageError."""
-        place = {key_text(table, step.key): at for at, (table, step) in enumerate(steps)}
+        place = {key_text(table, step.key): index for index, (table, step) in enumerate(steps)}
         # As they lie in the file, with those that were kept since it was opened.
         before = read_lines(self.folder / ROWS)
         whole = {key_text(line["table"], line["key"]) for line in before}
@@ -328,17 +328,17 @@ def same_work(facts: Row, others: Row) -> bool:
 def _other_place(facts: Row, others: Row) -> str:
     """What sets a run apart from one that is to be added to it: sources, or facts of the machine with both values;
     empty where nothing does."""
-    found = (
+    reasons = (
         [f"of other sources ({_there_and_here(facts, others, 'sources')})"]
         if _is_different(facts, others, "sources")
         else []
     )
-    there, here = (one.get("machine") or {} for one in (facts, others))
+    there, here = (run_facts.get("machine") or {} for run_facts in (facts, others))
     names = [name for name in {**there, **here} if _is_different(there, here, name)]
-    said = [f"{name} ({_there_and_here(there, here, name)})" for name in names[:MOST_FACTS]]
+    fact_texts = [f"{name} ({_there_and_here(there, here, name)})" for name in names[:MOST_FACTS]]
     more = [f"{len(names) - MOST_FACTS} more"] if len(names) > MOST_FACTS else []
-    found += [f"of another machine: {', '.join([*said, *more])}"] if names else []
-    return " and ".join(found)
+    reasons += [f"of another machine: {', '.join([*fact_texts, *more])}"] if names else []
+    return " and ".join(reasons)
 
 
 def _is_different(facts: Row, others: Row, name: str) -> bool:
@@ -346,13 +346,13 @@ def _is_different(facts: Row, others: Row, name: str) -> bool:
 
 
 def _there_and_here(facts: Row, others: Row, name: str) -> str:
-    there, here = (str(one.get(name, "nothing")) for one in (facts, others))
+    there, here = (str(run_facts.get(name, "nothing")) for run_facts in (facts, others))
     return f"{_short_text(there, here)} there, {_short_text(here, there)} here"
 
 
 def _short_text(text: str, other: str) -> str:
     """A text, where it is long a part of it: where it begins to be another than the other text."""
-    differing = (at for at, (one, another) in enumerate(zip(text, other, strict=False)) if one != another)
+    differing = (i for i, (letter, another) in enumerate(zip(text, other, strict=False)) if letter != another)
     apart = next(differing, min(len(text), len(other)))
     start = max(0, min(apart - SHORT // 4, len(text) - SHORT))
     end = start + SHORT
@@ -417,6 +417,6 @@ def _begun_facts(folder: Path, facts: Row) -> Row:
 def _extended_facts(folder: Path, kept: Row, facts: Row) -> Row:
     """The facts of a run that goes on with another request: what was asked before is remembered."""
     before = [*kept.get("before", ()), {name: kept.get(name) for name in ("request", "command", "time", "finished")}]
-    made = facts | {"before": before, "finished": False}
-    _write_facts(folder, made)
-    return made
+    new_facts = facts | {"before": before, "finished": False}
+    _write_facts(folder, new_facts)
+    return new_facts

@@ -35,13 +35,13 @@ def time_steps(times: Sequence[float], tests: int) -> list[int]:
 def _placed(times: Sequence[float], begins: Sequence[int]) -> list[int]:
     """Steps where each time is nearest to the median of its piece: ranks do not tell how far apart two times are."""
     placed = [0, *begins, len(times)]
-    for at in range(1, len(placed) - 1):
-        first, begin, end = placed[at - 1 : at + 2]
+    for index in range(1, len(placed) - 1):
+        first, begin, end = placed[index - 1 : index + 2]
         middles = median(times[first:begin]), median(times[begin:end])
         gains = [abs(time - middles[0]) - abs(time - middles[1]) for time in times[first:end]]
         sums = [0.0, *accumulate(gains)]
         inside = range(1, end - first)
-        placed[at] = first + min(inside, key=sums.__getitem__)
+        placed[index] = first + min(inside, key=sums.__getitem__)
     return placed[1:-1]
 
 

@@ -76,10 +76,10 @@ class Here:
 
     def measure(self, ask: Asked, steps: Sequence[Step], tick: Tick) -> Iterator[tuple[Step, list[Row]]]:
         """As every Place. Raises MissingError where the GL device was lost: that step's rows are not given."""
-        said = ", ".join(f"{name}={value}" for name, value in settings().items())
+        settings_text = ", ".join(f"{name}={value}" for name, value in settings().items())
         for step, rows in zip(steps, ask.table.work.measure(steps, tick), strict=True):
             require_living_device()
-            yield step, [_with_settings(ask.table, row, said) for row in rows]
+            yield step, [_with_settings(ask.table, row, settings_text) for row in rows]
 
 
 def _with_settings(table: Table, row: Row, said: str) -> Row:
@@ -121,8 +121,8 @@ def asked(table: Table, options: Any, outputs: Any = None) -> Asked:
 
         say_count_is_unused(options)
     # Files are fingerprinted once they were read, which refuses what is too large.
-    found = files_of(options)
-    return Asked(table, options, outputs, [_with_files(step, found) for step in steps])
+    fingerprints = files_of(options)
+    return Asked(table, options, outputs, [_with_files(step, fingerprints) for step in steps])
 
 
 def asked_together(table: Table, several: Sequence[Any], outputs: Any) -> Asked:
@@ -138,29 +138,29 @@ def _with_files(step: Step, found: Row) -> Step:
 
 def measured(ask: Asked, kept: Kept, place: Place = HERE) -> Measured:
     """The finished rows: those that are kept, and the others measured now and kept as they come."""
-    found = _measured_steps(ask, kept, place)
-    rows = ask.table.work.finish([row for rows in found for row in rows])
-    return Measured(ask.options, ask.outputs, ask.steps, rows, found)
+    step_rows = _measured_steps(ask, kept, place)
+    rows = ask.table.work.finish([row for rows in step_rows for row in rows])
+    return Measured(ask.options, ask.outputs, ask.steps, rows, step_rows)
 
 
 def _measured_steps(ask: Asked, kept: Kept, place: Place) -> list[list[Row]]:
     """The rows of each step, not finished yet."""
     name = ask.table.name
-    found = {id(step): kept.find(name, step) for step in ask.steps}
-    absent = [step for step in ask.steps if found[id(step)] is None]
-    found |= {id(part): kept.find(name, part) for step in absent for part in step.parts}
-    missing = [one for one in _in_parts(absent) if found.get(id(one)) is None]
-    there = sum(step.ticks for step in ask.steps if found[id(step)] is not None)
+    rows_by_id = {id(step): kept.find(name, step) for step in ask.steps}
+    absent = [step for step in ask.steps if rows_by_id[id(step)] is None]
+    rows_by_id |= {id(part): kept.find(name, part) for step in absent for part in step.parts}
+    missing = [part for part in _in_parts(absent) if rows_by_id.get(id(part)) is None]
+    there = sum(step.ticks for step in ask.steps if rows_by_id[id(step)] is not None)
     ticks, begun = sum(step.ticks for step in missing), time.monotonic()
     with progress(ticks, name, there) as tick:
         for step, rows in place.measure(ask, missing, tick):
-            found[id(step)] = kept.keep(name, step, rows)
+            rows_by_id[id(step)] = kept.keep(name, step, rows)
     durations.keep(ask, ticks, time.monotonic() - begun)
     for step in absent:
         if step.parts:
-            rows = [row for part in step.parts for row in found[id(part)] or []]
-            found[id(step)] = kept.keep(name, step, ask.table.work.merge(step, rows))
-    return [found[id(step)] or [] for step in ask.steps]
+            rows = [row for part in step.parts for row in rows_by_id[id(part)] or []]
+            rows_by_id[id(step)] = kept.keep(name, step, ask.table.work.merge(step, rows))
+    return [rows_by_id[id(step)] or [] for step in ask.steps]
 
 
 def _in_parts(steps: Sequence[Step]) -> Iterator[Step]:
@@ -184,8 +184,8 @@ def files_of(options: Any) -> Row:
     digests = sorted(filter(None, map(_fingerprint, words)))
     reading = fields_of(Reading).values() if isinstance(options, Reading) else ()
     values = {field: getattr(options, field.name) for field in reading if not field.option.files}
-    said = {field.name: value for field, value in values.items() if value != field.default}
-    return ({"files": digests} | ({"read": said} if said else {})) if digests else {}
+    overrides = {field.name: value for field, value in values.items() if value != field.default}
+    return ({"files": digests} | ({"read": overrides} if overrides else {})) if digests else {}
 
 
 def words_of(options: Any) -> dict[str, list[str]]:
@@ -239,7 +239,7 @@ def _parts_of_gltf(path: Path) -> list[Path]:
         named = [checked_address(path, part["uri"], "its parts") for part in parts if "uri" in part]
     except (ValueError, TypeError, AttributeError, KeyError):
         return []
-    return [path.parent / os.path.relpath(one, path.parent.resolve()) for one in named if one and one.is_file()]
+    return [path.parent / os.path.relpath(file, path.parent.resolve()) for file in named if file and file.is_file()]
 
 
 def _files_of_frame(path: Path) -> list[Path]:
@@ -255,7 +255,7 @@ def _files_of_layout(path: Path) -> list[Path]:
     # It imports JAX, which start-up does without.
     from ..subjects.codecs.layout_names import files_of_layout
 
-    return [one for file in files_of_layout(path) for one in (file, *companions(file))]
+    return [source for file in files_of_layout(path) for source in (file, *companions(file))]
 
 
 def _included(word: str | Path) -> list[Path]:
@@ -299,8 +299,8 @@ def _checked(kept: Journal) -> list[Row]:
     if lines := kept.lines[1:]:
         from ..keep.schema import check_kept
 
-        for at, line in enumerate(lines, 2):
-            check_kept(line, f"{kept.path}, line {at}")
+        for number, line in enumerate(lines, 2):
+            check_kept(line, f"{kept.path}, line {number}")
     return lines
 
 

@@ -20,5 +20,5 @@ def judged_text(text: str, language: str, source: Source | None = None) -> Text:
     try:
         return judged(whole, language)
     except RefusedError as error:
-        said = f"0:{error.line}: {error.why}"
-        raise ShaderError(source.explain(said) if source else said) from error
+        message = f"0:{error.line}: {error.why}"
+        raise ShaderError(source.explain(message) if source else message) from error

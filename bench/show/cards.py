@@ -37,9 +37,13 @@ def about_codecs(sections: Sequence[TableSection]) -> dict[str, Any]:
     encodings = [
         ENCODINGS[name] for name in dict.fromkeys(str(row.get("encoding")) for row in rows) if name in ENCODINGS
     ]
-    codecs = {key.label: made for key in keys if (made := _codec_record(key))}
+    codecs = {key.label: record for key in keys if (record := _codec_record(key))}
     takes = {section.key: [o for o in OPTIONS if _takes(section.key, o)] for section in shown}
-    return {"encodings": {one.name: _encoding_record(one) for one in encodings}, "codecs": codecs, "takes": takes}
+    return {
+        "encodings": {encoding.name: _encoding_record(encoding) for encoding in encodings},
+        "codecs": codecs,
+        "takes": takes,
+    }
 
 
 def _is_of_normals(section: TableSection) -> bool:
@@ -79,7 +83,7 @@ def codec_of(key: CodecKey) -> Codec | None:
 
 def _encoding_record(encoding: Encoding) -> dict[str, Any]:
     module = sys.modules.get(getattr(encoding.encode, "__module__", ""))
-    made = {
+    record = {
         "title": encoding.title,
         "says": _first_sentence(module),
         "domain": DOMAINS.get(encoding.domain, encoding.domain),
@@ -90,7 +94,7 @@ def _encoding_record(encoding: Encoding) -> dict[str, Any]:
         "tables": bool(encoding.tables()) if encoding.tables is not dict else False,
         "used": list(dict.fromkeys(_engines(encoding))),
     }
-    return made | {what: _formula(encoding, what) for what in ("encode", "decode")}
+    return record | {what: _formula(encoding, what) for what in ("encode", "decode")}
 
 
 def _first_sentence(documented: Any) -> str:
@@ -102,8 +106,8 @@ def _first_sentence(documented: Any) -> str:
 def _formula(encoding: Encoding, what: str) -> list[str]:
     """Return the lines of a function's formula: the first sentence of its docstring, then the comments of its GLSL."""
     source = encoding.glsl.read_text(encoding="utf-8")
-    found = re.search(BODY.format(name=f"{encoding.prefix}_{what}"), source, re.MULTILINE | re.DOTALL)
-    comments = (COMMENT.fullmatch(line) for line in (found[1] if found else "").splitlines())
+    match = re.search(BODY.format(name=f"{encoding.prefix}_{what}"), source, re.MULTILINE | re.DOTALL)
+    comments = (COMMENT.fullmatch(line) for line in (match[1] if match else "").splitlines())
     return [_first_sentence(getattr(encoding, what)), *(comment[1] for comment in comments if comment)]
 
 

@@ -31,38 +31,40 @@ def import_command(files: Sequence[Path], folder: Path | None) -> int:
     """
     if folder is None:
         raise UsageError("name the run's folder with -o RUN")
-    found = devices(read_all(checked_number(list(files))))
+    candidates = devices(read_all(checked_number(list(files))))
     with amended(folder) as run:
         there = {_identity(line): line["key"] for line in run.lines if _is_ours(line)}
-        new = [one for one in found if _is_newer(one.file, there.get(one.file.identity))]
+        new = [candidate for candidate in candidates if _is_newer(candidate.file, there.get(candidate.file.identity))]
         if new:
             run.replace(_with(run.lines, new))
         # Also where nothing is new: an earlier import may have been ended before it wrote them.
         done = read_run(folder)
         write_tables(folder, done, [TABLE.name] if TABLE.name in done.tables else [])
-    names = told_apart([*(str(renderer) for renderer, _ in there), *(one.file.renderer for one in found)])
-    for one in found:
-        called = replace(one, name=names[one.file.renderer]).called
-        if one in new and run.sources not in ("", one.file.sources):
+    names = told_apart(
+        [*(str(renderer) for renderer, _ in there), *(candidate.file.renderer for candidate in candidates)]
+    )
+    for device in candidates:
+        called = replace(device, name=names[device.file.renderer]).called
+        if device in new and run.sources not in ("", device.file.sources):
             tell(f"{called}: measured on the page of a run of other sources, whose codes may differ from this run's")
-        say(f"{called}: {_said(one.file, there.get(one.file.identity))}\n")
+        say(f"{called}: {_said(device.file, there.get(device.file.identity))}\n")
     say(f"The page with them: normalbench report {folder}\n")
     return 0
 
 
 def read_all(paths: Sequence[Path]) -> list[Read]:
     """Device files. Raises UsageError where one is wrong, once every one that is wrong was told."""
-    found, wrong = list[Read](), list[UsageError]()
+    reads, wrong = list[Read](), list[UsageError]()
     for path in paths:
         try:
-            found.append(read_device_file(path))
+            reads.append(read_device_file(path))
         except UsageError as error:
             wrong.append(error)
     for error in wrong[:-1]:
         tell(str(error))
     if wrong:
         raise wrong[-1]
-    return found
+    return reads
 
 
 def _is_ours(line: Row) -> bool:
@@ -93,16 +95,16 @@ def _said(file: DeviceFile, there: Mapping[str, Any] | None) -> str:
 
 def _with(lines: Sequence[Row], new: Sequence[Device]) -> list[Row]:
     """The steps of a run with those of new devices, in place of older ones of the same devices and browsers."""
-    replaced = {one.file.identity for one in new}
+    replaced = {device.file.identity for device in new}
     kept = [line for line in lines if not (_is_ours(line) and _identity(line) in replaced)]
-    return list(_renamed([*kept, *(line for one in new for line in _lines(one))]))
+    return list(_renamed([*kept, *(line for device in new for line in _lines(device))]))
 
 
 def _lines(one: Device) -> Iterator[Row]:
     for row_of in (CODEC, FACT):
-        made = plain([TABLE.empty() | row for row in rows_of(one, row_of)])
-        if made:
-            yield {"table": TABLE.name, "key": one.key(row_of), "rows": made}
+        rows = plain([TABLE.empty() | row for row in rows_of(one, row_of)])
+        if rows:
+            yield {"table": TABLE.name, "key": one.key(row_of), "rows": rows}
 
 
 def _renamed(lines: Sequence[Row]) -> Iterator[Row]:

@@ -79,12 +79,12 @@ def write_code(folder: Path, languages: Mapping[str, str], codecs: Mapping[str, 
         codecs: by label.
     """
     shared = Shared()
-    made = {
-        label: {**one._asdict(), "texts": {name: shared.places(text) for name, text in one.texts.items()}}
-        for label, one in codecs.items()
+    records = {
+        label: {**written._asdict(), "texts": {name: shared.places(text) for name, text in written.texts.items()}}
+        for label, written in codecs.items()
     }
     with whole_file(folder / FILE) as partial:
-        kept = {"languages": dict(languages), "pieces": shared.pieces, "codecs": made}
+        kept = {"languages": dict(languages), "pieces": shared.pieces, "codecs": records}
         partial.write_text(json.dumps(kept, separators=(",", ":")), encoding="utf-8", newline="\n")
 
 
@@ -94,5 +94,5 @@ def read_code(folder: Path) -> dict[str, Any]:
         kept = KEPT.validate_python(parsed_json(file_bytes(folder / FILE, MOST_BYTES)))
     except (OSError, ValueError, ValidationError):
         return {}
-    texts = (places for one in kept["codecs"].values() for places in one["texts"].values())
-    return kept if all(at < len(kept["pieces"]) for places in texts for at in places) else {}
+    texts = (places for codec in kept["codecs"].values() for places in codec["texts"].values())
+    return kept if all(place < len(kept["pieces"]) for places in texts for place in places) else {}

@@ -101,9 +101,9 @@ def write_report(
     check_writable(target)
     pictures = f"{target.stem}-{PICTURES}" if pictures_beside else ""
     beside = target.parent / charts if charts else None
-    for one in (beside, target.parent / pictures):
-        if one:
-            check_folder(one)
+    for side_folder in (beside, target.parent / pictures):
+        if side_folder:
+            check_folder(side_folder)
     run, gallery, specs = drawn_page(gathered(folder, done, name), beside, pictures, most_charts)
     _write_beside(target.parent / pictures, gallery.files)
     with whole_file(target) as partial:
@@ -161,10 +161,10 @@ def _drawn(run: Found, folder: Path | None, most: int | None) -> tuple[dict[str,
             if folder and (most is None or number < most):
                 _write_chart(drawing, folder)
             if drawing.spec:
-                made = drawing.spec()
+                spec = drawing.spec()
                 # A browser reads no infinity.
-                json.dumps(made, allow_nan=False)
-                specs[drawing.name] = made
+                json.dumps(spec, allow_nan=False)
+                specs[drawing.name] = spec
         except UNEXPECTED as error:
             failed.append(f"The chart {drawing.name!r} cannot be drawn from these rows: {type(error).__name__}.")
     return specs, failed
@@ -184,10 +184,10 @@ def gathered(folder: Path, done: Done, name: str = "") -> Found:
     # In the order of the page, whichever was measured first.
     tables = {name: done.tables[name] for name in TABLES if name in done.tables}
     facts = done.facts
-    remarks = [f"{plain_text(said)}." for said in (done.damage, done.left_out) if said]
+    remarks = [f"{plain_text(remark)}." for remark in (done.damage, done.left_out) if remark]
     if facts.get("sources") != sources():
         remarks.append(f"{_other_version(facts)} Measure it again: {_command(facts)}.")
-    found = Found(
+    run = Found(
         name=str(plain_text(name or folder.resolve().name)),
         facts=facts,
         tables=tables,
@@ -201,8 +201,8 @@ def gathered(folder: Path, done: Done, name: str = "") -> Found:
     )
     asked = _asked(facts)
     shown = [table for table in TABLES.values() if table.name in tables or table.name in asked]
-    sections = answered_first([_section(folder, found, done, table, remarks) for table in shown])
-    return replace(found, sections=sections, cards=about_codecs(sections), code=_clean_code(read_code(folder)))
+    sections = answered_first([_section(folder, run, done, table, remarks) for table in shown])
+    return replace(run, sections=sections, cards=about_codecs(sections), code=_clean_code(read_code(folder)))
 
 
 def _other_version(facts: Row) -> str:
@@ -273,11 +273,11 @@ def _finished(done: Done, table: Table) -> Sequence[Row]:
 def _films(folder: Path, table: Table, rows: Sequence[Row], remarks: list[str]) -> list[tuple[str, str]]:
     """A table's animations that are there, as a page holds them."""
     try:
-        made = list(table.work.films(folder / table.files["images"], rows)) if "images" in table.files else []
+        films = list(table.work.films(folder / table.files["images"], rows)) if "images" in table.files else []
     except UNEXPECTED as error:
         remarks.append(f"The animations of {table.name} cannot be found from these rows: {type(error).__name__}.")
         return []
-    return [(film.said, uri) for film in made if (uri := film_uri(film.path))]
+    return [(film.said, uri) for film in films if (uri := film_uri(film.path))]
 
 
 def _clean(rows: Sequence[Row]) -> list[Row]:
@@ -293,20 +293,23 @@ def _flat(value: Any) -> Any:
 def _command(facts: Row) -> str:
     """How a run was measured, as it is typed into another folder."""
     words = [str(word) for word in facts.get("command") or ("run",)]
-    at = next((at for at, word in enumerate(words) if word in ("-o", "--output")), len(words))
-    return command_line(["normalbench", *words[:at], *words[at + 2 :]])
+    output_index = next((i for i, word in enumerate(words) if word in ("-o", "--output")), len(words))
+    return command_line(["normalbench", *words[:output_index], *words[output_index + 2 :]])
 
 
 def _asked(facts: Row) -> set[str]:
     """The tables that a run was asked for, at any time."""
     before = facts.get("before")
-    requests = [facts.get("request"), *(one.get("request") for one in before or () if isinstance(one, dict))]
-    found: set[str] = set()
+    requests = [
+        facts.get("request"),
+        *(earlier.get("request") for earlier in before or () if isinstance(earlier, dict)),
+    ]
+    asked: set[str] = set()
     for request in (request for request in requests if isinstance(request, dict)):
         words = {*(request.get("tables") or ())}
-        found |= words & TABLES.keys()
-        found |= {table.name for table in TABLES.values() if "all" in words and table.is_in_all(request)}
-    return found
+        asked |= words & TABLES.keys()
+        asked |= {table.name for table in TABLES.values() if "all" in words and table.is_in_all(request)}
+    return asked
 
 
 def _subjects(folder: Path, done: Done, names: Iterable[str], remarks: list[str]) -> Iterator[Subject]:
@@ -322,13 +325,13 @@ def _subjects(folder: Path, done: Done, names: Iterable[str], remarks: list[str]
 
 def _extras(folder: Path, tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> dict[str, Any]:
     """Find what tables show beside their rows, by attributes of `found.Found`."""
-    found: dict[str, Any] = {}
+    extras: dict[str, Any] = {}
     for name in tables:
         try:
-            found |= TABLES[name].work.extras(folder, tables, remarks)
+            extras |= TABLES[name].work.extras(folder, tables, remarks)
         except UNEXPECTED as error:
             remarks.append(f"The extras of {name} cannot be found from these rows: {type(error).__name__}.")
-    return found
+    return extras
 
 
 def _live(folder: Path) -> Live | None:

@@ -90,8 +90,8 @@ def _said(sheet: Sheet, width: int) -> str:
         return ""
     first, *rest = (*sheet.said, *sheet.aside)
     wide = min(width, SENTENCE_WIDTH)
-    made = (textwrap.fill(said, wide, initial_indent="- ", subsequent_indent="  ") for said in rest)
-    return "\n".join([textwrap.fill(first, wide), *made]) + "\n\n"
+    bullets = (textwrap.fill(paragraph, wide, initial_indent="- ", subsequent_indent="  ") for paragraph in rest)
+    return "\n".join([textwrap.fill(first, wide), *bullets]) + "\n\n"
 
 
 def with_verdict(table: Table, rows: Sequence[Row], sheets: Iterable[Sheet]) -> Iterator[Sheet]:
@@ -129,7 +129,7 @@ def say_skipped(table: Table, rows: Sequence[Row], known: Iterable[str] = ()) ->
         UsageError: no row has any.
     """
     reasons = dict.fromkeys(row["skipped"] for row in rows if row.get("skipped"))
-    told = [reason for reason in reasons if not any(one in reason for one in known)]
+    told = [reason for reason in reasons if not any(phrase in reason for phrase in known)]
     if told and not table.partial and all(row.get("skipped") for row in rows):
         raise UsageError(told[0])
     for reason in told:
@@ -161,7 +161,7 @@ def _has_figures(table: Table, row: Row) -> bool:
 
 def say_lines(lines: Iterable[str]) -> bool:
     """Lines to standard error; whether there are any."""
-    said = [" ".join(line.split()) for line in lines]
-    for line in said:
+    sentences = [" ".join(line.split()) for line in lines]
+    for line in sentences:
         tell(f"{line}")
-    return bool(said)
+    return bool(sentences)

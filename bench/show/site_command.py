@@ -43,14 +43,17 @@ def site_command(folders: Sequence[Path], output: Path) -> int:
     Raises:
         UsageError: several folders are runs, there is no device file, or the site cannot be written.
     """
-    runs, others = [one for one in folders if _is_run(one)], [one for one in folders if not _is_run(one)]
+    runs, others = (
+        [folder for folder in folders if _is_run(folder)],
+        [folder for folder in folders if not _is_run(folder)],
+    )
     if len(runs) > 1:
         raise UsageError(f"{runs[0]} and {runs[1]} are both runs; a site is of one")
     run = read_to_show(runs[0]) if runs else None
-    found, wrong = _devices_in(others, reads_of_rows(run.tables.get(TABLE.name, []), runs[0]) if run else [])
-    made = _pages_of_run(runs[0], run, found) if run else pages(found)
-    write_site(output, made)
-    say(f"{output / INDEX}: {_counted(made, found, bool(runs))}\n")
+    site_devices, wrong = _devices_in(others, reads_of_rows(run.tables.get(TABLE.name, []), runs[0]) if run else [])
+    html_pages = _pages_of_run(runs[0], run, site_devices) if run else pages(site_devices)
+    write_site(output, html_pages)
+    say(f"{output / INDEX}: {_counted(html_pages, site_devices, bool(runs))}\n")
     return int(wrong > 0)
 
 
@@ -76,21 +79,21 @@ def _files_in(folder: Path) -> list[Path]:
     """Every *.json in a folder and its folders. Raises UsageError."""
     if not folder.is_dir():
         raise UsageError(f"{folder}: there is no such folder" if not folder.exists() else f"{folder} is not a folder")
-    found = [Path(root) / name for root, _, names in os.walk(folder) for name in names if name.endswith(".json")]
+    paths = [Path(root) / name for root, _, names in os.walk(folder) for name in names if name.endswith(".json")]
     # A site may lie among them, with its marker.
-    return sorted(path for path in found if not path.name.startswith("."))
+    return sorted(path for path in paths if not path.name.startswith("."))
 
 
 def _device_files(paths: list[Path]) -> tuple[list[Read], int]:
     """The files that are devices', and how many are not, each of which is told."""
-    found, wrong = [], 0
+    reads, wrong = [], 0
     for path in paths:
         try:
-            found.append(read_device_file(path))
+            reads.append(read_device_file(path))
         except UsageError as error:
             wrong += 1
             tell(f"{error}; it is left out")
-    return found, wrong
+    return reads, wrong
 
 
 def _pages_of_run(folder: Path, done: Done, found: Sequence[Device]) -> dict[str, str]:
@@ -98,29 +101,31 @@ def _pages_of_run(folder: Path, done: Done, found: Sequence[Device]) -> dict[str
     run, gallery, specs = drawn_page(gathered(folder, done))
     names = page.codecs(run, specs)
     views, devices_there = _views(run), f"{FOLDER}/{INDEX}"
-    titles = {one.path: one.title for one in views} | ({CODECS: ENCODINGS} if names else {}) | {devices_there: DEVICES}
+    titles = (
+        {view.path: view.title for view in views} | ({CODECS: ENCODINGS} if names else {}) | {devices_there: DEVICES}
+    )
     home = page.Home(TITLE, DESCRIPTION, list(titles.items()))
     site = Site({INDEX: LABORATORY} | titles, devices_there, f"{INDEX}#live" if run.live else "")
-    made = {INDEX: page.html(run, gallery, specs, library_of(specs), home=home)}
-    made |= {one.path: view_html(one, site) for one in views}
-    return made | codec_pages(run, names, site, INDEX) | pages(found, site)
+    html_pages = {INDEX: page.html(run, gallery, specs, library_of(specs), home=home)}
+    html_pages |= {view.path: view_html(view, site) for view in views}
+    return html_pages | codec_pages(run, names, site, INDEX) | pages(found, site)
 
 
 def _views(run: Found) -> list[ViewPage]:
     """The views whose text and tables a reader without scripts finds, less those that the run has nothing of."""
     choose, layouts = _parts(run, View.CHOOSE), _parts(run, View.LAYOUTS)
-    made = []
+    views = []
     if choose:
         about = "The encoding of normals to take for each storage, its error in degrees and its price in issue slots."
         link = (f"{INDEX}#v1/{View.CHOOSE}", "Ask something else, and see charts and pictures")
         question = "Which encoding of normals should I take?"
-        made.append(ViewPage(CHOOSE, "What to take", about, question, _answer(choose), link, choose))
+        views.append(ViewPage(CHOOSE, "What to take", about, question, _answer(choose), link, choose))
     if layouts:
         about = "What the image loses when normals and the rest of the G-buffer are stored in few bits."
         link = (f"{INDEX}#v1/{View.LAYOUTS}", "See the charts")
         question = "What does the image lose to the layout of the G-buffer?"
-        made.append(ViewPage(LAYOUTS, "Layouts", about, question, _answer(layouts), link, layouts))
-    return made
+        views.append(ViewPage(LAYOUTS, "Layouts", about, question, _answer(layouts), link, layouts))
+    return views
 
 
 def _answer(parts: Sequence[page.PageSection]) -> str:

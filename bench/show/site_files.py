@@ -58,10 +58,10 @@ def _files_before(folder: Path) -> list[str]:
         if not all(isinstance(name, str) and OWN.fullmatch(name) for name in files):
             raise ValueError("it lists what no site has")
     except (OSError, ValueError, TypeError, KeyError) as error:
-        said = (
+        reason = (
             error if isinstance(error, OSError | ValueError) and not isinstance(error, KeyError) else "files is missing"
         )
-        raise UsageError(f"{folder / MARKER}: {said}; delete it, or name another folder") from None
+        raise UsageError(f"{folder / MARKER}: {reason}; delete it, or name another folder") from None
     return files
 
 

@@ -26,11 +26,11 @@ def with_codecs(chosen: Iterable[Layout], codecs: Sequence[Codec], complaints: l
     for encoding in dict.fromkeys(codec.encoding for codec in codecs):
         check_twin(encoding)
     complaints += by_reason((codec.name, codec.misfit) for codec in codecs if not codec.fits)
-    made: list[Layout] = []
+    layouts: list[Layout] = []
     for layout in chosen:
         for codec in (codec for codec in codecs if codec.fits):
-            attempt(lambda layout=layout, codec=codec: layout.with_codec(codec), made, complaints)
-    return made
+            attempt(lambda layout=layout, codec=codec: layout.with_codec(codec), layouts, complaints)
+    return layouts
 
 
 def suited(
@@ -41,7 +41,7 @@ def suited(
     Args:
         is_metal_rough: whether the scene's materials are.
     """
-    made: dict[Plan, None] = {}
+    suited_plans: dict[Plan, None] = {}
     for plan in plans:
         own = replace(plan, scale=plan.scale if pipeline.scaled else 1.0)
         if not is_metal_rough:
@@ -56,8 +56,8 @@ def suited(
         except LayoutError as error:
             complaints.append(str(error))
         else:
-            made[own] = None
-    return list(made)
+            suited_plans[own] = None
+    return list(suited_plans)
 
 
 def attempt(make: Callable[[], T], made: list[T], complaints: list[str]) -> None:

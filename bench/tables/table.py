@@ -281,8 +281,8 @@ class Table:
 
     def drops(self, rows: Sequence[Row]) -> tuple[str, ...]:
         """The columns of rows that a narrow terminal leaves out, the first first."""
-        found = {name: column.drops for name in (rows[0] if rows else ()) if (column := self.column(name))}
-        return tuple(sorted((name for name, at in found.items() if at), key=lambda name: found[name]))
+        ranks = {name: column.drops for name in (rows[0] if rows else ()) if (column := self.column(name))}
+        return tuple(sorted((name for name, rank in ranks.items() if rank), key=lambda name: ranks[name]))
 
     def without_hidden(self, rows: Iterable[Row]) -> list[Row]:
         """Rows less the columns that are not for people."""

@@ -213,9 +213,9 @@ class Encoding:
     def with_parameters(self, values: Mapping[str, float]) -> Encoding:
         """The encoding with other values for some of its parameters, in both languages, under a name that says them."""
         macros = {p.constant: values[p.name] for p in self.parameters if p.name in values}
-        said = "".join(f":{name}={value:.9g}" for name, value in values.items())
-        made = replace(self, constants={**self.constants, **macros})
-        return made._variant(said, **values)
+        suffix = "".join(f":{name}={value:.9g}" for name, value in values.items())
+        encoding = replace(self, constants={**self.constants, **macros})
+        return encoding._variant(suffix, **values)
 
     def turned(self, axis: str, sign: int, said: str = "") -> Encoding:
         """The encoding of directions in other axes, in both languages, its name followed by `said`.
@@ -233,8 +233,8 @@ class Encoding:
         def turned_decode(e: Any, view: Vec3) -> Vec3:
             return _reordered_axes(decode(e, _reordered_axes(view, order) * sign), back) * sign
 
-        made = replace(self, encode=turned_encode, decode=turned_decode, axis=axis, sign=sign)
-        return made._variant(said)
+        encoding = replace(self, encode=turned_encode, decode=turned_decode, axis=axis, sign=sign)
+        return encoding._variant(said)
 
     def in_half(self, said: str) -> Encoding:
         """The encoding computed in floats of 16 bits, by the same code, named after `said`."""
@@ -270,9 +270,9 @@ class Encoding:
         """The encoding with another look-up table, float32 of the published one's shape, named after `said`."""
         assert self.look_up
         tables = {**self.tables(), self.look_up.sampler: table}
-        made = replace(self, tables=lambda: tables)._variant(f":table={said}")
+        encoding = replace(self, tables=lambda: tables)._variant(f":table={said}")
         encode: Callable[..., Any] = self.encode
-        return replace(made, encode=partial(encode, table=table))
+        return replace(encoding, encode=partial(encode, table=table))
 
     def _variant(self, said: str, **values: float) -> Encoding:
         encode, decode = (partial(function, **values) for function in (self.encode, self.decode))

@@ -67,10 +67,10 @@ def file_bytes(path: Path, most: int) -> bytes:
 def _bytes(path: Path, most: int) -> bytes:
     # Without O_NONBLOCK, opening a pipe waits for whoever writes to it.
     with os.fdopen(os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0)), "rb") as file:
-        found = os.fstat(file.fileno())
-        if not stat.S_ISREG(found.st_mode):
+        status = os.fstat(file.fileno())
+        if not stat.S_ISREG(status.st_mode):
             raise OSError(errno.EINVAL, NOT_PLAIN)
-        data = file.read(min(found.st_size, most) + 1)
+        data = file.read(min(status.st_size, most) + 1)
     if len(data) > most:
         raise OSError(errno.EFBIG, f"it is larger than {most >> 20} MiB")
     if data.startswith(LFS):

@@ -57,9 +57,9 @@ def variant(encoding: Encoding, values: Mapping[str, str]) -> Encoding:
     _check("arithmetic", arithmetic, ARITHMETICS)
     own = [key for key in values if key in encoding.published]
     numbers = {key: _checked_number(encoding, key, values[key]) for key in own}
-    made = encoding.with_parameters(numbers) if numbers else encoding
-    made = _turned_encoding(made, turns) if turns else made
-    return in_half(made) if arithmetic == HALF else made
+    varied = encoding.with_parameters(numbers) if numbers else encoding
+    varied = _turned_encoding(varied, turns) if turns else varied
+    return in_half(varied) if arithmetic == HALF else varied
 
 
 def in_half(encoding: Encoding) -> Encoding:

@@ -74,9 +74,12 @@ DEPTH_STORAGES: Mapping[str, DepthStorage] = MappingProxyType(
 
 def depth_storage_of(storage: Storage) -> DepthStorage | None:
     """The storage of a depth that bits name, `unorm:20` or `float:5:10`; None of what holds no depth by itself."""
-    alike = (one for one in DEPTH_STORAGES.values() if one.home == "channel")
+    alike = (depth_storage for depth_storage in DEPTH_STORAGES.values() if depth_storage.home == "channel")
     if storage.kind == "float" and storage.channels != 2:
-        return next((one for one in alike if one.format.float_form(0) == storage.float_form(0)), None)
+        return next(
+            (depth_storage for depth_storage in alike if depth_storage.format.float_form(0) == storage.float_form(0)),
+            None,
+        )
     if (storage.kind, storage.channels) != ("unorm", 1):
         return None
     (bits,) = storage.bits

@@ -42,8 +42,8 @@ def across(kind: str, bits: tuple[int, ...]) -> Storage:
     target = _target_of(sum(bits))
     signed = {"unorm": "", "snorm": "signed ", "snorm_full": "fully signed "}[kind]
     name, title = f"{target}_{spread.replace(':', '_')}{ENDINGS[kind]}", f"{spread} {signed}in {target.upper()}"
-    made = Storage(name, title, kind.partition("_")[0], bits, RGBA8, part=int(target.lstrip("rgba")), is_said=True)
-    return replace(made, is_full=kind == "snorm_full")
+    storage = Storage(name, title, kind.partition("_")[0], bits, RGBA8, part=int(target.lstrip("rgba")), is_said=True)
+    return replace(storage, is_full=kind == "snorm_full")
 
 
 def _target_of(bits: int) -> str:
@@ -96,8 +96,8 @@ def by_rule(kind: str, bits: tuple[int, ...]) -> Storage:
         return word(same, bits)
     alike = (s for s in FORMATS.values() if (s.kind, s.bits, s.curved) == (same, bits, 0) and s != BITS_32)
     laid = (s for s in STORAGES.values() if s.is_packed and (s.kind, s.bits) == (same, bits))
-    found = next(laid if kind in ("uint", "sint") else itertools.chain(alike, laid), None)
-    return found or across(same, bits)
+    storage = next(laid if kind in ("uint", "sint") else itertools.chain(alike, laid), None)
+    return storage or across(same, bits)
 
 
 def _of_floats(kind: str, bits: tuple[int, ...]) -> Storage:
@@ -106,10 +106,10 @@ def _of_floats(kind: str, bits: tuple[int, ...]) -> Storage:
     Raises:
         ValueError: no such floats; a line.
     """
-    said = ":".join((kind, *map(str, bits)))
+    text = ":".join((kind, *map(str, bits)))
     if len(bits) != 2 or not (2 <= bits[0] <= MOST_EXPONENT and 1 <= bits[1] <= MOST_MANTISSA):
         known = f"{kind}:EXPONENT:MANTISSA, of 2 to {MOST_EXPONENT} and of 1 to {MOST_MANTISSA} bits"
-        raise ValueError(f"floats are said as {known}, such as float:5:10, not {said}")
+        raise ValueError(f"floats are said as {known}, such as float:5:10, not {text}")
     return replace(_floats(FloatForm(*bits, is_signed=kind == "float"), len(RGBA)), is_uncounted=True)
 
 
@@ -139,8 +139,8 @@ def rule_of(storage: Storage) -> str:
         kind = {"unorm": "uint", "snorm": "sint"}[kind] if storage.is_word else kind
         return ":".join((kind, *map(str, storage.bits)))
     forms = [storage.float_form(channel) for channel in range(storage.channels)]
-    said = dict.fromkeys(f"{form.exponent}:{form.mantissa}" for form in forms)
-    return f"{'float' if forms[0].is_signed else 'ufloat'}:{' and '.join(said)}"
+    form_texts = dict.fromkeys(f"{form.exponent}:{form.mantissa}" for form in forms)
+    return f"{'float' if forms[0].is_signed else 'ufloat'}:{' and '.join(form_texts)}"
 
 
 def rule_of_first(storage: Storage, count: int) -> str:
@@ -169,7 +169,7 @@ def storage_of(name: str) -> Storage | None:
     if not match:
         return FORMATS.get(name)
     kind = next(kind for kind, ending in ENDINGS.items() if ending == (match[5] or ""))
-    made = (word if match[3] else across)(kind, tuple(map(int, match[4][1:].split("_"))))
-    if made.name != name:
-        raise ValueError(f"{name}: these bits are called {made.name}")
-    return made
+    storage = (word if match[3] else across)(kind, tuple(map(int, match[4][1:].split("_"))))
+    if storage.name != name:
+        raise ValueError(f"{name}: these bits are called {storage.name}")
+    return storage

@@ -191,10 +191,10 @@ class Storage:
         """Those numbers, ascending; float64. Not of 32-bit floats, which are too many."""
         if self.kind != "float":
             return np.linspace(-1.0, 1.0 - self.is_full * self.step(channel), self.count(channel))
-        one, mantissa = self.float_form(channel).one, self.float_form(channel).mantissa
-        word = np.arange((one << mantissa) + 1)
+        bias, mantissa = self.float_form(channel).one, self.float_form(channel).mantissa
+        word = np.arange((bias << mantissa) + 1)
         octave, rest = np.maximum(word >> mantissa, 1), np.where(word >> mantissa, 1.0, 0.0)
-        texels = np.ldexp(rest + (word & 2**mantissa - 1) * 2.0**-mantissa, octave - one)
+        texels = np.ldexp(rest + (word & 2**mantissa - 1) * 2.0**-mantissa, octave - bias)
         return texels * 2.0 - 1.0 if self.is_biased else np.concatenate([-texels[:0:-1], texels])
 
 

@@ -111,8 +111,8 @@ def storage_defines(storage: Storage, roundings: Sequence[str], shader_rounds: b
 
 def _form_defines(storage: Storage) -> dict[str, object]:
     form = storage.form
-    said = {"STORAGE_EXPONENT": form.exponent, "STORAGE_SIGNED": int(form.is_signed)} if form else {}
-    return {"STORAGE_FLOATS": int(form is not None), **said}
+    defines = {"STORAGE_EXPONENT": form.exponent, "STORAGE_SIGNED": int(form.is_signed)} if form else {}
+    return {"STORAGE_FLOATS": int(form is not None), **defines}
 
 
 @dataclass(frozen=True)

@@ -92,9 +92,9 @@ class Passes:
         with ExitStack() as stack:
             sources = uploaded(device, stack, given)
             kept = self._written_textures(stack, sources)
-            made = [device.owned(stack, device.target(kept["texels"].size, storage)) for storage in results]
-            device.render(self._decode, made, **kept, **sources, **self._tables)
-            return [read_pixels(texture) for texture in made]
+            targets = [device.owned(stack, device.target(kept["texels"].size, storage)) for storage in results]
+            device.render(self._decode, targets, **kept, **sources, **self._tables)
+            return [read_pixels(texture) for texture in targets]
 
     def _written_textures(self, stack: ExitStack, sources: Textures) -> Textures:
         """What the encoding pass leaves in the targets; released with the stack."""

@@ -33,8 +33,8 @@ _NO_CODE = re.compile(r"//[^\n]*|/\*.*?\*/|^[ \t]*#(?:[^\n\\]|\\\n|\\)*", re.S |
 
 def loop_limit(device: Device) -> int | None:
     """After how many turns the device ends a loop; None where it makes MANY."""
-    (made,) = exact(device, "loop_turns.comp", {}, {}, [np.zeros((1, 4), np.float32)], 1, asked_turns=MANY)
-    return None if made[0, 0] >= MANY else int(made[0, 0])
+    (turns,) = exact(device, "loop_turns.comp", {}, {}, [np.zeros((1, 4), np.float32)], 1, asked_turns=MANY)
+    return None if turns[0, 0] >= MANY else int(turns[0, 0])
 
 
 def loops_ended(device: Device, encoding: Encoding, n: np.ndarray, view: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -47,9 +47,9 @@ def loops_ended(device: Device, encoding: Encoding, n: np.ndarray, view: np.ndar
         two arrays of bool of shape (count,); decode's is set too where encode's loop was ended.
     """
     defines, names = encoding_defines(encoding), {"ENCODING": encoding.glsl}
-    found = exact(device, "loops_done.comp", defines, names, [n, view], 2, encoding.tables, asked_turns=FEW)
+    outputs = exact(device, "loops_done.comp", defines, names, [n, view], 2, encoding.tables, asked_turns=FEW)
     # What stands behind a loop without an end is not even compiled: nothing is written there.
-    encoded, decoded = (flags[:, 0] != 1 for flags in found)
+    encoded, decoded = (flags[:, 0] != 1 for flags in outputs)
     return encoded, decoded
 
 
@@ -87,7 +87,7 @@ def _counted_text(source: Source) -> tuple[str, int]:
     text = source.text
     code = _NO_CODE.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
     is_counted = [not any(path.is_relative_to(room) for room in _NOT_COUNTED) for path in source.files]
-    conditions = [found for found in _conditions(code) if is_counted[code.count("\n", 0, found[0])]]
+    conditions = [condition for condition in _conditions(code) if is_counted[code.count("\n", 0, condition[0])]]
     for loop, (first, last, function) in reversed(list(enumerate(conditions))):
         text = f"{text[:first]}{function}({loop}, {text[first:last].strip() or 'true'}){text[last:]}"
     return text, len(conditions)
@@ -97,13 +97,13 @@ def _conditions(code: str) -> Iterator[tuple[int, int, str]]:
     """Where the condition of each loop begins and ends, and the function that counts it."""
     for match in _LOOP.finditer(code):
         first, parts = match.end(), [match.end()]
-        depth, at = 1, first
-        while depth and at < len(code):
-            depth += {"(": 1, "[": 1, ")": -1, "]": -1}.get(code[at], 0)
-            at += 1
-            if depth == 1 and code[at - 1] == ";":
-                parts.append(at)
+        depth, position = 1, first
+        while depth and position < len(code):
+            depth += {"(": 1, "[": 1, ")": -1, "]": -1}.get(code[position], 0)
+            position += 1
+            if depth == 1 and code[position - 1] == ";":
+                parts.append(position)
         if match[1] == "for" and len(parts) == 3:
             yield parts[1], parts[2] - 1, "next_turn"
         elif match[1] == "while":
-            yield first, at - 1, "turn_made" if code[at:].lstrip().startswith(";") else "next_turn"
+            yield first, position - 1, "turn_made" if code[position:].lstrip().startswith(";") else "next_turn"

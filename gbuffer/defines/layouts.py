@@ -89,33 +89,33 @@ def curve_defines(layout: Layout) -> dict[str, object]:
     Raises:
         ShaderError: a curve's GLSL file cannot be read or lacks one of its functions.
     """
-    found: dict[str, object] = {}
+    defines: dict[str, object] = {}
     lines: dict[str, list[str]] = {"encode": [], "decode": []}
     prefix = ""
     for component, kept in layout.kept.items():
         if isinstance(kept.encoding, LightEncoding):
             prefix = kept.encoding.prefix
-            found |= kept.encoding.constants
+            defines |= kept.encoding.constants
             continue
         if isinstance(kept.encoding, MotionEncoding):
-            found |= kept.encoding.constants
+            defines |= kept.encoding.constants
             if component == FIRST_OF_MOTION:
-                for way, made in lines.items():
-                    made.append(_motion_line(kept.encoding, way, kept.range))
+                for way, statements in lines.items():
+                    statements.append(_motion_line(kept.encoding, way, kept.range))
             continue
-        found |= curve_constants(kept.encoding)
+        defines |= curve_constants(kept.encoding)
         place = f"numbers[{COMPONENTS.index(component)}]"
-        for way, made in lines.items():
-            made.append(f"{place} = {kept.encoding.name}_{way}_curve({place}, {glsl_value(kept.range)});")
+        for way, statements in lines.items():
+            statements.append(f"{place} = {kept.encoding.name}_{way}_curve({place}, {glsl_value(kept.range)});")
     for component in _curved_components(layout):
-        found |= curve_constants(SRGB)
+        defines |= curve_constants(SRGB)
         # Devices only come near the curve, Direct3D 11 within 0.6 of a step, on both ways. A colour that is a code
         # already stays that code.
         place = f"numbers[{COMPONENTS.index(component)}]"
         code = f"floor(srgb_encode_curve(clamp({place}, 0.0, 1.0), 1.0) * {SRGB_ONE} + 0.5)"
-        for made in lines.values():
-            made.append(f"{place} = srgb_decode_curve({code} / {SRGB_ONE}, 1.0);")
-    return found | {
+        for statements in lines.values():
+            statements.append(f"{place} = srgb_decode_curve({code} / {SRGB_ONE}, 1.0);")
+    return defines | {
         "TO_CURVES": " ".join(lines["encode"]),
         "FROM_CURVES": " ".join(lines["decode"]),
         "EMISSION_CODED": int(bool(prefix)),
@@ -126,21 +126,21 @@ def curve_defines(layout: Layout) -> dict[str, object]:
 
 def _integer_defines(storages: Sequence[Storage]) -> dict[str, object]:
     """The macros of targets of whole numbers: what a fragment writes, and how a pixel is read."""
-    found: dict[str, object] = {"HAS_WORDS": int(any(storage.is_integer for storage in storages))}
-    if not found["HAS_WORDS"]:
-        return found
+    defines: dict[str, object] = {"HAS_WORDS": int(any(storage.is_integer for storage in storages))}
+    if not defines["HAS_WORDS"]:
+        return defines
     outputs, writes, reads = [], [], []
     counts = {False: 0, True: 0}
-    for at, storage in enumerate(storages):
+    for index, storage in enumerate(storages):
         kind, held = ("uvec4", "target_words") if storage.is_integer else ("vec4", "texels")
         sampler = WORD_SAMPLERS if storage.is_integer else SAMPLERS
-        outputs.append(f"layout(location = {at}) out {kind} made_{at};")
-        writes.append(f"made_{at} = {held}[{at}];")
-        reads.append(f"{held}[{at}] = texelFetch({sampler}[{counts[storage.is_integer]}], pixel, SAMPLE);")
+        outputs.append(f"layout(location = {index}) out {kind} made_{index};")
+        writes.append(f"made_{index} = {held}[{index}];")
+        reads.append(f"{held}[{index}] = texelFetch({sampler}[{counts[storage.is_integer]}], pixel, SAMPLE);")
         counts[storage.is_integer] += 1
-    found |= {"TEXEL_OUTPUTS": " ".join(outputs), "TEXEL_WRITES": " ".join(writes), "TEXEL_READS": " ".join(reads)}
-    found |= {"PLAIN_TARGETS": counts[False], "WORD_TARGETS": counts[True]}
-    return found | {"TARGET_INTEGER": tuple(int(storage.is_integer) for storage in storages)}
+    defines |= {"TEXEL_OUTPUTS": " ".join(outputs), "TEXEL_WRITES": " ".join(writes), "TEXEL_READS": " ".join(reads)}
+    defines |= {"PLAIN_TARGETS": counts[False], "WORD_TARGETS": counts[True]}
+    return defines | {"TARGET_INTEGER": tuple(int(storage.is_integer) for storage in storages)}
 
 
 FIRST_OF_MOTION = "motion.x"

@@ -116,8 +116,8 @@ class WordPacking:
         return Operation("kernel_pack.glsl", max(self.numbers, 2), 3, self.channels, *self._read(), is_portable=False)
 
     def unpack(self) -> Operation:
-        made = max(self.numbers, 2)
-        return Operation("kernel_unpack.glsl", self.channels, 3, made, *self._read(), is_portable=False)
+        outputs = max(self.numbers, 2)
+        return Operation("kernel_unpack.glsl", self.channels, 3, outputs, *self._read(), is_portable=False)
 
     def _read(self) -> tuple[Any, ...]:
         """The macros of a layout with these numbers, and the files that its macros name."""

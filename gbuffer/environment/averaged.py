@@ -12,8 +12,8 @@ def averaged(radiance: np.ndarray, height: int) -> np.ndarray:
     bands, wanted = (-np.cos(np.arange(count + 1) * np.pi / count) for count in (rows, height))
     smaller = np.empty((height, 2 * height, 3), np.float32)
     for channel in range(3):
-        found = _means(radiance[..., channel].astype(np.float64), bands, wanted)
-        smaller[..., channel] = _means(found.T, np.linspace(0, 1, columns + 1), np.linspace(0, 1, 2 * height + 1)).T
+        means = _means(radiance[..., channel].astype(np.float64), bands, wanted)
+        smaller[..., channel] = _means(means.T, np.linspace(0, 1, columns + 1), np.linspace(0, 1, 2 * height + 1)).T
     return smaller
 
 

@@ -101,9 +101,9 @@ def seen_through_lobe(radiance: np.ndarray, alpha: float, step: int = 1) -> np.n
 def _spectra(grid: Grid, radiance: np.ndarray) -> np.ndarray:
     """Spectra along the longitudes, (frequencies, rows, 12): of each channel, then of the picture upside down; real
     parts of all of them, then imaginary ones."""
-    found = np.asarray(fft.rfft(radiance.astype(np.float64), axis=1, workers=1)).swapaxes(0, 1)
-    found = found * _width(grid)[:, None, None]
-    both = np.concatenate([found, found[:, ::-1]], axis=-1)
+    spectra = np.asarray(fft.rfft(radiance.astype(np.float64), axis=1, workers=1)).swapaxes(0, 1)
+    spectra = spectra * _width(grid)[:, None, None]
+    both = np.concatenate([spectra, spectra[:, ::-1]], axis=-1)
     return np.ascontiguousarray(np.concatenate([np.real(both), np.imag(both)], axis=-1))
 
 
@@ -116,8 +116,8 @@ def _width(grid: Grid) -> np.ndarray:
 def _sums(grid: Grid, latitudes: np.ndarray, spectra: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Spectra of radiance times lobe, (frequencies, rows of directions, 6); and sums of the lobe, (rows, 1, 1)."""
     lobes = _lobe_spectra(grid, latitudes)
-    found = lobes @ spectra
-    return found[..., :6] + 1j * found[..., 6:], lobes[0].sum(-1)[:, None, None]
+    sums = lobes @ spectra
+    return sums[..., :6] + 1j * sums[..., 6:], lobes[0].sum(-1)[:, None, None]
 
 
 def _pixels(grid: Grid, spectrum: np.ndarray) -> np.ndarray:
@@ -129,22 +129,22 @@ def _pixels(grid: Grid, spectrum: np.ndarray) -> np.ndarray:
 
 def _lobe_spectra(grid: Grid, latitudes: np.ndarray) -> np.ndarray:
     """Of the lobes around directions of these latitudes along each row of texels, (frequencies, directions, rows)."""
-    found = _transformed(grid, _far_lobes(grid, latitudes))
+    spectra = _transformed(grid, _far_lobes(grid, latitudes))
     if not grid.is_resolved:
         for number, latitude in enumerate(latitudes):
             near, lobes = _near_lobes(grid, latitude)
             # These are integrated along the longitudes already, and their texels' spectra have the width in them.
-            found[:, number, near] = _transformed(grid, lobes) / _width(grid)[:, None]
-    return found
+            spectra[:, number, near] = _transformed(grid, lobes) / _width(grid)[:, None]
+    return spectra
 
 
 def _transformed(grid: Grid, lobes: np.ndarray) -> np.ndarray:
     """The spectrum of a lobe from half of its longitudes, which is real: around a texel's middle or its edge."""
     if not grid.offset:
         return np.asarray(fft.dct(lobes, 1, axis=0, workers=1))
-    found = np.asarray(fft.dct(lobes, 2, axis=0, workers=1))
+    spectrum = np.asarray(fft.dct(lobes, 2, axis=0, workers=1))
     # The highest frequency is 0 at all nodes.
-    return np.concatenate([found, np.zeros_like(found[:1])])
+    return np.concatenate([spectrum, np.zeros_like(spectrum[:1])])
 
 
 def _far_lobes(grid: Grid, latitudes: np.ndarray) -> np.ndarray:
@@ -152,15 +152,15 @@ def _far_lobes(grid: Grid, latitudes: np.ndarray) -> np.ndarray:
     turns = np.cos((np.arange(grid.height + (not grid.offset)) + grid.offset) * grid.texel)
     nodes, weights = _gauss(np.arange(grid.height + 1) * grid.texel, 1 if grid.is_resolved else 2)
     nodes, weights = nodes.T.ravel(), (weights * np.sin(nodes)).T.ravel()
-    found = np.empty((len(turns), len(latitudes), grid.height))
+    integrals = np.empty((len(turns), len(latitudes), grid.height))
     for number, latitude in enumerate(latitudes):
         level, tilt = np.cos(latitude) * np.cos(nodes), np.sin(latitude) * np.sin(nodes)
         for first in range(0, len(turns), LONGITUDES):
             part = slice(first, first + LONGITUDES)
             values = lobe(turns[part, None] * tilt + level, grid.alpha)
             values *= weights
-            np.sum(values.reshape(len(values), -1, grid.height), axis=1, out=found[part, number])
-    return found
+            np.sum(values.reshape(len(values), -1, grid.height), axis=1, out=integrals[part, number])
+    return integrals
 
 
 def _near_lobes(grid: Grid, latitude: float) -> tuple[slice, np.ndarray]:

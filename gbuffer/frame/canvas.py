@@ -78,14 +78,14 @@ class Canvas:
 
     def program(self, vertex: str | Path, fragment: str | Path, **defines: object) -> Program:
         """A compiled pair of shaders that knows the frame's layout and what was told. Raises ShaderError."""
-        made = self.frame.program(vertex, fragment, **{**self.told, **defines})
-        for name in made:
+        program = self.frame.program(vertex, fragment, **{**self.told, **defines})
+        for name in program:
             if (
                 name.removesuffix("_before").removesuffix(WORDS) in self.frame.pipeline.resources
                 and name.removesuffix(WORDS) not in self._samplers
             ):
                 raise PipelineError(f"pass {self._pass.name} samples {name}, which it does not read")
-        return made
+        return program
 
     def fullscreen(self, fragment: str | Path, **defines: object) -> VertexArray:
         """A shader to run over a whole target: `render(vertices=3)`."""
@@ -116,7 +116,9 @@ class Canvas:
 
     def prepare(self, program: Program, **textures: Any) -> None:
         """Bind what shaders read before a draw: the frame, the scene, tables, and what the pass reads by its name."""
-        read = {name: self.frame.textures(*at) for name, at in self._samplers.items() if _is_read(name, program)}
+        read = {
+            name: self.frame.textures(*source) for name, source in self._samplers.items() if _is_read(name, program)
+        }
         there = {name: several for name, several in read.items() if several}
         self.frame.bind(program, self._size, self._view, {**there, **textures})
 
@@ -133,8 +135,8 @@ def _is_read(name: str, program: Program) -> bool:
 
 def _samplers(reads: tuple[Resource, ...], writes: tuple[Resource, ...]) -> dict[str, tuple[Resource, int]]:
     """The samplers that resources are read by, each with its resource and copy."""
-    found = {resource.name: (resource, 0) for resource in reads}
-    return found | {f"{r.name}_before": (r, 1) for r in (*reads, *writes) if r.copies > 1}
+    samplers = {resource.name: (resource, 0) for resource in reads}
+    return samplers | {f"{r.name}_before": (r, 1) for r in (*reads, *writes) if r.copies > 1}
 
 
 @contextmanager
@@ -167,9 +169,9 @@ class Target:
         """
         frame = self.canvas.frame
         colours = [texture for resource in self.colours for texture in frame.textures(resource)]
-        made = frame.framebuffer(colours[: self.most], self.depth, self.writes_depth, at)
-        made.use()
-        self.canvas.at(made.size, view)
+        framebuffer = frame.framebuffer(colours[: self.most], self.depth, self.writes_depth, at)
+        framebuffer.use()
+        self.canvas.at(framebuffer.size, view)
 
 
 @dataclass(frozen=True)

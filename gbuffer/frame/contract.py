@@ -77,25 +77,25 @@ class Pipeline:
     usual_layout: str = "hybrid"
 
     def __post_init__(self):
-        for index, one in enumerate(self.stages):
-            reason = next(_misfits(one, self.stages[:index], self.stages), None)
+        for index, stage in enumerate(self.stages):
+            reason = next(_misfits(stage, self.stages[:index], self.stages), None)
             if reason:
-                raise PipelineError(f"pipeline {self.name}: pass {one.name} {reason}")
+                raise PipelineError(f"pipeline {self.name}: pass {stage.name} {reason}")
 
     @cached_property
     def resources(self) -> Mapping[str, Resource]:
         """All that its passes write, by name."""
-        return {resource.name: resource for one in self.stages for resource in one.writes}
+        return {resource.name: resource for stage in self.stages for resource in stage.writes}
 
     @cached_property
     def told(self) -> Mapping[str, int]:
         """All macros that its passes tell."""
-        return {name: value for one in self.stages for name, value in one.tells.items()}
+        return {name: value for stage in self.stages for name, value in stage.tells.items()}
 
     @property
     def needs(self) -> frozenset[str]:
         """Components that it cannot do without in the G-buffer, besides the normal."""
-        return frozenset().union(*(one.needs for one in self.stages))
+        return frozenset().union(*(stage.needs for stage in self.stages))
 
     @property
     def has_gbuffer(self) -> bool:
@@ -117,7 +117,7 @@ class Pipeline:
     @property
     def starts_light(self) -> bool:
         """Whether one pass writes the G-buffer and, in one more target, the light buffer."""
-        return any({GBUFFER, LIGHT} <= set(one.writes) for one in self.stages)
+        return any({GBUFFER, LIGHT} <= set(stage.writes) for stage in self.stages)
 
     def planned(self, plan: Plan) -> Plan:
         """A plan as this pipeline takes it."""
@@ -134,8 +134,8 @@ class Pipeline:
             PipelineError: there is no such pass, or they do not fit.
         """
         stages = list(self.stages)
-        for one in passes:
-            stages.insert(_index_after(self.name, one, stages), one)
+        for stage in passes:
+            stages.insert(_index_after(self.name, stage, stages), stage)
         return replace(self, stages=tuple(stages))
 
 

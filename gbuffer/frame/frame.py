@@ -106,7 +106,7 @@ class Frame:
     def textures(self, resource: Resource, copy: int = 0) -> list[Any]:
         """A resource's textures, of the copy in use or of one before it: none where the plan has no such resource."""
         held = self.held(resource).copy(copy)
-        return [one.texture if isinstance(one, raw.DepthBuffer) else one for one in held]
+        return [target.texture if isinstance(target, raw.DepthBuffer) else target for target in held]
 
     def clear(self, resource: Resource) -> None:
         """Colour to 0, or to what stands for no light; depth to 1 and stencil to 0."""
@@ -114,13 +114,13 @@ class Frame:
         textures, is_depth = self.textures(resource), resource.texels(self.plan)[:1] in ((DEPTH_MAP,), (DEPTH_STENCIL,))
         if not textures:
             return
-        made = self.framebuffer([], resource, True) if is_depth else self.framebuffer(textures)
+        framebuffer = self.framebuffer([], resource, True) if is_depth else self.framebuffer(textures)
         if resource.format == DEPTH_STENCIL:
-            made.use()
+            framebuffer.use()
             raw.clear_depth_stencil()
         else:
-            made.clear(none, none, none, none, depth=1.0)
-            raw.clear_words(at for at, storage in enumerate(resource.texels(self.plan)) if _is_integer(storage))
+            framebuffer.clear(none, none, none, none, depth=1.0)
+            raw.clear_words(i for i, storage in enumerate(resource.texels(self.plan)) if _is_integer(storage))
 
     def framebuffer(
         self, colours: Sequence[Any], depth: Resource | None = None, writes_depth: bool = False, at: int | None = None
@@ -168,12 +168,12 @@ class Frame:
     def _material_defines(self) -> dict[str, object]:
         """The macros of metal/rough materials and of what lies around."""
         around = self.scene.environment
-        found: dict[str, object] = {"HAS_MAPS": int(self.scene.has_maps), "HAS_ENVIRONMENT": int(around is not None)}
-        found |= {"SPECULAR_ANTIALIASING": int(self.plan.antialiased), "LEAST_ROUGHNESS": self.plan.least_roughness}
-        found |= {f"{name.upper()}_MAP": number for number, name in enumerate(MAPS)} | {"MAP_COUNT": len(MAPS)}
+        defines: dict[str, object] = {"HAS_MAPS": int(self.scene.has_maps), "HAS_ENVIRONMENT": int(around is not None)}
+        defines |= {"SPECULAR_ANTIALIASING": int(self.plan.antialiased), "LEAST_ROUGHNESS": self.plan.least_roughness}
+        defines |= {f"{name.upper()}_MAP": number for number, name in enumerate(MAPS)} | {"MAP_COUNT": len(MAPS)}
         for name, levels in (("FINE", FINE), ("COARSE", COARSE)):
-            found |= {f"{name}_ROUGHNESS": tuple(map(float, levels)), f"{name}_LEVELS": len(levels)}
-        return found
+            defines |= {f"{name}_ROUGHNESS": tuple(map(float, levels)), f"{name}_LEVELS": len(levels)}
+        return defines
 
     def _material_tables(self) -> dict[str, Any]:
         """What metal/rough surfaces look up: the split sum, and what lies around. On the device beyond the frame."""
@@ -203,10 +203,10 @@ class Frame:
 
     def array(self, program: Program, content: list[Any], indices: Any = None) -> VertexArray:
         """Vertices under a program, released with the frame."""
-        made = self.context.vertex_array(program, content, indices)
+        vertex_array = self.context.vertex_array(program, content, indices)
         # Several arrays share a program: each releases itself alone.
-        self.stack.callback(made.release)
-        return made
+        self.stack.callback(vertex_array.release)
+        return vertex_array
 
     def bind(self, program: Program, size: tuple[int, int], view: Sight | None, textures: Mapping[str, Any]) -> None:
         """Bind what a draw into a target of this size reads, seen from a view or by the scene's own camera (None)."""
@@ -222,7 +222,9 @@ class Frame:
         if SAMPLERS not in textures or not any(storage.is_integer for storage in storages):
             return textures
         pairs = list(zip(textures[SAMPLERS], storages, strict=True))
-        parts = {name: [one for one, storage in pairs if storage.is_integer is is_words] for name, is_words in KINDS}
+        parts = {
+            name: [texture for texture, storage in pairs if storage.is_integer is is_words] for name, is_words in KINDS
+        }
         return {**textures, **{name: several for name, several in parts.items() if several}}
 
     def _frame_buffer(self, size: tuple[int, int], view: Sight | None) -> Buffer:
@@ -251,8 +253,8 @@ def shader_roundings(device: Device, layout: Layout) -> tuple[int, ...]:
     """For each target 0 where the device rounds as asked, else one more than how `storage.glsl` counts the way."""
     homes = {word.target for word in layout.words if word.component.startswith("normal.")}
     return tuple(
-        _shader_rounding(device, target.storage, rounds_to(layout.rounding) if at in homes else "nearest")
-        for at, target in enumerate(layout.targets)
+        _shader_rounding(device, target.storage, rounds_to(layout.rounding) if i in homes else "nearest")
+        for i, target in enumerate(layout.targets)
     )
 
 

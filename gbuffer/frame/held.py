@@ -33,11 +33,11 @@ class Held:
         self._used = (self._used + 1) % self._resource.copies
 
     def _owned_texture(self, texel: Texel) -> Any:
-        made = self._new_texture(texel)
-        self._stack.callback(made.release)
+        texture = self._new_texture(texel)
+        self._stack.callback(texture.release)
         if self._resource.smooth:
-            self._device.smooth(made)
-        return made
+            self._device.smooth(texture)
+        return texture
 
     def _new_texture(self, texel: Texel) -> Any:
         width, height, samples = self._shape

@@ -26,13 +26,15 @@ class Maps:
             return device.owned(stack, make())
 
         white = kept(lambda: device.picture(WHITE, False, (True, True)))
-        made: dict[tuple[object, ...], Texture] = {}
+        textures: dict[tuple[object, ...], Texture] = {}
         for material in scene.materials:
-            for one in material.maps if isinstance(material, MetalRough) else ():
-                if one is not None and _sampled(one) not in made:
-                    made[_sampled(one)] = kept(lambda one=one: device.picture(one.texels, one.is_srgb, _repeats(one)))
+            for texture_map in material.maps if isinstance(material, MetalRough) else ():
+                if texture_map is not None and _sampled(texture_map) not in textures:
+                    textures[_sampled(texture_map)] = kept(
+                        lambda one=texture_map: device.picture(one.texels, one.is_srgb, _repeats(one))
+                    )
         self._bound = [
-            [white if one is None else made[_sampled(one)] for one in material.maps]
+            [white if material_map is None else textures[_sampled(material_map)] for material_map in material.maps]
             for material in scene.materials
             if isinstance(material, MetalRough)
         ]
@@ -61,9 +63,9 @@ def metal_rough_numbers(material: MetalRough) -> list[float]:
     has_normals = float(material.normal_map is not None)
     numbers += [material.cutoff, *material.emission, 0.0]
     numbers += [material.normal_scale, material.occlusion_strength, has_normals, float(any(material.maps))]
-    for one in material.maps:
-        placed = np.eye(3)[:2] if one is None else one.placed
-        uv_set, wrap = (0, ("repeat", "repeat")) if one is None else (one.uv_set, one.wrap)
+    for material_map in material.maps:
+        placed = np.eye(3)[:2] if material_map is None else material_map.placed
+        uv_set, wrap = (0, ("repeat", "repeat")) if material_map is None else (material_map.uv_set, material_map.wrap)
         mirrors = sum(bit for bit, way in zip((1, 2), wrap, strict=True) if way == "mirror")
         numbers += [*map(float, placed[0]), float(uv_set), *map(float, placed[1]), float(mirrors)]
     return numbers

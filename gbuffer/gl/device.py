@@ -58,8 +58,8 @@ class NoDeviceError(Exception):
 
 
 def _release_all(made: Sequence[_Releasable]) -> None:
-    for one in made:
-        one.release()
+    for resource in made:
+        resource.release()
 
 
 def _create_context() -> moderngl.Context:
@@ -158,11 +158,11 @@ class Device:
         count = len(inputs[0])
         with ExitStack() as stack:
             given = [self.context.buffer(np.ascontiguousarray(a, np.float32)) for a in inputs]
-            made = [self.context.buffer(reserve=count * 16) for _ in range(outputs)]
-            for binding, buffer in enumerate([*given, *made]):
+            output_buffers = [self.context.buffer(reserve=count * 16) for _ in range(outputs)]
+            for binding, buffer in enumerate([*given, *output_buffers]):
                 self.owned(stack, buffer).bind_to_storage_buffer(binding)
             compute.run(group_x=(count + 63) // 64)
-            return [np.frombuffer(buffer.read(), np.float32).reshape(count, 4) for buffer in made]
+            return [np.frombuffer(buffer.read(), np.float32).reshape(count, 4) for buffer in output_buffers]
 
     def target(self, size: tuple[int, int], storage: Storage, samples: int = 1) -> moderngl.Texture:
         """A texture of a storage format, to render to and to fetch from."""
@@ -317,11 +317,11 @@ class Device:
             if not isinstance(depth, DepthBuffer):
                 return self.context.framebuffer(list(targets), depth)
             size, samples, none = depth.texture.size, depth.texture.samples, self.context.empty_framebuffer
-            made = self.context.framebuffer(list(targets)) if targets else none(size, samples=samples)
-            depth.attach(made)
+            framebuffer = self.context.framebuffer(list(targets)) if targets else none(size, samples=samples)
+            depth.attach(framebuffer)
         except moderngl.Error as error:
             raise FormatError(f"{self.renderer} cannot render to this format: {error}") from error
-        return made
+        return framebuffer
 
     def slice_framebuffer(self, volumes: Sequence[moderngl.Texture3D], at: int | None) -> moderngl.Framebuffer:
         """One slice of each volume to draw into, or all slices by `gl_Layer`; a framebuffer of moderngl's has flat
@@ -329,11 +329,11 @@ class Device:
         width, height, _ = volumes[0].size
         with ExitStack() as stack:
             flat = [self.owned(stack, self.target((width, height), STORAGES["rgba8"])) for _ in volumes]
-            made = self.framebuffer(flat)
-            made.use()
+            framebuffer = self.framebuffer(flat)
+            framebuffer.use()
             for index, volume in enumerate(volumes):
                 attach_slice(index, volume.glo, at)
-        return made
+        return framebuffer
 
     def blend(self, function: tuple[int, int] | None) -> None:
         """Blend what is drawn next by source and destination factor, or not; no depth test, whatever drew before."""
@@ -425,8 +425,8 @@ def bind(program: Any, textures: Mapping[str, moderngl.Texture | Sequence[modern
         several = several[: program[name].array_length]
         units = list(range(unit, unit + len(several)))
         program[name].value = units[0] if len(units) == 1 else units
-        for at, texture in zip(units, several, strict=True):
-            texture.use(at)
+        for slot, texture in zip(units, several, strict=True):
+            texture.use(slot)
         unit += len(units)
 
 
@@ -460,6 +460,6 @@ def read_pixels(texture: moderngl.Texture) -> np.ndarray:
 @cache
 def device() -> Device:
     """The process's one GL device. Raises NoDeviceError."""
-    made = Device()
-    OPENED.append(made)
-    return made
+    gl_device = Device()
+    OPENED.append(gl_device)
+    return gl_device

@@ -20,13 +20,13 @@ class Lasting(Generic[T]):
 
     def used(self, stack: ExitStack, key: Hashable, make: Callable[[], T]) -> T:
         """The object of a key, in use until the stack closes. Raises what `make` does."""
-        found = self._held.pop(key) if key in self._held else make()
-        self._held[key] = found
+        instance = self._held.pop(key) if key in self._held else make()
+        self._held[key] = instance
         self._users[key] = self._users.get(key, 0) + 1
         stack.callback(self._leave, key)
         for old in [other for other in self._held if not self._users.get(other)][: len(self._held) - self._most]:
             self._release(self._held.pop(old))
-        return found
+        return instance
 
     def _leave(self, key: Hashable) -> None:
         self._users[key] -= 1

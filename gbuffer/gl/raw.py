@@ -84,8 +84,8 @@ def _address(found: int | None) -> int | None:
 
 def _address_within(library: ctypes.CDLL, name: str) -> int | None:
     """Where a library itself has a function, as opengl32.dll has those of GL 1.1; None where it does not."""
-    found = getattr(library, name, None)
-    return ctypes.cast(found, ctypes.c_void_p).value if found else None
+    symbol = getattr(library, name, None)
+    return ctypes.cast(symbol, ctypes.c_void_p).value if symbol else None
 
 
 @cache
@@ -98,11 +98,11 @@ def function(name: str) -> Callable[..., Any]:
 
 def samples_of(texture: moderngl.Texture) -> int:
     """The samples a pixel that a texture of several has, which may be more than were asked for."""
-    found = ctypes.c_int()
+    samples = ctypes.c_int()
     function("glBindTexture")(TEXTURE_2D_MULTISAMPLE, texture.glo)
-    function("glGetTexLevelParameteriv")(TEXTURE_2D_MULTISAMPLE, 0, TEXTURE_SAMPLES, ctypes.byref(found))
+    function("glGetTexLevelParameteriv")(TEXTURE_2D_MULTISAMPLE, 0, TEXTURE_SAMPLES, ctypes.byref(samples))
     function("glBindTexture")(TEXTURE_2D_MULTISAMPLE, 0)
-    return found.value
+    return samples.value
 
 
 class DepthBuffer:
@@ -187,8 +187,8 @@ def clear_depth_stencil() -> None:
 
 def clear_words(attachments: Iterable[int]) -> None:
     """Whole numbers to 0 in attachments of the framebuffer in use."""
-    for at in attachments:
-        function("glClearBufferuiv")(COLOR, at, (ctypes.c_uint * 4)())
+    for attachment in attachments:
+        function("glClearBufferuiv")(COLOR, attachment, (ctypes.c_uint * 4)())
 
 
 def mark_volume() -> None:

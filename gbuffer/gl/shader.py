@@ -32,12 +32,12 @@ class ShaderError(Exception):
 @cache
 def shaders() -> Mapping[str, Path]:
     """Every shader of this room, and what the encodings share, by file name. Raises ShaderError where two have one."""
-    found: dict[str, Path] = {}
+    paths: dict[str, Path] = {}
     shared = (path for pattern in SHARED for path in (ROOM.parent / "encodings").glob(pattern))
     for path in sorted([*ROOM.rglob("*.*"), *shared]):
-        if path.suffix in SUFFIXES and path != found.setdefault(path.name, path):
-            raise ShaderError(f"two shaders have one name: {found[path.name]} and {path}")
-    return found
+        if path.suffix in SUFFIXES and path != paths.setdefault(path.name, path):
+            raise ShaderError(f"two shaders have one name: {paths[path.name]} and {path}")
+    return paths
 
 
 class Source:
@@ -151,7 +151,7 @@ def _expanded(
         for target in targets:
             if may_read and not (_is_own(target) or may_read(target)):
                 raise ShaderError(f"{main}: it includes {target}, which lies outside its folder; move it there")
-        return [made for target in targets if target not in seen for made in expand(target)]
+        return [included_line for target in targets if target not in seen for included_line in expand(target)]
 
     lines = expand(main)
     return lines, _joined_text(lines[1:])

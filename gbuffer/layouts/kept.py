@@ -83,10 +83,10 @@ def _kept_motion(name: str, limit: str | None) -> Kept:
 
 def _range_of(text: str) -> float:
     try:
-        found = float(text)
+        number = float(text)
     except ValueError:
-        found = math.nan
+        number = math.nan
     # Not a number is no range either.
-    if not 1e-3 <= found <= 65504:
+    if not 1e-3 <= number <= 65504:
         raise ValueError(f"a range is 0.001 to 65504, not {text}")
-    return found
+    return number

@@ -89,18 +89,18 @@ class Layout:
         self._check_names()
         if self.space == "world" and self.encoding.own:
             object.__setattr__(self, "encoding", self.encoding.own)
-        found = [word.component for word in self.words]
-        for component in found:
-            if found.count(component) > 1:
+        components = [word.component for word in self.words]
+        for component in components:
+            if components.count(component) > 1:
                 raise LayoutError(f"layout {self.name}: {component} lies in two places")
-        self._check_normal_words(found)
+        self._check_normal_words(components)
         if self.rounding == DITHERED and (why := self._undithered):
             raise LayoutError(f"layout {self.name}: its normal is not dithered: {why}")
         self._check_colours()
         if self.depth_encoding.signed != self.has_signed_depth:
             known = ", ".join(depth.name for depth in self._suitable_depths)
-            said = f"{self.depth_encoding.name} does not suit {self.encoding.name}, whose depth is {known}"
-            raise LayoutError(f"layout {self.name}: {said}")
+            message = f"{self.depth_encoding.name} does not suit {self.encoding.name}, whose depth is {known}"
+            raise LayoutError(f"layout {self.name}: {message}")
 
     @property
     def _undithered(self) -> str | None:
@@ -124,15 +124,15 @@ class Layout:
     def _check_colours(self) -> None:
         """Raises LayoutError where the channels of a colour are not kept alike."""
         for colour in (*COLOURS, MOTION):
-            found = [word for word in self.words if quantity_of(word.component) == colour]
-            if len({word.kept for word in found}) > 1:
+            words = [word for word in self.words if quantity_of(word.component) == colour]
+            if len({word.kept for word in words}) > 1:
                 raise LayoutError(f"layout {self.name}: all channels of {colour} lie on one curve")
             if colour == MOTION:
-                if len(found) == 1 and found[0].kept:
+                if len(words) == 1 and words[0].kept:
                     raise LayoutError(f"layout {self.name}: a code of motion has two numbers")
                 continue
-            is_whole = bool(found and found[0].kept and found[0].kept.is_whole)
-            if is_whole != any(word.component == f"{colour}.a" for word in found) or (is_whole and len(found) < 4):
+            is_whole = bool(words and words[0].kept and words[0].kept.is_whole)
+            if is_whole != any(word.component == f"{colour}.a" for word in words) or (is_whole and len(words) < 4):
                 raise LayoutError(f"layout {self.name}: a code of light has four numbers, as in rgb9e5({LIGHT})")
 
     @property
@@ -176,12 +176,12 @@ class Layout:
     @cached_property
     def words(self) -> tuple[Word, ...]:
         """Where each component lies. Raises LayoutError where one does not fit."""
-        found = [word for index, target in enumerate(self.targets) for word in placed(self.name, index, target)]
-        if len([word for word in found if word.sign]) > 1:
+        words = [word for index, target in enumerate(self.targets) for word in placed(self.name, index, target)]
+        if len([word for word in words if word.sign]) > 1:
             raise LayoutError(f"layout {self.name}: only one quantity may carry a sign")
-        for word in found:
+        for word in words:
             self._check_word(word)
-        return tuple(found)
+        return tuple(words)
 
     def _check_word(self, word: Word) -> None:
         """Raises LayoutError where a word cannot say what it must."""
@@ -219,8 +219,8 @@ class Layout:
     @property
     def components(self) -> frozenset[str]:
         """What it keeps; a roughness is a power too."""
-        found = frozenset(word.component for word in self.words)
-        return found | {"power"} if "roughness" in found else found
+        components = frozenset(word.component for word in self.words)
+        return components | {"power"} if "roughness" in components else components
 
     @property
     def metal_rough_components(self) -> frozenset[str]:
@@ -248,8 +248,8 @@ class Layout:
     @property
     def normal_scales(self) -> tuple[float, ...]:
         """The integers that stand for 1 in the first three numbers of the normal's code; 1 where there is none."""
-        found = {w.component: w for w in self.words if "normal" in w.component}
-        words = [found.get(f"normal.{axis}") for axis in "xyz"]
+        normal_words = {w.component: w for w in self.words if "normal" in w.component}
+        words = [normal_words.get(f"normal.{axis}") for axis in "xyz"]
         return tuple(float(self._scale(word)) if word else 1.0 for word in words)
 
     def _scale(self, word: Word) -> int:

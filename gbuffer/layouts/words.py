@@ -81,7 +81,7 @@ class Target:
 
 def targets_of(text: str) -> tuple[Target, ...]:
     """Targets of text such as `rg16f: normal.x normal.y; rgba8: base_color shading_model`."""
-    return tuple(Target(*one.strip().split(": ", 1)) for one in text.split(";"))
+    return tuple(Target(*part.strip().split(": ", 1)) for part in text.split(";"))
 
 
 def placed(layout_name: str, index: int, target: Target) -> Iterator[Word]:
@@ -132,16 +132,16 @@ def place_of(layout_name: str, index: int, target: Target) -> str:
 def spelt_out(place: str, target: Target) -> Iterator[str]:
     """The words of a target by the names of COMPONENTS, a colour without a channel as its channels."""
     for typed in target.holds.split():
-        text, found = _by_its_name(place, typed)
-        name = (found["curved"] or found["name"]) if found else ""
-        if found and found["curve"] in WHOLE and name.startswith(f"{LIGHT}."):
-            raise LayoutError(f"{place}: {text}: write {found['curve']}({LIGHT}), which takes the whole target")
-        if not found or name not in COLOURS:
+        text, match = _by_its_name(place, typed)
+        name = (match["curved"] or match["name"]) if match else ""
+        if match and match["curve"] in WHOLE and name.startswith(f"{LIGHT}."):
+            raise LayoutError(f"{place}: {text}: write {match['curve']}({LIGHT}), which takes the whole target")
+        if not match or name not in COLOURS:
             yield text
             continue
-        is_whole = found["curve"] in WHOLE and name == LIGHT
-        if is_whole and (target.holds.split()[0] != text or target.format not in WHOLE[found["curve"]].storages):
-            known = ", ".join(WHOLE[found["curve"]].storages)
+        is_whole = match["curve"] in WHOLE and name == LIGHT
+        if is_whole and (target.holds.split()[0] != text or target.format not in WHOLE[match["curve"]].storages):
+            known = ", ".join(WHOLE[match["curve"]].storages)
             raise LayoutError(f"{place}: {text} is all that its target holds, of {known}")
         for component in (*channels_of(name), *([f"{name}.a"] if is_whole else [])):
             yield component.join(text.rsplit(name, 1))
@@ -149,12 +149,12 @@ def spelt_out(place: str, target: Target) -> Iterator[str]:
 
 def _by_its_name(place: str, typed: str) -> tuple[str, re.Match[str] | None]:
     """A word with the name that COMPONENTS has for it, and its parts."""
-    found = WORD.fullmatch(typed)
-    name = (found["curved"] or found["name"]) if found else ""
-    if not found or name == OTHER or name.startswith(f"{OTHER}."):
-        return typed, found
+    match = WORD.fullmatch(typed)
+    name = (match["curved"] or match["name"]) if match else ""
+    if not match or name == OTHER or name.startswith(f"{OTHER}."):
+        return typed, match
     try:
-        other = named(name, bool(found["curve"]))
+        other = named(name, bool(match["curve"]))
     except RefusedWordError as error:
         raise LayoutError(f"{place}: {typed}: {error}") from error
     text = other.join(typed.rsplit(name, 1))
@@ -163,21 +163,21 @@ def _by_its_name(place: str, typed: str) -> tuple[str, re.Match[str] | None]:
 
 def _word_parts(place: str, text: str) -> tuple[str, str, int, Kept | None]:
     """The component of a word, the sign that it carries, its bits, and the curve that it lies on."""
-    found = WORD.fullmatch(text)
-    name = (found["curved"] or found["name"]) if found else ""
+    match = WORD.fullmatch(text)
+    name = (match["curved"] or match["name"]) if match else ""
     name = OTHER if name.startswith(f"{OTHER}.") else name
-    if not found or name not in (*COMPONENTS, OTHER, FREE):
-        if not found and set(text) & set("()"):
+    if not match or name not in (*COMPONENTS, OTHER, FREE):
+        if not match and set(text) & set("()"):
             raise LayoutError(f"{place}: {text}: a curve is said as squared(roughness) or linear:0.08(f0):6")
         known = ", ".join((*COMPONENTS, OTHER, FREE))
         raise LayoutError(f"{place}: unknown component {name or text!r}; known: {known}")
-    sign, bits = found["sign"] or "", int(found["bits"] or 0)
-    if found["bits"] and not bits:
+    sign, bits = match["sign"] or "", int(match["bits"] or 0)
+    if match["bits"] and not bits:
         raise LayoutError(f"{place}: {text}: a word has at least 1 bit; without a number it has a channel")
     if sign and name not in CARRIERS:
         raise LayoutError(f"{place}: {text}: only {', '.join(CARRIERS)} carry a sign")
     try:
-        kept = kept_as(found["curve"], found["range"], quantity_of(name)) if found["curve"] else None
+        kept = kept_as(match["curve"], match["range"], quantity_of(name)) if match["curve"] else None
     except ValueError as error:
         raise LayoutError(f"{place}: {text}: {error}") from error
     if kept and kept.is_whole and bits:

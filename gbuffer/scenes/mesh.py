@@ -196,8 +196,8 @@ def laid_by(mesh: Mesh, uv: np.ndarray) -> Mesh:
     source = np.concatenate([np.arange(len(mesh.positions)), shared])
     second = None if mesh.second_uv is None else mesh.second_uv[source]
     triangles = np.where(is_mirrored[:, None], twin[mesh.triangles], mesh.triangles)
-    made = Mesh(mesh.positions[source], mesh.normals[source], triangles, mesh.uv[source], second_uv=second)
-    return replace(made, authored=tangents(made, uv[source]))
+    split_mesh = Mesh(mesh.positions[source], mesh.normals[source], triangles, mesh.uv[source], second_uv=second)
+    return replace(split_mesh, authored=tangents(split_mesh, uv[source]))
 
 
 def plane(width: float, depth: float, repeat: float = 1.0) -> Mesh:

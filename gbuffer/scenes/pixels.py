@@ -46,11 +46,11 @@ def pixel_scene(pixels: PixelSurfaces, view: View) -> Scene:
     """
     covered = pixels.depth > 0
     reflectances, level = _levels(pixels.f0, covered)
-    meshes = [_squares(pixels.depth, level == at, view) for at in range(len(reflectances))]
+    meshes = [_squares(pixels.depth, level == index, view) for index in range(len(reflectances))]
     to_world, surface = np.linalg.inv(view.matrix())[None], _surface(pixels)
     return Scene(
-        parts=tuple(ScenePart(mesh, to_world, np.array([at]), casts=False) for at, mesh in enumerate(meshes)),
-        materials=tuple(replace(surface, reflectance=float(one)) for one in reflectances),
+        parts=tuple(ScenePart(mesh, to_world, np.array([i]), casts=False) for i, mesh in enumerate(meshes)),
+        materials=tuple(replace(surface, reflectance=float(reflectance)) for reflectance in reflectances),
         lights=(),
         ambient=(0.0, 0.0, 0.0),
         view=view,
@@ -73,10 +73,10 @@ def _levels(reflectance: np.ndarray, covered: np.ndarray) -> tuple[np.ndarray, n
 
 def _surface(pixels: PixelSurfaces) -> MetalRough:
     """A material of one texel for each pixel, that has all but the reflectance."""
-    one = np.ones_like(pixels.roughness)
+    ones = np.ones_like(pixels.roughness)
 
     def lying(*planes: np.ndarray) -> Map:
-        return Map(np.dstack([*planes, one]).astype(np.float32), wrap=("clamp", "clamp"))
+        return Map(np.dstack([*planes, ones]).astype(np.float32), wrap=("clamp", "clamp"))
 
     white = (1.0, 1.0, 1.0)
     return MetalRough(
@@ -85,10 +85,10 @@ def _surface(pixels: PixelSurfaces) -> MetalRough:
         roughness=1.0,
         emission=white,
         base_map=lying(pixels.base_color),
-        rough_metal_map=lying(one, pixels.roughness, pixels.metallic),
+        rough_metal_map=lying(ones, pixels.roughness, pixels.metallic),
         # Read as 2 c - 1.
         normal_map=lying(pixels.normal * 0.5 + 0.5),
-        occlusion_map=lying(pixels.ao, one, one),
+        occlusion_map=lying(pixels.ao, ones, ones),
         emission_map=lying(pixels.emissive),
     )
 

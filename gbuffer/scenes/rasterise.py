@@ -74,8 +74,8 @@ def rasterise(mesh: Mesh, camera: Camera, is_drawn: IsDrawn | None = None) -> Re
     is_met = _is_met(inverse[triangle], boxes, camera)
     number = np.flatnonzero(seen)
     kept = None if is_drawn is None else lambda some, weights: is_drawn(number[some], weights)
-    made = _resolve(corners, normals, inverse, triangle[is_met], boxes[is_met], camera, kept)
-    return replace(made, triangle=np.append(number, 0)[made.triangle])
+    rendered = _resolve(corners, normals, inverse, triangle[is_met], boxes[is_met], camera, kept)
+    return replace(rendered, triangle=np.append(number, 0)[rendered.triangle])
 
 
 def to_clip(corners: np.ndarray, camera: Camera) -> np.ndarray:

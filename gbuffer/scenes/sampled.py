@@ -32,10 +32,10 @@ class Pyramid:
     def levels(self) -> list[np.ndarray]:
         """(height, width, 3) each, float32, the last of one texel."""
         most = np.iinfo(self._lying.texels.dtype).max
-        made = [self._lying.texels[..., :3] * np.float32(2 / most) - np.float32(1)]
-        while max(made[-1].shape[:2]) > 1:
-            made.append(_halved(_halved(made[-1]).swapaxes(0, 1)).swapaxes(0, 1))
-        return made
+        levels = [self._lying.texels[..., :3] * np.float32(2 / most) - np.float32(1)]
+        while max(levels[-1].shape[:2]) > 1:
+            levels.append(_halved(_halved(levels[-1]).swapaxes(0, 1)).swapaxes(0, 1))
+        return levels
 
     def through(self, uv: np.ndarray, along_x: np.ndarray, along_y: np.ndarray) -> np.ndarray:
         """The map as pixels see it, (pixels, 3).
@@ -64,22 +64,22 @@ class Pyramid:
 
     def _between(self, uv: np.ndarray, level: np.ndarray) -> np.ndarray:
         """Trilinear: between the levels below and above."""
-        found = np.zeros((len(uv), 3))
+        samples = np.zeros((len(uv), 3))
         below = np.minimum(level.astype(int), len(self.levels) - 1)
         above = np.minimum(below + 1, len(self.levels) - 1)
         share = (level - below)[:, None]
         for number in np.unique(np.concatenate([below, above])):
             for chosen, weight in ((below == number, 1 - share), (above == number, share)):
-                found[chosen] += _bilinear(self.levels[number], uv[chosen], self._lying.wrap) * weight[chosen]
-        return found
+                samples[chosen] += _bilinear(self.levels[number], uv[chosen], self._lying.wrap) * weight[chosen]
+        return samples
 
 
 def _bilinear(texels: np.ndarray, uv: np.ndarray, wrap: tuple[Wrap, Wrap]) -> np.ndarray:
     """Between the four texels around (u, v), (points, channels)."""
     height, width = texels.shape[:2]
-    at = uv * (width, height) - 0.5
-    low = np.floor(at).astype(np.int64)
-    share = at - low
+    position = uv * (width, height) - 0.5
+    low = np.floor(position).astype(np.int64)
+    share = position - low
     (left, right), (top, bottom) = (
         [_wrapped(low[:, axis] + step, count, wrap[axis]) for step in (0, 1)]
         for axis, count in ((0, width), (1, height))
@@ -143,17 +143,17 @@ def mapped_normals(
 
 def coarser(drawn: Sequence[tuple[Mesh, Material | MetalRough]]) -> list[tuple[Mesh, Material | MetalRough]] | None:
     """The same with normal maps of 8 bits rounded to COARSER; None where none has 8."""
-    made: dict[int, np.ndarray] = {}
-    found = []
+    coarse_texels: dict[int, np.ndarray] = {}
+    pairs = []
     for mesh, material in drawn:
         lying = material.normal_map if isinstance(material, MetalRough) else None
         if isinstance(material, MetalRough) and lying and lying.texels.dtype == np.uint8:
-            if (texels := made.get(id(lying.texels))) is None:
+            if (texels := coarse_texels.get(id(lying.texels))) is None:
                 levels = np.round(np.arange(256) / 255 * COARSER) / COARSER
-                texels = made[id(lying.texels)] = np.round(levels * 65535).astype(np.uint16)[lying.texels]
+                texels = coarse_texels[id(lying.texels)] = np.round(levels * 65535).astype(np.uint16)[lying.texels]
             material = replace(material, normal_map=replace(lying, texels=texels))
-        found.append((mesh, material))
-    return found if made else None
+        pairs.append((mesh, material))
+    return pairs if coarse_texels else None
 
 
 def cut_out(drawn: Sequence[tuple[Mesh, Material | MetalRough]]) -> IsDrawn | None:
@@ -166,12 +166,12 @@ def cut_out(drawn: Sequence[tuple[Mesh, Material | MetalRough]]) -> IsDrawn | No
 
     def is_drawn(triangle: np.ndarray, weights: np.ndarray) -> np.ndarray:
         mesh_of = np.searchsorted(ends, triangle, side="right")
-        found = np.ones(len(triangle), bool)
+        is_opaque = np.ones(len(triangle), bool)
         for number, (mesh, material) in cut.items():
             some = np.flatnonzero(mesh_of == number)
             corners = mesh.triangles[triangle[some] - (ends[number] - len(mesh.triangles))]
-            found[some] = _alpha(mesh, material.base_map, corners, weights[some]) >= material.cutoff
-        return found
+            is_opaque[some] = _alpha(mesh, material.base_map, corners, weights[some]) >= material.cutoff
+        return is_opaque
 
     return is_drawn if cut else None
 
@@ -207,6 +207,6 @@ def _turned(n: np.ndarray, tangent: np.ndarray, slopes: np.ndarray) -> np.ndarra
     t = tangent[:, :3] - n * np.sum(n * tangent[:, :3], axis=1, keepdims=True)
     t /= np.maximum(np.linalg.norm(t, axis=1, keepdims=True), 1e-12)
     b = np.where(tangent[:, 3:] < 0, -1.0, 1.0) * np.cross(n, t)
-    made = t * slopes[:, :1] - b * slopes[:, 1:2] + n * slopes[:, 2:]
-    length = np.linalg.norm(made, axis=1, keepdims=True)
-    return np.where(length > 1e-9, made / np.maximum(length, 1e-9), n)
+    normals = t * slopes[:, :1] - b * slopes[:, 1:2] + n * slopes[:, 2:]
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    return np.where(length > 1e-9, normals / np.maximum(length, 1e-9), n)

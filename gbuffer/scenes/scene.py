@@ -121,9 +121,9 @@ class View:
             degrees: how far; any number.
         """
         axes, angle = self.matrix()[:3, :3], np.radians(degrees)
-        at = TURNS.index(axis)
+        index = TURNS.index(axis)
         # Rodrigues: v' = v cos a + (k x v) sin a + k (k . v) (1 - cos a), with k a unit vector
-        k = axes[at]
+        k = axes[index]
         turned = axes * np.cos(angle) + np.cross(k, axes) * np.sin(angle) + np.outer(axes @ k, k) * (1 - np.cos(angle))
         away = np.linalg.norm(np.subtract(self.target, self.eye))
         target, up = np.array(self.eye) - turned[2] * away, turned[1]
@@ -212,7 +212,12 @@ class Scene:
     @property
     def has_maps(self) -> bool:
         """Whether pictures vary its materials."""
-        return any(one for material in self.materials if isinstance(material, MetalRough) for one in material.maps)
+        return any(
+            material_map
+            for material in self.materials
+            if isinstance(material, MetalRough)
+            for material_map in material.maps
+        )
 
     @property
     def sun(self) -> Light | None:

@@ -148,7 +148,7 @@ class Names:
 
     def of(self, looks: Sequence[Any]) -> list[Any]:
         """What each value looks like, of the usual looks."""
-        return [(self.looks or looks)[at % len(self.looks or looks)] for at in range(len(self.values))]
+        return [(self.looks or looks)[i % len(self.looks or looks)] for i in range(len(self.values))]
 
 
 @dataclass(frozen=True)
@@ -221,10 +221,10 @@ class Mark:
 
     def groups(self, rows: Sequence[Row]) -> list[list[Row]]:
         """The rows of each line, area or end."""
-        found: dict[Hashable, list[Row]] = {}
+        groups: dict[Hashable, list[Row]] = {}
         for row in rows:
-            found.setdefault(tuple(row.get(name) for name in self.by), []).append(row)
-        return list(found.values())
+            groups.setdefault(tuple(row.get(name) for name in self.by), []).append(row)
+        return list(groups.values())
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -326,8 +326,8 @@ class Chart:
         axis: Axis = getattr(self, name)
         if axis.domain or axis.scale == Scale.NAMES:
             return axis
-        found = [axis.along(value) for value in self._values(name)]
-        low, high = min(found, default=0.0), max(found, default=1.0)
+        positions = [axis.along(value) for value in self._values(name)]
+        low, high = min(positions, default=0.0), max(positions, default=1.0)
         margin = MARGIN * (high - low) or 0.5
         return replace(axis, domain=(axis.back(low - margin), axis.back(high + margin)))
 
@@ -344,13 +344,13 @@ def apart(wanted: Sequence[float], least: float) -> list[float]:
     Barlow et al. 1972, Statistical Inference under Order Restrictions).
     """
     groups: list[tuple[float, int]] = []  # the mean of wanted less what stands before, and of how many
-    for at, place in enumerate(wanted):
-        groups.append((place - at * least, 1))
+    for index, place in enumerate(wanted):
+        groups.append((place - index * least, 1))
         while len(groups) > 1 and groups[-2][0] > groups[-1][0]:
             (a, m), (b, n) = groups.pop(-2), groups.pop()
             groups.append(((a * m + b * n) / (m + n), m + n))
     means = [mean for mean, count in groups for _ in range(count)]
-    return [mean + at * least for at, mean in enumerate(means)]
+    return [mean + i * least for i, mean in enumerate(means)]
 
 
 def lines_apart(axis: Axis, values: Sequence[float], height: float, least: float) -> list[float]:
@@ -365,9 +365,9 @@ def lines_apart(axis: Axis, values: Sequence[float], height: float, least: float
         shares of the axis, in the order of the values.
     """
     order = sorted(range(len(values)), key=lambda at: axis.share(values[at]))
-    placed = apart([axis.share(values[at]) * height for at in order], least)
+    placed = apart([axis.share(values[i]) * height for i in order], least)
     shares = dict(zip(order, placed, strict=True))
-    return [shares[at] / height for at in range(len(values))]
+    return [shares[i] / height for i in range(len(values))]
 
 
 def distinct(rows: Sequence[Row], field: str) -> tuple[Any, ...]:
@@ -378,11 +378,11 @@ def distinct(rows: Sequence[Row], field: str) -> tuple[Any, ...]:
 def _between(colours: Sequence[str], count: int) -> list[str]:
     """As many colours as asked for, evenly spaced along a sequence of them; of one alone the middle."""
     last = len(colours) - 1
-    return [_mixed(colours, at / (count - 1) * last if count > 1 else last / 2) for at in range(count)]
+    return [_mixed(colours, i / (count - 1) * last if count > 1 else last / 2) for i in range(count)]
 
 
 def _mixed(colours: Sequence[str], place: float) -> str:
     """The colour at a place of a sequence: 2.5 is between the third and the fourth."""
-    at = min(int(place), len(colours) - 2)
-    pairs = ((int(colour[i : i + 2], 16) for colour in colours[at : at + 2]) for i in (1, 3, 5))
-    return "#" + "".join(f"{round(a + (b - a) * (place - at)):02X}" for a, b in pairs)
+    index = min(int(place), len(colours) - 2)
+    pairs = ((int(colour[i : i + 2], 16) for colour in colours[index : index + 2]) for i in (1, 3, 5))
+    return "#" + "".join(f"{round(a + (b - a) * (place - index)):02X}" for a, b in pairs)

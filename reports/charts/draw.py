@@ -148,7 +148,7 @@ def _ticks(axis: Any, said: Axis) -> None:
     assert said.domain
     ticks = said.ticks or tuple((float(count), str(count)) for count in said.counts)
     if ticks:
-        axis.set_ticks([at for at, _ in ticks], [as_text(name) for _, name in ticks], size=8)
+        axis.set_ticks([position for position, _ in ticks], [as_text(name) for _, name in ticks], size=8)
         axis.set_ticks([], minor=True)
         return
     if said.scale == Scale.LOG and said.domain[1] < 3000 * said.domain[0]:
@@ -204,7 +204,7 @@ def _cells(axes: Any, part: Chart, mark: Mark, rows: Sequence[Row]) -> None:
     x, y = places(part, mark, rows)
     colours_of = shade(part.colour)
     colours = [colours_of.to_rgba(row[mark.colour]) for row in rows]
-    axes.barh(y, 1, 1, [at - 0.5 for at in x], color=colours)
+    axes.barh(y, 1, 1, [centre - 0.5 for centre in x], color=colours)
 
 
 def _texts(axes: Any, part: Chart, mark: Mark, rows: Sequence[Row]) -> None:
@@ -213,8 +213,8 @@ def _texts(axes: Any, part: Chart, mark: Mark, rows: Sequence[Row]) -> None:
     for row, x, y in zip(rows, *places(part, mark, rows), strict=True):
         offset = (0 if is_cell else 4, 0)
         colour = colour_of(part, mark, row)
-        said = as_text(str(row[mark.text]))
-        axes.annotate(said, (x, y), offset, textcoords="offset points", va="center", color=colour, **style)
+        text = as_text(str(row[mark.text]))
+        axes.annotate(text, (x, y), offset, textcoords="offset points", va="center", color=colour, **style)
 
 
 DRAWN = MappingProxyType(
@@ -237,10 +237,10 @@ def _legend(place: Any, chart: Chart) -> None:
     if any(mark.kind == Kind.ENDS for mark in chart.marks):
         return
     handles = [
-        Line2D([], [], label=as_text(f"{value} {names.title}".strip()), **_look(chart, named, at))
+        Line2D([], [], label=as_text(f"{value} {names.title}".strip()), **_look(chart, named, i))
         for named in chart.legends
         for names in [next(iter(named.values()))]
-        for at, value in enumerate(names.values)
+        for i, value in enumerate(names.values)
     ]
     if handles:
         longest = max(len(str(handle.get_label())) for handle in handles)

@@ -35,8 +35,8 @@ class Drawing:
 
 def of(chart: Chart) -> Drawing:
     """A chart, to be drawn."""
-    said = f"{chart.subtitle}. {chart.description}"
-    return Drawing(chart.name, chart.title, said, partial(figure, (chart,)), partial(spec, chart))
+    description = f"{chart.subtitle}. {chart.description}"
+    return Drawing(chart.name, chart.title, description, partial(figure, (chart,)), partial(spec, chart))
 
 
 def write(drawing: Drawing, *files: tuple[Path, str]) -> None:

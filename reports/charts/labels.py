@@ -110,7 +110,7 @@ def _box(x0: float, y0: float, x1: float, y1: float, padding: float) -> Any:
 
 def _placed(written: Any, taken: Sequence[Any], within: Any) -> Any:
     """Moves a label to the nearest place that is free, or else to the one that is taken least; gives its box."""
-    found, pixels, boxes = [], written.figure.dpi / 72, np.array([box.extents for box in taken])
+    candidates, pixels, boxes = [], written.figure.dpi / 72, np.array([box.extents for box in taken])
     # Laying text out takes a hundred times as long as moving its box.
     at_point: dict[tuple[str, str], Any] = {}
     for x, y in _label_offsets():
@@ -121,10 +121,10 @@ def _placed(written: Any, taken: Sequence[Any], within: Any) -> Any:
             at_point[side, height] = extent(written)
         box = at_point[side, height].translated(x * pixels, y * pixels)
         outside = not (within.x0 <= box.x0 and box.x1 <= within.x1 and within.y0 <= box.y0 and box.y1 <= within.y1)
-        found.append((_overlaps(box, boxes) + 2 * outside, (x, y, side, height)))
-        if not found[-1][0]:
+        candidates.append((_overlaps(box, boxes) + 2 * outside, (x, y, side, height)))
+        if not candidates[-1][0]:
             break
-    x, y, side, height = min(found, key=lambda f: f[0])[1]
+    x, y, side, height = min(candidates, key=lambda f: f[0])[1]
     written.set(position=(x, y), ha=side, va=height)
     return extent(written)
 

@@ -32,9 +32,9 @@ def beside(one: np.ndarray, other: np.ndarray, title: str) -> Image.Image:
     sheet = Image.new("RGB", (wide, height + 2 * CAPTION_HEIGHT), "white")
     text = ImageDraw.Draw(sheet)
     text.text((2, 1), title, fill="black")
-    for at, (pixels, caption) in enumerate(zip((one, other, apart), CAPTIONS, strict=True)):
+    for column, (pixels, caption) in enumerate(zip((one, other, apart), CAPTIONS, strict=True)):
         bytes_ = np.round(np.clip(np.nan_to_num(pixels), 0, 1) * 255).astype(np.uint8)
-        left = at * (width + GAP)
+        left = column * (width + GAP)
         text.text((left + 2, CAPTION_HEIGHT), caption, fill="black")
         shown = Image.fromarray(bytes_).resize((width, height), Image.Resampling.NEAREST)
         sheet.paste(shown, (left, 2 * CAPTION_HEIGHT))

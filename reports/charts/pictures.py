@@ -109,9 +109,9 @@ def _scale_of_colours(width: int, height: int = SCALE_HEIGHT) -> np.ndarray:
     draw = ImageDraw.Draw(image)
     for power in range(low, high + 1):
         text = f"{10.0**power:g}"
-        at = (power - low) / (high - low) * (width - 1)
-        at = min(max(at - draw.textlength(text) / 2, 2), width - 2 - draw.textlength(text))
-        draw.text((at, 2), text, fill="black")
+        left = (power - low) / (high - low) * (width - 1)
+        left = min(max(left - draw.textlength(text) / 2, 2), width - 2 - draw.textlength(text))
+        draw.text((left, 2), text, fill="black")
     return np.asarray(image)
 
 

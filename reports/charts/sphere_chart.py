@@ -77,8 +77,8 @@ def sphere_chart(maps: Maps, marks: Maps | None = None, halves: tuple[str, str] 
     for axis, (name, discs) in zip(axes.flat, maps.items(), strict=False):
         axis.imshow(coloured(np.concatenate(list(discs), axis=1), limits), interpolation="none")
         _mark(axis, (marks or {}).get(name, np.empty((0, 3))), discs.shape[-1])
-        for side, said in enumerate(halves):
-            axis.text((side + 0.5) * discs.shape[-1], discs.shape[-1], said, size=6, ha="center", va="top")
+        for side, caption in enumerate(halves):
+            axis.text((side + 0.5) * discs.shape[-1], discs.shape[-1], caption, size=6, ha="center", va="top")
         axis.set_title(_marked_title(name, marks), size=8)
     for axis in axes.flat:
         axis.set_axis_off()

@@ -47,17 +47,17 @@ class Globes:
 def _groups(maps: Sequence[SphereMap]) -> dict[int, list[SphereMap]]:
     """Maps by bits, the number with most codecs first; those whose code is of as many bits share a scale."""
     groups: dict[int, list[SphereMap]] = {}
-    for one in maps:
-        groups.setdefault(one.bits, []).append(one)
+    for sphere_map in maps:
+        groups.setdefault(sphere_map.bits, []).append(sphere_map)
     return dict(sorted(groups.items(), key=lambda item: (-len(item[1]), item[0])))
 
 
 def shown(maps: Sequence[SphereMap], most: int = MOST) -> list[SphereMap]:
     """Those that a page has: of each number of bits the most exact, the second, and so on."""
     ranked = [sorted(group, key=lambda one: float(np.nanmean(one.mean_deg))) for group in _groups(maps).values()]
-    turns = (one for turn in zip_longest(*ranked) for one in turn if one is not None)
-    kept = {one.key.label for one in islice(turns, most)}
-    return [one for one in maps if one.key.label in kept]
+    turns = (sphere_map for turn in zip_longest(*ranked) for sphere_map in turn if sphere_map is not None)
+    kept = {sphere_map.key.label for sphere_map in islice(turns, most)}
+    return [sphere_map for sphere_map in maps if sphere_map.key.label in kept]
 
 
 def globes(maps: Sequence[SphereMap]) -> list[Globes]:
@@ -67,16 +67,18 @@ def globes(maps: Sequence[SphereMap]) -> list[Globes]:
 
 def _globes(bits: int, maps: Sequence[SphereMap]) -> Globes:
     limits = sphere_chart.sphere_range({f"{m.key.label} {which}": a for m in maps for which, a in _named_planes(m)})
-    made = []
-    for one in maps:
-        mean, largest = (small_uri(_disc_pixels(plane, limits)) for _, plane in _named_planes(one))
-        front, back = (f"{_mean(h):.3g}" if np.isfinite(h).any() else "" for h in one.mean_deg)
+    drawn_globes = []
+    for sphere_map in maps:
+        mean, largest = (small_uri(_disc_pixels(plane, limits)) for _, plane in _named_planes(sphere_map))
+        front, back = (f"{_mean(h):.3g}" if np.isfinite(h).any() else "" for h in sphere_map.mean_deg)
         figures = f"mean {front} degrees towards the viewer" + (f", {back} away" if back else "")
-        made.append(Globe(one.key.label, mean, largest, f"{figures}; largest {np.nanmax(one.max_deg):.3g}"))
+        drawn_globes.append(
+            Globe(sphere_map.key.label, mean, largest, f"{figures}; largest {np.nanmax(sphere_map.max_deg):.3g}")
+        )
     low, high = limits
     values = [m * 10.0**e for e in range(-7, 4) for m in (1, 2, 5) if low <= m * 10.0**e <= high]
     ticks = [(100 * math.log(v / low) / math.log(high / low), f"{v:g}") for v in values]
-    return Globes(bits, made, low, high, ticks)
+    return Globes(bits, drawn_globes, low, high, ticks)
 
 
 def _mean(half: np.ndarray) -> float:
@@ -103,12 +105,14 @@ def colour_strip() -> str:
 
 def drawings(maps: Sequence[SphereMap]) -> list[Drawing]:
     """The maps as charts for files, one for each number of bits."""
-    said = "Mean angle in degrees in each direction."
+    description = "Mean angle in degrees in each direction."
     return [
-        Drawing(f"sphere-{bits}-bits", f"Errors over the sphere, {bits} bits", said, partial(_drawn_figure, group))
+        Drawing(
+            f"sphere-{bits}-bits", f"Errors over the sphere, {bits} bits", description, partial(_drawn_figure, group)
+        )
         for bits, group in _groups(maps).items()
     ]
 
 
 def _drawn_figure(maps: Sequence[SphereMap]) -> Any:
-    return sphere_chart.sphere_chart({as_text(one.key.label): one.mean_deg for one in maps})
+    return sphere_chart.sphere_chart({as_text(sphere_map.key.label): sphere_map.mean_deg for sphere_map in maps})

@@ -70,32 +70,36 @@ STOPS = 17
 
 def library() -> str:
     """d3, as a script. Raises PlotError where its package has another one."""
-    found = find_spec(PACKAGE)
-    path = Path(found.submodule_search_locations[0]) / LIBRARY if found and found.submodule_search_locations else None
+    module_spec = find_spec(PACKAGE)
+    path = (
+        Path(module_spec.submodule_search_locations[0]) / LIBRARY
+        if module_spec and module_spec.submodule_search_locations
+        else None
+    )
     if path and path.is_file():
         return path.read_text(encoding="utf-8")
-    said = f"{PACKAGE} {version(PACKAGE)} has no {LIBRARY}" if found else f"{PACKAGE} is missing"
-    raise PlotError(f"{said}, which draws the page's charts; install {PACKAGE} 0.5.12")
+    message = f"{PACKAGE} {version(PACKAGE)} has no {LIBRARY}" if module_spec else f"{PACKAGE} is missing"
+    raise PlotError(f"{message}, which draws the page's charts; install {PACKAGE} 0.5.12")
 
 
 def spec(chart: Chart) -> Spec:
     """A chart as JSON has it: what all its panels share, and each panel with its marks and rows."""
     parts = chart.parts()
     has_names = any(name for name, _ in parts) or (chart.switch is not None and chart.switch.usual != ALL)
-    made: Spec = {"label": f"{chart.title}. {chart.description}", "height": chart.pixels}
-    made |= {"top": NAME_LINE if has_names else 8, "bottom": max(_bottom(part.x) for _, part in parts)}
-    made |= {"zooms": _zooms(chart), "legends": [_legend(chart, one) for one in chart.legends]}
-    made["shades"] = _shades(chart.colour) if isinstance(chart.colour, Shades) else None
-    made["switch"] = _switch(chart.switch) if chart.switch else None
+    chart_spec: Spec = {"label": f"{chart.title}. {chart.description}", "height": chart.pixels}
+    chart_spec |= {"top": NAME_LINE if has_names else 8, "bottom": max(_bottom(part.x) for _, part in parts)}
+    chart_spec |= {"zooms": _zooms(chart), "legends": [_legend(chart, legend) for legend in chart.legends]}
+    chart_spec["shades"] = _shades(chart.colour) if isinstance(chart.colour, Shades) else None
+    chart_spec["switch"] = _switch(chart.switch) if chart.switch else None
     for look in LOOKS:
         if isinstance(names := getattr(chart, look), Names):
-            made[look] = {
+            chart_spec[look] = {
                 "field": names.field,
                 "looks": dict(zip(map(str, names.values), LOOKS[look](names), strict=True)),
             }
     if any(mark.kind == Kind.LABELS for mark in chart.marks):
-        made["around"] = {"distances": list(DISTANCES), "angles": ANGLES}
-    return made | {"panels": [_panel(name, part) for name, part in parts]}
+        chart_spec["around"] = {"distances": list(DISTANCES), "angles": ANGLES}
+    return chart_spec | {"panels": [_panel(name, part) for name, part in parts]}
 
 
 def codecs(made: Spec) -> set[str]:
@@ -121,7 +125,7 @@ def _zooms(chart: Chart) -> bool:
 
 
 def _has_words(axis: Axis) -> bool:
-    return axis.scale == Scale.NAMES or any(f"{at:g}" != name for at, name in axis.ticks)
+    return axis.scale == Scale.NAMES or any(f"{position:g}" != name for position, name in axis.ticks)
 
 
 def _bottom(axis: Axis) -> int:
@@ -133,7 +137,7 @@ def _bottom(axis: Axis) -> int:
 
 def _colours(names: Names) -> list[str]:
     """The colours of names in either theme."""
-    return [f"light-dark({one}, {other})" for one, other in zip(names.colours(), names.colours(True), strict=True)]
+    return [f"light-dark({light}, {other})" for light, other in zip(names.colours(), names.colours(True), strict=True)]
 
 
 def _paths(names: Names) -> list[str]:
@@ -154,8 +158,8 @@ LOOKS = MappingProxyType({"colour": _colours, "shape": _paths, "dash": _dashes})
 def _legend(chart: Chart, named: Mapping[str, Names]) -> Spec:
     """A line of the legend: names with a colour, a shape or a dash, or several of them."""
     names = next(iter(named.values()))
-    kinds = {mark.kind for mark in chart.marks if mark.colour in {one.field for one in named.values()}}
-    looks = {look: LOOKS[look](one) for look, one in named.items()}
+    kinds = {mark.kind for mark in chart.marks if mark.colour in {look_names.field for look_names in named.values()}}
+    looks = {look: LOOKS[look](look_names) for look, look_names in named.items()}
     usual = {
         "colour": ROLES[INK],
         "shape": PATHS["square" if kinds & {Kind.BARS, Kind.AREAS} else "circle"],
@@ -163,8 +167,9 @@ def _legend(chart: Chart, named: Mapping[str, Names]) -> Spec:
     }
     is_line = "shape" not in named and ("dash" in named or Kind.LINES in kinds)
     entries = [
-        {"text": str(value), "is_line": is_line} | {look: looks.get(look, {at: one})[at] for look, one in usual.items()}
-        for at, value in enumerate(names.values)
+        {"text": str(value), "is_line": is_line}
+        | {look: looks.get(look, {i: default})[i] for look, default in usual.items()}
+        for i, value in enumerate(names.values)
     ]
     return {"title": names.title, "entries": entries}
 
@@ -172,7 +177,7 @@ def _legend(chart: Chart, named: Mapping[str, Names]) -> Spec:
 def _shades(shades: Shades) -> Spec:
     """The colours of numbers, and what their legend is marked by: shares of its length, and texts."""
     low, high = math.log10(shades.low), math.log10(shades.high)
-    values = [shades.low, *(10.0**at for at in range(math.floor(low) + 1, math.ceil(high))), shades.high]
+    values = [shades.low, *(10.0**power for power in range(math.floor(low) + 1, math.ceil(high))), shades.high]
     ticks = [(round(100 * (math.log10(v) - low) / (high - low), 2), f"{v:g}") for v in values]
     # The end needs room of its own.
     ticks = [tick for tick in ticks[:-1] if tick[0] < 92] + ticks[-1:]
@@ -187,19 +192,19 @@ def _panel(name: str, part: Chart) -> Spec:
     for mark in part.marks:
         rows = _drawn(part, mark)
         if rows:
-            at = next((at for at, (kept, _) in enumerate(tables) if kept == rows), len(tables))
-            tables[at:] = tables[at:] or [(rows, set())]
-            tables[at][1].update(_fields(part, mark))
-            marks.append(_mark(part, mark) | {"table": at})
-    made: Spec = {"name": name, "x": _axis(part.x), "y": _axis(part.y), "marks": marks}
-    return made | {"tables": [_columns(rows, fields) for rows, fields in tables]}
+            index = next((i for i, (kept, _) in enumerate(tables) if kept == rows), len(tables))
+            tables[index:] = tables[index:] or [(rows, set())]
+            tables[index][1].update(_fields(part, mark))
+            marks.append(_mark(part, mark) | {"table": index})
+    panel_spec: Spec = {"name": name, "x": _axis(part.x), "y": _axis(part.y), "marks": marks}
+    return panel_spec | {"tables": [_columns(rows, fields) for rows, fields in tables]}
 
 
 def _drawn(part: Chart, mark: Mark) -> Sequence[Row]:
     """The rows of a mark; of names at ends the last ones, with the share of the panel's height where each stands."""
     if mark.kind != Kind.ENDS:
         return part.rows_of(mark)
-    all_ends = [row for one in part.marks if one.kind == Kind.ENDS for row in part.lasts(one)]
+    all_ends = [row for other in part.marks if other.kind == Kind.ENDS for row in part.lasts(other)]
     shares = lines_apart(part.y, [row[mark.y] for row in all_ends], part.pixels, LABEL_LINE)
     places = {id(row): share for row, share in zip(all_ends, shares, strict=True)}
     return [{**row, "end": places[id(row)]} for row in part.lasts(mark)]
@@ -212,40 +217,42 @@ def _fields(part: Chart, mark: Mark) -> set[str]:
 
 def _mark(part: Chart, mark: Mark) -> Spec:
     """A mark, less what is as usual; `named` are the looks by which it tells names apart."""
-    made = {name: value for name in ("x", "y", "x2", "y2", "text", "rest") if (value := getattr(mark, name))}
-    made |= {"kind": mark.kind, "colour": mark.colour} | ({"css": ROLES[mark.colour]} if mark.colour in ROLES else {})
-    made["named"] = [look for look in LOOKS if part.named(look, mark)]
+    mark_spec = {name: value for name in ("x", "y", "x2", "y2", "text", "rest") if (value := getattr(mark, name))}
+    mark_spec |= {"kind": mark.kind, "colour": mark.colour} | (
+        {"css": ROLES[mark.colour]} if mark.colour in ROLES else {}
+    )
+    mark_spec["named"] = [look for look in LOOKS if part.named(look, mark)]
     if mark.kind == Kind.POINTS:
-        made["shape"] = PATHS.get(mark.shape, "")
+        mark_spec["shape"] = PATHS.get(mark.shape, "")
     if mark.kind == Kind.LINES:
-        made["dash"] = _dash(STROKES.get(mark.dash, ()))
+        mark_spec["dash"] = _dash(STROKES.get(mark.dash, ()))
         # What is dotted is beside the point.
-        made["is_faint"] = mark.dash == "dotted"
+        mark_spec["is_faint"] = mark.dash == "dotted"
     if mark.by:
-        made["by"] = list(mark.by)
-    return made | ({"is_stepped": True} if mark.is_stepped else {}) | ({"tips": mark.tips} if mark.tips else {})
+        mark_spec["by"] = list(mark.by)
+    return mark_spec | ({"is_stepped": True} if mark.is_stepped else {}) | ({"tips": mark.tips} if mark.tips else {})
 
 
 def _axis(axis: Axis) -> Spec:
-    made: Spec = {"title": axis.title, "scale": axis.scale}
+    axis_spec: Spec = {"title": axis.title, "scale": axis.scale}
     if axis.scale == Scale.NAMES:
-        return made | {"names": list(axis.names)}
+        return axis_spec | {"names": list(axis.names)}
     ticks = axis.ticks or tuple((count, str(count)) for count in axis.counts)
-    made |= {"domain": list(axis.domain or ()), "ticks": ticks, "has_words": _has_words(axis)}
-    return made | ({"linear_to": LINEAR_TO} if axis.scale == Scale.COUNT else {})
+    axis_spec |= {"domain": list(axis.domain or ()), "ticks": ticks, "has_words": _has_words(axis)}
+    return axis_spec | ({"linear_to": LINEAR_TO} if axis.scale == Scale.COUNT else {})
 
 
 def _columns(rows: Sequence[Row], fields: set[str]) -> Spec:
     """Rows as columns; of words, the different ones and which of them each row has."""
-    found = {name: [_plain(row.get(name)) for row in rows] for name in sorted(fields)}
-    return {name: _words(values) for name, values in found.items() if any(value is not None for value in values)}
+    columns = {name: [_plain(row.get(name)) for row in rows] for name in sorted(fields)}
+    return {name: _words(values) for name, values in columns.items() if any(value is not None for value in values)}
 
 
 def _words(values: list[Any]) -> Any:
     names = list(dict.fromkeys(values))
     if not all(isinstance(name, str) for name in names):
         return values
-    places = {name: at for at, name in enumerate(names)}
+    places = {name: i for i, name in enumerate(names)}
     return {"names": names, "places": [places[value] for value in values]}
 
 

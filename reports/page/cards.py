@@ -34,10 +34,10 @@ def block(found: Found, names: Sequence[str]) -> str:
     sections = sections_of(found)
     codecs = codecs_of(found, names)
     shown = set(map(of_encoding, names))
-    encodings = {name: one for name, one in about["encodings"].items() if name in shown}
+    encodings = {name: encoding for name, encoding in about["encodings"].items() if name in shown}
     tables = [_table(section, about["takes"][section.key]) for section in sections]
-    made = {"codecs": codecs, "encodings": encodings, "tables": tables, "code": _code(found, names)}
-    return packed(json.dumps(made, allow_nan=False, separators=(",", ":")))
+    content = {"codecs": codecs, "encodings": encodings, "tables": tables, "code": _code(found, names)}
+    return packed(json.dumps(content, allow_nan=False, separators=(",", ":")))
 
 
 def sections_of(found: Found) -> list[TableSection]:
@@ -63,10 +63,10 @@ def _table(section: TableSection, takes: Sequence[str]) -> dict[str, Any]:
     columns = [section.column(name) for name in whole(section.rows)[0]]
     keys = [column.name for column in columns if column.role is Role.KEY and column.name not in OWN]
     figures = sorted(filter(is_figure, columns), key=lambda column: column.drops > 0)
-    found = {"key": section.key, "title": section.about.title, "view": section.about.view, "takes": list(takes)}
-    found |= {"keys": keys, "figures": [column.name for column in figures]}
-    found |= {"texel": [column.name for column in figures if section.about.of_texels or column.name in OF_TEXELS]}
-    return found | {"reasons": [column.name for column in columns if column.role is Role.REASON]}
+    table = {"key": section.key, "title": section.about.title, "view": section.about.view, "takes": list(takes)}
+    table |= {"keys": keys, "figures": [column.name for column in figures]}
+    table |= {"texel": [column.name for column in figures if section.about.of_texels or column.name in OF_TEXELS]}
+    return table | {"reasons": [column.name for column in columns if column.role is Role.REASON]}
 
 
 def is_figure(column: Column) -> bool:
@@ -84,8 +84,8 @@ def _first_rows(sections: Sequence[TableSection], known: Mapping[str, Any]) -> d
             key = CodecKey.said_by(row)
             if key and _first(row, MEAN) is not None:
                 labels.setdefault(key.label)
-                one = (bool(row.get("lost_percent")), not section.about.leads, key.label, row)
-                rows.setdefault(_stored(key.label, known), []).append(one)
+                entry = (bool(row.get("lost_percent")), not section.about.leads, key.label, row)
+                rows.setdefault(_stored(key.label, known), []).append(entry)
     return {label: _headline(_best_row(label, rows[_stored(label, known)])) for label in labels}
 
 
@@ -116,15 +116,15 @@ def _code(found: Found, names: Sequence[str]) -> dict[str, Any]:
         return {"languages": {}, "pieces": [], "codecs": {}}
     codecs = {name: kept["codecs"][name] for name in names if name in kept["codecs"]}
     # Sorted, so that what is alike lies close together and packs small.
-    places = {at: i for i, at in enumerate(sorted(set(_places(codecs)), key=kept["pieces"].__getitem__))}
+    places = {piece: i for i, piece in enumerate(sorted(set(_places(codecs)), key=kept["pieces"].__getitem__))}
     texts = {
-        name: one | {"texts": {word: [places[at] for at in text] for word, text in one["texts"].items()}}
-        for name, one in codecs.items()
+        name: codec | {"texts": {word: [places[piece] for piece in text] for word, text in codec["texts"].items()}}
+        for name, codec in codecs.items()
     }
-    return {"languages": kept["languages"], "pieces": [kept["pieces"][at] for at in places], "codecs": texts}
+    return {"languages": kept["languages"], "pieces": [kept["pieces"][piece] for piece in places], "codecs": texts}
 
 
 def _places(codecs: Mapping[str, Any]) -> Iterator[int]:
-    for one in codecs.values():
-        for text in one["texts"].values():
+    for codec in codecs.values():
+        for text in codec["texts"].values():
             yield from text

@@ -57,12 +57,12 @@ def codec_pages(found: Found, names: Sequence[str], site: Site, run_page: str) -
     groups = {name: list(labels) for name, labels in groupby(names, cards.of_encoding)}
     named = zip(groups, plain_names(groups, "encoding"), strict=True)
     files = {group: f"{FOLDER}/{name}.html" for group, name in named}
-    made = {}
+    pages = {}
     for name, path in files.items():
         about, card = _page(found, name, {label: codecs[label] for label in groups[name]}), _card(groups[name][0])
         around = base(SCRIPTS) | site.leads(path)
-        made[path] = template("codec.html.j2").render(codec=about, card=linked(run_page + card, path), **around)
-    return made | ({INDEX: _index_page(found, codecs, files, site)} if groups else {})
+        pages[path] = template("codec.html.j2").render(codec=about, card=linked(run_page + card, path), **around)
+    return pages | ({INDEX: _index_page(found, codecs, files, site)} if groups else {})
 
 
 def _card(label: str) -> str:
@@ -80,7 +80,7 @@ def _page(found: Found, name: str, codecs: Mapping[str, Row]) -> CodecPage:
         says=known.get("says") or OWN,
         facts=list(_facts(known)),
         storages=_codec_table(f"{name} by storage", codecs),
-        tables=[one for section in cards.sections_of(found) if (one := _rows(section, name))],
+        tables=[section_table for section in cards.sections_of(found) if (section_table := _rows(section, name))],
         code=code,
         look_ups=bool(known.get("tables")),
     )
@@ -89,12 +89,12 @@ def _page(found: Found, name: str, codecs: Mapping[str, Row]) -> CodecPage:
 def _description(name: str, known: Mapping[str, Any], codecs: Mapping[str, Row]) -> str:
     """What a search shows: what it is, and its figures where it takes the fewest bits."""
     says = known.get("says") or f"{name}, an encoding of normals."
-    measured = [(label, one) for label, one in codecs.items() if "mean" in one]
+    measured = [(label, row) for label, row in codecs.items() if "mean" in row]
     if not measured:
         return says
-    label, one = min(measured, key=lambda one: one[1].get("bits") or math.inf)
-    slots = f", {one['slots']:g} issue slots to encode and decode" if "slots" in one else ""
-    return f"{says} {label}: mean error {one['mean']:.3g} degrees on {one['of']}{slots}."
+    label, figures = min(measured, key=lambda one: one[1].get("bits") or math.inf)
+    slots = f", {figures['slots']:g} issue slots to encode and decode" if "slots" in figures else ""
+    return f"{says} {label}: mean error {figures['mean']:.3g} degrees on {figures['of']}{slots}."
 
 
 def _facts(known: Mapping[str, Any]) -> Iterator[tuple[str, Lines]]:
@@ -121,14 +121,14 @@ def _users(used: Sequence[tuple[str, int, str]]) -> str:
 def _codec_table(title: str, codecs: Mapping[str, Row]) -> PageTable:
     """The figures of codecs; of those that have none only where no other has any."""
     rows = [
-        {"codec": label, "storage": one.get("storage"), **{name: one.get(key) for name, key in FIGURES.items()}}
-        for label, one in _measured(codecs).items()
+        {"codec": label, "storage": row.get("storage"), **{name: row.get(key) for name, key in FIGURES.items()}}
+        for label, row in _measured(codecs).items()
     ]
     return table(title, rows, lambda name: LISTED.get(name, ""))
 
 
 def _measured(codecs: Mapping[str, Row]) -> Mapping[str, Row]:
-    return {label: one for label, one in codecs.items() if "mean" in one} or codecs
+    return {label: row for label, row in codecs.items() if "mean" in row} or codecs
 
 
 def _rows(section: TableSection, name: str) -> tuple[str, str, PageTable] | None:
@@ -141,8 +141,8 @@ def _rows(section: TableSection, name: str) -> tuple[str, str, PageTable] | None
     if not figures:
         return None
     shown = [{column: row[column] for column in (*keys, *figures)} for row in rows]
-    made = sheet_table(Sheet(f"{name} in the table {section.key}", shown), section.column)
-    return section.key, section.about.title, made
+    page_table = sheet_table(Sheet(f"{name} in the table {section.key}", shown), section.column)
+    return section.key, section.about.title, page_table
 
 
 def _code(found: Found, codecs: Mapping[str, Row]) -> Iterator[tuple[str, Sequence[tuple[str, str]]]]:
@@ -151,7 +151,10 @@ def _code(found: Found, codecs: Mapping[str, Row]) -> Iterator[tuple[str, Sequen
     for label in codecs:
         if label in kept["codecs"]:
             texts = kept["codecs"][label]["texts"].items()
-            yield label, [(kept["languages"][word], "".join(kept["pieces"][at] for at in text)) for word, text in texts]
+            yield (
+                label,
+                [(kept["languages"][word], "".join(kept["pieces"][piece] for piece in text)) for word, text in texts],
+            )
 
 
 def _index_page(found: Found, codecs: Mapping[str, Row], files: Mapping[str, str], site: Site) -> str:

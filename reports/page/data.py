@@ -29,18 +29,18 @@ def block(rows: Sequence[Row], columns: Iterable[Column]) -> str:
     known = tuple(columns)
     names = list(rows[0]) if rows else []
     digits = DIGITS if len(rows) > MANY_ROWS else None
-    made = [
+    column_blocks = [
         {**_about(column_called(name, known) or undefined(name), name), **_values(name, rows, digits)} for name in names
     ]
-    said = {"count": len(rows), **({"digits": digits} if digits else {}), "columns": made}
-    return packed(json.dumps(said, allow_nan=False, separators=(",", ":")))
+    content = {"count": len(rows), **({"digits": digits} if digits else {}), "columns": column_blocks}
+    return packed(json.dumps(content, allow_nan=False, separators=(",", ":")))
 
 
 def _about(column: Column, name: str) -> dict[str, Any]:
     """What is said of a column, less what is empty."""
-    said = {"says": column.definition, "better": column.better, "role": column.role.value, "unit": column.unit}
-    said |= {"hidden": not column.shown}
-    return {"name": name, "title": title_of(name), **{key: value for key, value in said.items() if value}}
+    facts = {"says": column.definition, "better": column.better, "role": column.role.value, "unit": column.unit}
+    facts |= {"hidden": not column.shown}
+    return {"name": name, "title": title_of(name), **{key: value for key, value in facts.items() if value}}
 
 
 def _values(name: str, rows: Sequence[Row], digits: int | None) -> dict[str, Any]:
@@ -52,8 +52,8 @@ def _values(name: str, rows: Sequence[Row], digits: int | None) -> dict[str, Any
     if known and all(type(value) is int and abs(value) < LARGEST_EXACT for value in known):
         return {"kind": WHOLE, "values": values}
     words: dict[str, int] = {}
-    at = [None if _is_nothing(value) else words.setdefault(str(storable(value)), len(words)) for value in values]
-    return {"kind": TEXT, "words": list(words), "values": at}
+    places = [None if _is_nothing(value) else words.setdefault(str(storable(value)), len(words)) for value in values]
+    return {"kind": TEXT, "words": list(words), "values": places}
 
 
 def _is_nothing(value: Any) -> bool:

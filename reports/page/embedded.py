@@ -87,7 +87,7 @@ def _code_uris(codes: np.ndarray, bits: Sequence[int]) -> list[str]:
             if level < size:
                 aligned = codes[..., i].astype(np.uint64) << np.uint64(8 * size - count)
                 planes.append((aligned >> np.uint64(8 * (size - 1 - level)) & np.uint64(255)).astype(np.uint8))
-    return [_bytes_uri(planes[at : at + 3]) for at in range(0, len(planes), 3)]
+    return [_bytes_uri(planes[first : first + 3]) for first in range(0, len(planes), 3)]
 
 
 def _planes(pixels: NormalPixels | ImagePixels, original: np.ndarray, step: int) -> Record:
@@ -139,7 +139,7 @@ class _Packer:
     @property
     def shown(self) -> Record:
         """The subject as pictures.js reads it."""
-        codecs = [self.taken[one.label] for one in self.subject.codecs if one.label in self.taken]
+        codecs = [self.taken[codec.label] for codec in self.subject.codecs if codec.label in self.taken]
         return self.record | {"codecs": codecs, "flip": self.has_flip}
 
 
@@ -158,35 +158,37 @@ def gallery(subjects: Sequence[Subject], beside: str = "", budget: int = BUDGET)
     left_out: list[str] = []
     files: dict[str, str] = {}
     with ThreadPoolExecutor(WORKERS) as pool:
-        for packer, one, planes in _packed(pool, packers):
-            name = f"{one.label}, {packer.subject.title}"
+        for packer, codec, planes in _packed(pool, packers):
+            name = f"{codec.label}, {packer.subject.title}"
             if planes is None:
                 damaged.append(name)
             elif beside:
                 file = f"{len(files)}.js"
                 files[file] = f"keepPicture({json.dumps(file)}, {json.dumps(planes)});\n"
-                packer.take(one, {"file": quote(f"{beside}/{file}"), "name": file})
+                packer.take(codec, {"file": quote(f"{beside}/{file}"), "name": file})
             elif packer.is_full or (size := packer.size_with(planes)) > budget:
                 packer.is_full = True
                 left_out.append(name)
             else:
                 budget -= size
-                packer.take(one, planes)
+                packer.take(codec, planes)
     return Gallery([packer.shown for packer in packers if packer.taken], left_out, damaged, files)
 
 
 def _packed(pool: ThreadPoolExecutor, packers: Sequence[_Packer]) -> Iterator[tuple[_Packer, Pictured, Record | None]]:
     """Each codec's pixels, a few at a time: which subjects are full is known before the next ones are packed."""
     wanted = list(_in_turn(packers))
-    for at in range(0, len(wanted), WORKERS):
-        few = wanted[at : at + WORKERS]
-        for (packer, one), planes in zip(few, pool.map(lambda item: item[0].planes(item[1]), few), strict=True):
-            yield packer, one, planes
+    for start in range(0, len(wanted), WORKERS):
+        few = wanted[start : start + WORKERS]
+        for (packer, codec), planes in zip(few, pool.map(lambda item: item[0].planes(item[1]), few), strict=True):
+            yield packer, codec, planes
 
 
 def _in_turn(packers: Sequence[_Packer]) -> Iterator[tuple[_Packer, Pictured]]:
     """What comes before all others; then the first codec of each subject by rank, the second of each, and so on."""
-    ranked = [[(packer, one) for one in sorted(packer.subject.codecs, key=lambda one: one.rank)] for packer in packers]
-    yield from (one for turn in ranked for one in turn[: turn[0][0].subject.first])
+    ranked = [
+        [(packer, codec) for codec in sorted(packer.subject.codecs, key=lambda one: one.rank)] for packer in packers
+    ]
+    yield from (pair for turn in ranked for pair in turn[: turn[0][0].subject.first])
     for turn in itertools.zip_longest(*(turn[turn[0][0].subject.first :] for turn in ranked)):
         yield from filter(None, turn)

@@ -66,12 +66,12 @@ class Live:
 
     def data(self, about: Mapping[str, str]) -> str:
         """All of it as text; `about` says what the page is of, by name."""
-        made = {
+        content = {
             **about,
             "codecs": [_named(codec) for codec in self.codecs],
             # Away from the texts, which pack better next to each other.
             "sums": [codec.get("checks") for codec in self.codecs],
-            "storages": [_named(one) for one in self.storages],
+            "storages": [_named(storage) for storage in self.storages],
             "helpers": self.helpers,
             "scenes": list(self._scenes()),
             "unpacking": dict(self.unpacking),
@@ -79,7 +79,7 @@ class Live:
             "shaders": {path.name: _shader(path) for path in sorted(FOLDER.glob("shaders/**/*.*"))},
             "colours": colour_map(),
         }
-        return json.dumps(made, sort_keys=True)
+        return json.dumps(content, sort_keys=True)
 
     def _scenes(self) -> Iterator[Record]:
         """As many as there is room for."""

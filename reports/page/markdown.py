@@ -41,8 +41,8 @@ def _blocks(found: Found) -> Iterator[str]:
     for sheet in answers:
         first, *rest = map(tables.markdown_sentence, sheet.said)
         yield "\n".join([f"**{first}**\n", *(f"- {line}" for line in rest), ""])
-    if said := found.agreement:
-        yield f"{tables.markdown_sentence(said)}\n"
+    if agreement := found.agreement:
+        yield f"{tables.markdown_sentence(agreement)}\n"
     # Nobody reads the tables of a whole run in a comment: its page has them.
     summaries = () if answers else (sheet for section in found.sections for sheet in section.summary if sheet.rows)
     for sheet in summaries:

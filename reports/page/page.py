@@ -91,7 +91,7 @@ class PageTable:
 
 def definitions(shown: Iterable[PageTable]) -> list[tuple[str, str]]:
     """What the columns of tables say, each once: titles and definitions."""
-    heads = (head for one in shown for head in one.columns)
+    heads = (head for page_table in shown for head in page_table.columns)
     return list(dict.fromkeys((head.title, head.column.definition) for head in heads if head.column.definition))
 
 
@@ -111,13 +111,13 @@ def sheet_table(sheet: Sheet, column: Callable[[str], Column], encodings: Contai
     shown, constants = tables.without_constants(rows)
     heads = [Heading(column(name), tables.title_of(name), tables.is_numeric(shown, name)) for name in shown[0]]
     numbers = [head.column for head in heads if head.numeric and head.column.better]
-    best = {at for one in numbers for at in _best(shown, rows, one)}
+    best = {cell for figure in numbers for cell in _best(shown, rows, figure)}
     lines = [
         Line(
-            [_cell(row[head.column.name], head.numeric, (at, head.column.name) in best) for head in heads],
-            _codec({**sheet.keys, **one}, encodings),
+            [_cell(row[head.column.name], head.numeric, (i, head.column.name) in best) for head in heads],
+            _codec({**sheet.keys, **whole_row}, encodings),
         )
-        for at, (row, one) in enumerate(zip(shown, rows, strict=True))
+        for i, (row, whole_row) in enumerate(zip(shown, rows, strict=True))
     ]
     about = {"said": sheet.said, "aside": sheet.aside, "keys": sheet.keys}
     return PageTable(sheet.title, heads, lines, constants.replace("_", " "), **about)
@@ -127,15 +127,15 @@ def _best(shown: Sequence[Row], rows: Sequence[Row], column: Column) -> Iterator
     """The places of a column's best figures, of those of as many bits and of one operation; none where all are the
     same, or where several are infinite: then the column cannot tell which is the best."""
     groups: dict[Any, list[int]] = {}
-    for at, row in enumerate(rows):
+    for index, row in enumerate(rows):
         if is_number(row[column.name]):
-            groups.setdefault((row.get("bits"), row.get("operation")), []).append(at)
+            groups.setdefault((row.get("bits"), row.get("operation")), []).append(index)
     for places in groups.values():
-        texts = {tables.text_of(shown[at][column.name]) for at in places}
-        best = (max if column.better == "more" else min)(shown[at][column.name] for at in places)
-        winners = [at for at in places if tables.text_of(shown[at][column.name]) == tables.text_of(best)]
+        texts = {tables.text_of(shown[i][column.name]) for i in places}
+        best = (max if column.better == "more" else min)(shown[i][column.name] for i in places)
+        winners = [i for i in places if tables.text_of(shown[i][column.name]) == tables.text_of(best)]
         if len(texts) > 1 and (math.isfinite(best) or len(winners) == 1):
-            yield from ((at, column.name) for at in winners)
+            yield from ((i, column.name) for i in winners)
 
 
 def _cell(value: Any, numeric: bool, is_best: bool) -> Cell:
@@ -157,12 +157,12 @@ def _codec(row: Mapping[str, Any], encodings: Container[str]) -> str:
 
 def remarks(found: Found) -> list[str]:
     """What a reader must know of the run before its figures."""
-    said = list(found.remarks)
+    sentences = list(found.remarks)
     left_out = found.facts.get("left_out")
-    said += [f"Left out of this run: {line}." for line in left_out] if isinstance(left_out, list) else []
+    sentences += [f"Left out of this run: {line}." for line in left_out] if isinstance(left_out, list) else []
     if not found.finished:
-        said.insert(0, f"This run is not finished. Steps that are done: {found.steps}.")
-    return said
+        sentences.insert(0, f"This run is not finished. Steps that are done: {found.steps}.")
+    return sentences
 
 
 @dataclass(frozen=True)
@@ -272,7 +272,7 @@ def template(name: str) -> Any:
 
 def codecs(found: Found, specs: Mapping[str, Spec]) -> list[str]:
     """Every codec that the page shows, by name."""
-    named = {one.codec for subject in found.subjects for one in subject.codecs if one.codec}
+    named = {pictured.codec for subject in found.subjects for pictured in subject.codecs if pictured.codec}
     named |= {name for spec in specs.values() for name in drawn_codecs(spec)}
     encodings = found.encodings
     rows = [row for section in found.sections for row in section.rows]
@@ -344,7 +344,7 @@ def html(
 def _listings(found: Found) -> str:
     """Disassemblies as data.js reads them."""
     listings = found.listings
-    return json.dumps({name: {"text": one.text, "source": one.source} for name, one in listings.items()})
+    return json.dumps({name: {"text": listing.text, "source": listing.source} for name, listing in listings.items()})
 
 
 def base(names: Sequence[str], unpacked: Sequence[str] = (), is_beside: bool = False) -> dict[str, Any]:
@@ -382,10 +382,12 @@ def part_of(found: Found, section: TableSection, specs: Mapping[str, Spec], most
     encodings = found.encodings
     sheets = list(section.sheets)
     shown = [sheet_table(sheet, section.column, encodings) for sheet in sheets]
-    cells = itertools.accumulate(len(one.rows) * len(one.columns) for one in shown)
+    cells = itertools.accumulate(len(page_table.rows) * len(page_table.columns) for page_table in shown)
     shown = [
-        one if sum_of <= most_cells else replace(one, data=block(sheet.rows, map(section.column, sheet.rows[0])))
-        for one, sheet, sum_of in zip(shown, sheets, cells, strict=True)
+        page_table
+        if sum_of <= most_cells
+        else replace(page_table, data=block(sheet.rows, map(section.column, sheet.rows[0])))
+        for page_table, sheet, sum_of in zip(shown, sheets, cells, strict=True)
     ]
     charts = [Chart(drawing, specs[drawing.name]) for drawing in section.drawings if drawing.name in specs]
     return PageSection(section, charts, shown, section.measured())

@@ -56,8 +56,8 @@ class TableSection:
 
     def measured(self) -> list[tuple[str, str]]:
         """What the answer says of its conditions: what these columns say in its rows."""
-        said = [(name, dict.fromkeys(str(row[name]) for row in self.rows if row.get(name))) for name in SAID]
-        return [(name, ", ".join(values)) for name, values in said if values]
+        conditions = [(name, dict.fromkeys(str(row[name]) for row in self.rows if row.get(name))) for name in SAID]
+        return [(name, ", ".join(values)) for name, values in conditions if values]
 
 
 def answered_first(sections: Sequence[TableSection]) -> list[TableSection]:

@@ -54,7 +54,7 @@ def plain_names(names: Iterable[str], other: str) -> Iterator[str]:
     for name in names:
         plain = re.sub(r"[^a-z0-9_]+", "-", name.lower()).strip("-")[:LONGEST] or other
         numbered = (plain, *(f"{plain}-{number}" for number in range(2, len(taken) + 2)))
-        free = next(one for one in numbered if one not in taken)
+        free = next(candidate for candidate in numbered if candidate not in taken)
         taken.add(free)
         yield free
 

@@ -29,7 +29,7 @@ def counted_set(row: Row, rows: Sequence[Row]) -> str:
     """A row's set of normals, with their number where rows have several of that set: they are not compared."""
     name, counts = (
         str(row.get("normals")),
-        {one.get("count") for one in rows if one.get("normals") == row.get("normals")},
+        {other.get("count") for other in rows if other.get("normals") == row.get("normals")},
     )
     return name if len(counts) == 1 else f"{name} of {row.get('count')} normals"
 
@@ -45,12 +45,13 @@ def agreement(quality: Sequence[Row]) -> str:
         if is_number(row.get(LEADING)):
             key = tuple(row.get(name) for name in ("encoding", "storage", "rounding", "normals", "count"))
             figures.setdefault(key, {})[row.get("backend")] = row[LEADING]
-    apart = [_apart(one) for one in figures.values() if len(one) > 1]
+    apart = [_apart(by_backend) for by_backend in figures.values() if len(by_backend) > 1]
     known = [value for value in apart if math.isfinite(value)]
     if not apart:
         return ""
     names = " and ".join(
-        BACKENDS.get(name, str(name)) for name in next(one for one in figures.values() if len(one) > 1)
+        BACKENDS.get(name, str(name))
+        for name in next(by_backend for by_backend in figures.values() if len(by_backend) > 1)
     )
     return f"{names} agree within {max([*known, LEAST_DB]):.1g} dB."
 

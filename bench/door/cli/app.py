@@ -126,7 +126,7 @@ def _with_shared(command: Callable[..., None]) -> Any:
 program_alone.callback()(_with_shared(every_command))
 
 
-@app.command("list", rich_help_panel=Group.MACHINE)
+@app.command("list", rich_help_panel=Group.MACHINE, epilog="Example: normalbench list storages")
 def list_command(
     what: Annotated[
         str,
@@ -188,7 +188,9 @@ def doctor(
     return examine_encoding(file, plot, format_of(format, output), output, storage, domain, diff, report, sources)
 
 
-app.command(rich_help_panel=Group.OWN)(with_options(Sources, doctor))
+app.command(rich_help_panel=Group.OWN, epilog="Example: normalbench doctor mine.glsl --plot sphere.png")(
+    with_options(Sources, doctor)
+)
 
 
 def _run(options: Any, output: Path | None, on: str | None, commit: str | None) -> int:
@@ -215,6 +217,7 @@ def _run_info() -> CommandInfo:
         rich_help_panel=Group.ANSWER,
         help="Measure the default suite into a folder, with a report page.\n\n"
         "A run that was stopped goes on when the same command is run again. With -o a finished run is extended.",
+        epilog="Example: normalbench run --tables quality,cost --encoding octahedral,xyz --storage rgb10a2",
         callback=_run_with_options,
     )
 
@@ -225,7 +228,7 @@ def _run_with_options() -> Callable[..., int]:
     return command_with(RunOptions, _run, output=Path | None, on=str | None, commit=CommitOption)
 
 
-@app.command(rich_help_panel=Group.MACHINE)
+@app.command(rich_help_panel=Group.MACHINE, epilog="Example: normalbench worker tcp://127.0.0.1:8786")
 def worker(
     scheduler: Annotated[str, typer.Argument(help="The address of a dask scheduler.", metavar="tcp://HOST:PORT")],
 ) -> int:
@@ -250,7 +253,7 @@ app.command(
 )(command_with(CodeOptions, _code, format=Format | None, output=Path | None))
 
 
-@app.command("columns", rich_help_panel=Group.MACHINE)
+@app.command("columns", rich_help_panel=Group.MACHINE, epilog="Example: normalbench columns quality")
 def columns_command(
     table: Annotated[str, typer.Argument(help="A table, or several, comma-separated, or all.")],
     format: Format | None = None,
@@ -262,7 +265,7 @@ def columns_command(
     write(columns(names(table)), format_of(format, output), output, by="table")
 
 
-@app.command(rich_help_panel=Group.KEEP)
+@app.command(rich_help_panel=Group.KEEP, epilog="Example: normalbench check gates.toml")
 def check(
     gates: Annotated[Path, typer.Argument(help="A TOML file of [[gate]] tables.")],
     files: Annotated[
@@ -294,7 +297,7 @@ class FailOn(StrEnum):
     change = "change"
 
 
-@app.command(rich_help_panel=Group.KEEP)
+@app.command(rich_help_panel=Group.KEEP, epilog="Example: normalbench compare before after")
 def compare(
     before: Annotated[Path, typer.Argument(help="A results folder.")],
     after: Annotated[Path, typer.Argument(help="Another one.")],
@@ -312,7 +315,7 @@ def compare(
     return compare_command(before, after, fail_on, format_of(format, output), output)
 
 
-@app.command(rich_help_panel=Group.KEEP)
+@app.command(rich_help_panel=Group.KEEP, epilog="Example: normalbench show before quality")
 def show(
     run: Annotated[Path, typer.Argument(help="A results folder.", metavar="RUN")],
     tables: Annotated[str, typer.Argument(help="Tables to print, comma-separated, or all.", metavar="TABLE")] = "",
@@ -328,7 +331,7 @@ class PicturePlace(StrEnum):
     beside = "beside"
 
 
-@app.command(rich_help_panel=Group.KEEP)
+@app.command(rich_help_panel=Group.KEEP, epilog="Example: normalbench report before -o page.html")
 def report(
     run: Annotated[Path, typer.Argument(help="A results folder.", metavar="RUN")],
     markdown: Annotated[
@@ -428,8 +431,8 @@ def main() -> int:
         _say(str(error))
         return UsageError.exit_code
     except TyperException as error:
-        said = _plainly(error.format_message())
-        _say(said + _hint(said))
+        message = _plainly(error.format_message())
+        _say(message + _hint(message))
         return UsageError.exit_code
     except (KeyboardInterrupt, Abort):
         _say("interrupted")

@@ -72,8 +72,8 @@ class Command(TyperCommand):
         more = [f"{left_out} more"] * bool(left_out and not is_told_all())
         if flags or more:
             formatter.write_paragraph()
-            said = f"Also: {', '.join([*flags, *more])}. See normalbench {self.name} {HELP_ALL}."
-            formatter.write(f"{textwrap.fill(said, formatter.width)}\n")
+            text = f"Also: {', '.join([*flags, *more])}. See normalbench {self.name} {HELP_ALL}."
+            formatter.write(f"{textwrap.fill(text, formatter.width)}\n")
 
 
 class Commands(Mapping[str, Any]):
@@ -95,8 +95,8 @@ class Commands(Mapping[str, Any]):
 
     def __getitem__(self, name: str) -> Any:
         info = self.info(name)
-        made = info.callback() if name in self._late and info.callback else info.callback
-        callback, taken = split(made)  # pyright: ignore[reportArgumentType]
+        function = info.callback() if name in self._late and info.callback else info.callback
+        callback, taken = split(function)  # pyright: ignore[reportArgumentType]
         named = {**vars(info), "name": name, "cls": Command, "callback": callback}
         command: Any = get_command_from_info(CommandInfo(**named), pretty_exceptions_short=False, rich_markup_mode=None)
         command.taken = taken
@@ -195,7 +195,7 @@ def command_with(group: type, command: Callable[..., int], **ends: Any) -> Calla
 def with_options(group: type, command: Callable[..., int]) -> Callable[..., int]:
     """A command that takes the options of a dataclass as well, by their names in Python."""
     own = inspect.signature(command, eval_str=True).parameters.values()
-    typed = [one for one in own if one.kind is not inspect.Parameter.VAR_KEYWORD]
+    typed = [parameter for parameter in own if parameter.kind is not inspect.Parameter.VAR_KEYWORD]
     return with_parameters(command, [*typed, *map(parameter_of, fields_of(group).values())])
 
 
@@ -215,7 +215,7 @@ def parameter_of(field: Field, panel: str = MEASURED) -> inspect.Parameter:
         more |= {"parser": _whole_number, "metavar": "<int>"}
     if field.name in NAMES:
         more |= {"autocompletion": completion_of(field.name)}
-    flags = [one for one in (option.letter, option.flag) if one]
+    flags = [flag for flag in (option.letter, option.flag) if flag]
     shown = Annotated[_typed(field), typer.Option(*flags, help=option.help, **more), *marks(field)]
     return inspect.Parameter(field.name, kind, default=field.typed, annotation=shown)
 

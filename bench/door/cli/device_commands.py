@@ -23,8 +23,10 @@ Folders = Annotated[
 
 def add_devices(app: typer.Typer) -> None:
     """Both commands."""
-    app.command("import", rich_help_panel=Group.KEEP)(import_command)
-    app.command("site", rich_help_panel=Group.KEEP)(site_command)
+    app.command("import", rich_help_panel=Group.KEEP, epilog="Example: normalbench import phone.json -o before")(
+        import_command
+    )
+    app.command("site", rich_help_panel=Group.KEEP, epilog="Example: normalbench site before -o site")(site_command)
 
 
 def import_command(files: Files, output: Path | None = None) -> int:

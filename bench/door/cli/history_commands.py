@@ -39,7 +39,7 @@ Column = Annotated[str | None, typer.Option("--column", help="Figures, by their 
 
 def add_history(app: typer.Typer) -> None:
     """The command."""
-    app.command("history", rich_help_panel=Group.KEEP)(history)
+    app.command("history", rich_help_panel=Group.KEEP, epilog="Example: normalbench history results")(history)
 
 
 def history(

@@ -15,7 +15,9 @@ SCRIPT = Path(__file__).parents[1] / "in_renderdoc" / "save_gbuffer.py"
 
 def add_renderdoc(app: typer.Typer) -> None:
     """The command."""
-    app.command("renderdoc", rich_help_panel=Group.OWN)(renderdoc)
+    app.command("renderdoc", rich_help_panel=Group.OWN, epilog="Example: normalbench renderdoc --script save.py")(
+        renderdoc
+    )
 
 
 def renderdoc(

@@ -46,7 +46,7 @@ def open_missing_streams() -> None:
 def _takes_files(folder: Path) -> bool:
     """Whether files can be made in a folder, or the folder itself where it is not there."""
     try:
-        there = next(one for one in (folder.absolute(), *folder.absolute().parents) if os.path.lexists(one))
+        there = next(path for path in (folder.absolute(), *folder.absolute().parents) if os.path.lexists(path))
     except OSError:  # the working folder is gone
         return False
     # Path.is_dir raises where a link leads to what may not be looked at.

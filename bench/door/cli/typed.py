@@ -40,7 +40,7 @@ def added_up(words: Sequence[str], options: Sequence[Any]) -> list[str]:
     """
     by_flag = _by_flag(options)
     has_arguments = any(option.param_type_name == "argument" for option in options)
-    made: list[str] = []
+    merged: list[str] = []
     # Of each option its flag as typed first, and where its value stands among `made`.
     seen: dict[str, tuple[str, int]] = {}
     rest = iter(words)
@@ -48,20 +48,20 @@ def added_up(words: Sequence[str], options: Sequence[Any]) -> list[str]:
         flag, option = _option_of(word, by_flag)
         if option is None and word.startswith("--"):
             # What follows an option that is not known is for the parser to refuse.
-            return [*made, word, *rest]
+            return [*merged, word, *rest]
         if option is None and not (has_arguments or word.startswith("-")):
-            raise _stray(word, made, by_flag)
+            raise _stray(word, merged, by_flag)
         if option is None:
-            made.append(word)
+            merged.append(word)
         elif option.is_flag:
-            _add_flag(made, word, seen, option)
+            _add_flag(merged, word, seen, option)
         else:
             value = _value_of(word, flag, rest)
             if value is None:
-                made.append(word)
+                merged.append(word)
             else:
-                _add(made, (flag, value), seen, option)
-    return made
+                _add(merged, (flag, value), seen, option)
+    return merged
 
 
 def read_values(words: Sequence[str], options: Sequence[Any]) -> Iterator[str]:
@@ -116,11 +116,11 @@ def _add(made: list[str], typed: tuple[str, str], seen: dict[str, tuple[str, int
         seen[option.name] = flag, len(made) + 1
         made += [flag, value]
         return
-    first, at = seen[option.name]
+    first, index = seen[option.name]
     if _takes(option, str):
-        made[at] = f"{made[at]},{value}"
-    elif made[at] != value:
-        raise UsageError(f"{first} is given twice, {made[at]} and {value}; give it once")
+        made[index] = f"{made[index]},{value}"
+    elif made[index] != value:
+        raise UsageError(f"{first} is given twice, {made[index]} and {value}; give it once")
 
 
 def _takes(option: Any, kind: type) -> bool:

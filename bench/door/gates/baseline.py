@@ -57,9 +57,9 @@ def read_baseline(path: Path) -> dict[str, Entry]:
         raise UsageError(f"{path} is not a baseline: {error}") from error
     from ...keep.schema import check_entry
 
-    for number, one in enumerate(entries, 1):
-        check_entry(one, f"{path}, entry {number}")
-    return {_text(one): one for one in entries}
+    for number, record in enumerate(entries, 1):
+        check_entry(record, f"{path}, entry {number}")
+    return {_text(known_entry): known_entry for known_entry in entries}
 
 
 def _text(one: Entry) -> str:
@@ -73,8 +73,8 @@ def write_baseline(path: Path, dumped: Sequence[str]) -> None:
         UsageError: the file holds something else, two rows have one key, or it cannot be written.
     """
     kept = Baseline(path, True)
-    for one in (one for text in dumped for one in json.loads(text)):
-        kept.record(one)
+    for record in (new_entry for text in dumped for new_entry in json.loads(text)):
+        kept.record(record)
     entries = (read_baseline(path) if path.exists() else {}) | kept.recorded
     with whole_file(path) as partial:
         lines = (json.dumps(entries[text]) for text in sorted(entries))
@@ -125,16 +125,16 @@ class Baseline:
             self._read = read_baseline(self.path) if self.path.exists() else {}
         before = self._read.get(_text(one))
         if before is None:
-            said = f"{_name(one)}{self._other_compilers(one)}"
-            raise NoRowError(f"{self.path} has no row {said}; {self.writer} writes it", said)
-        found = list(changes(before["row"], one["row"], tolerances))
-        if found and before.get("listing") and one.get("listing"):
+            row_name = f"{_name(one)}{self._other_compilers(one)}"
+            raise NoRowError(f"{self.path} has no row {row_name}; {self.writer} writes it", row_name)
+        lines = list(changes(before["row"], one["row"], tolerances))
+        if lines and before.get("listing") and one.get("listing"):
             changed = list(listing_differences(before["listing"], one["listing"]))
-            found.append("\n  ".join(["its instructions, with + and - where they changed:", *changed]))
+            lines.append("\n  ".join(["its instructions, with + and - where they changed:", *changed]))
         devices = [row.get("device") for row in (before["row"], one["row"])]
-        if found and devices[0] != devices[1]:
-            found.append(f"measured on {devices[1]}, the baseline on {devices[0]}")
-        return found
+        if lines and devices[0] != devices[1]:
+            lines.append(f"measured on {devices[1]}, the baseline on {devices[0]}")
+        return lines
 
     def _other_compilers(self, one: Entry) -> str:
         """By which other compilers the file has a row; empty for none."""
@@ -165,10 +165,10 @@ def _name(one: Entry) -> str:
 def changes(before: Row, after: Row, tolerances: Mapping[str, float]) -> Iterator[str]:
     """A line for each column that differs by more than is tolerated, which is nothing where nothing is said."""
     for column in dict.fromkeys([*before, *after]):
-        one, other = before.get(column), after.get(column)
-        if column not in HOW and not same(one, other) and not _near(one, other, tolerances.get(column, 0.0)):
+        previous, other = before.get(column), after.get(column)
+        if column not in HOW and not same(previous, other) and not _near(previous, other, tolerances.get(column, 0.0)):
             allowed = f", tolerated {tolerances[column]:g}" if column in tolerances else ""
-            yield f"{column} is {other}, the baseline says {one} ({difference(one, other)}{allowed})"
+            yield f"{column} is {other}, the baseline says {previous} ({difference(previous, other)}{allowed})"
 
 
 def _near(one: Any, other: Any, tolerance: float) -> bool:

@@ -22,15 +22,15 @@ def check_command(
         files: only gates that read one of these are held; none for all.
         writes: whether rows are written into the gates' baselines instead of being compared with them.
     """
-    found, baselines = read_gates(gates), Baselines(writes)
-    if files and not (found := gates_that_read(files, found, gates)):
+    chosen_gates, baselines = read_gates(gates), Baselines(writes)
+    if files and not (chosen_gates := gates_that_read(files, chosen_gates, gates)):
         tell(f"no gate of {gates} reads {', '.join(map(str, files))}")
         return 0
     if writes:
-        _check_baselines(gates, found, run)
+        _check_baselines(gates, chosen_gates, run)
     check_rows(output, COLUMNS)
-    with progress(len(found)) as tick:
-        rows = list(checked(found, run, tick, baselines))
+    with progress(len(chosen_gates)) as tick:
+        rows = list(checked(chosen_gates, run, tick, baselines))
     for path in baselines.write():
         tell(f"written: {path}")
     for reason in dict.fromkeys(row["skipped"] for row in rows if row["skipped"]):

@@ -58,8 +58,8 @@ class Gate:
                 # A name without an ending may be one of the catalogue's.
                 lost = [path for path in files_in(word) if Path(path).suffix and path not in there]
                 if lost:
-                    said = f"{lost[0]} is in this shell's folder, and paths are relative to the file of gates"
-                    raise UsageError(f"{name}: {said}; write {os.path.relpath(lost[0], self.folder)}")
+                    reason = f"{lost[0]} is in this shell's folder, and paths are relative to the file of gates"
+                    raise UsageError(f"{name}: {reason}; write {os.path.relpath(lost[0], self.folder)}")
         return located(self.table, self.options, self.folder)
 
     def files(self) -> dict[str, Names]:
@@ -79,14 +79,14 @@ def read_gates(path: Path) -> list[Gate]:
         data = file_toml(path)
     except (OSError, ValueError) as error:
         raise UsageError(f"{path}: {error}") from error
-    found = data.get("gate")
+    gates = data.get("gate")
     if other := sorted(set(data) - {"gate"}):
         raise UsageError(f"{path}: {other[0]!r} is not known; a file of gates has only [[gate]] tables")
-    if not isinstance(found, list) or not all(isinstance(gate, dict) for gate in found):
+    if not isinstance(gates, list) or not all(isinstance(gate, dict) for gate in gates):
         raise UsageError(f"{path}: there is no [[gate]] table in it")
-    if not 1 <= len(found) <= MAX_GATES:
-        raise UsageError(f"{path}: {len(found)} gates; from 1 to {MAX_GATES}")
-    return [_gate(f"{path}, gate {number}", values, path.parent) for number, values in enumerate(found, 1)]
+    if not 1 <= len(gates) <= MAX_GATES:
+        raise UsageError(f"{path}: {len(gates)} gates; from 1 to {MAX_GATES}")
+    return [_gate(f"{path}, gate {number}", values, path.parent) for number, values in enumerate(gates, 1)]
 
 
 def _gate(place: str, values: dict[str, Any], folder: Path) -> Gate:
@@ -98,9 +98,11 @@ def _gate(place: str, values: dict[str, Any], folder: Path) -> Gate:
             if not isinstance(value, str | int | float):
                 raise UsageError(f"{name} is {value!r}; it must be a text or a number")
         table = table_named(values.pop("table", USUAL))
-        said, limits = split_limits(values, table, may_lack=named is not None)
+        raw_options, limits = split_limits(values, table, may_lack=named is not None)
         known = fields_of(table.options)
-        options = {name: known[name].read(value, folder) if name in known else value for name, value in said.items()}
+        options = {
+            name: known[name].read(value, folder) if name in known else value for name, value in raw_options.items()
+        }
         for limit in limits:
             limit.check(table)
     except UsageError as error:
@@ -119,11 +121,11 @@ def measured_for(gate: Gate) -> list[Found]:
         MissingError: this machine lacks what they need.
     """
     try:
-        found = measured(gate.table, with_their_options(gate.table, gate.located(), gate.limits))
+        measurements = measured(gate.table, with_their_options(gate.table, gate.located(), gate.limits))
     except UsageError as error:
         raise UsageError(f"{gate.place}: {error}") from error
     # A baseline has paths as the file of gates has them, from wherever it is compared.
-    return [replace(one, asked={**one.asked, **gate.files()}) for one in found]
+    return [replace(measurement, asked={**measurement.asked, **gate.files()}) for measurement in measurements]
 
 
 def _rows_of_run(run: Path) -> Measure:
@@ -196,10 +198,14 @@ def checked(
     measure = _rows_of_run(run) if run else measured_for
     baselines = baselines or Baselines(False)
     for gate in gates:
-        found = measure(gate)
-        yield from (_held(gate, one, limit) for one in found for limit in limits_on(one.row, gate.limits))
+        measurements = measure(gate)
+        yield from (
+            _held(gate, measurement, limit)
+            for measurement in measurements
+            for limit in limits_on(measurement.row, gate.limits)
+        )
         if gate.baseline:
-            yield from (_compared(gate, one, baselines.of(gate.baseline)) for one in found)
+            yield from (_compared(gate, measurement, baselines.of(gate.baseline)) for measurement in measurements)
         tick(gate.place)
 
 
@@ -243,13 +249,13 @@ def _held(gate: Gate, found: Found, limit: Limit) -> Row:
 
 def _compared(gate: Gate, found: Found, baseline: Baseline) -> Row:
     """One row: whether the baseline says the same, and where not, what."""
-    one = entry(gate.table, found.asked, found.row, found.listing)
+    record = entry(gate.table, found.asked, found.row, found.listing)
     if baseline.writes:
-        baseline.record(one)
+        baseline.record(record)
         return _row(gate, found, limit=f"written into {baseline.path.name}")
     try:
-        said = baseline.differences(one, {})
+        differences = baseline.differences(record, {})
     except NoRowError as error:
         return _row(gate, found, limit=f"as in {baseline.path.name}", holds="FAIL", lacks=f"{error.said}")
-    holds, changed = "FAIL" if said else "pass", "\n".join(said) or None
+    holds, changed = "FAIL" if differences else "pass", "\n".join(differences) or None
     return _row(gate, found, limit=f"as in {baseline.path.name}", holds=holds, changed=changed)

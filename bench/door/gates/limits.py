@@ -73,7 +73,7 @@ ALL_NUMBERS = Limit("invalid", "at most", 0.0)
 def limits_on(row: Mapping[str, Any], limits: Iterable[Limit]) -> list[Limit]:
     """The limits on a row, and that all results are numbers where some are not and no limit is said for them."""
     limits = list(limits)
-    is_said = any(one.column == ALL_NUMBERS.column for one in limits)
+    is_said = any(bound.column == ALL_NUMBERS.column for bound in limits)
     return [*limits, ALL_NUMBERS] if limits and not is_said and row.get(ALL_NUMBERS.column) else limits
 
 
@@ -105,9 +105,9 @@ def split_limits(
 ) -> tuple[dict[str, Any], tuple[Limit, ...]]:
     """Options, and limits on columns, of what names both. Raises UsageError where no limit is among them and there must
     be one."""
-    found = {name: limit(name, value) for name, value in values.items()}
-    options = {name: value for name, value in values.items() if found[name] is None}
-    limits = tuple(one for one in found.values() if one)
+    bounds = {name: limit(name, value) for name, value in values.items()}
+    options = {name: value for name, value in values.items() if bounds[name] is None}
+    limits = tuple(bound for bound in bounds.values() if bound)
     figures = [name for name in options if (column := table.column(name)) and column.role in (Role.FIGURE, Role.TIME)]
     if not limits and figures:
         raise not_a_limit(figures[0], values[figures[0]])

@@ -26,10 +26,10 @@ def lines_of(listing: str) -> list[str]:
 
 def differences(before: Sequence[str], after: Sequence[str]) -> Iterator[str]:
     """Lines that were added, with +, and left out, with -, and how many more where they are too many."""
-    found = list(_changed(before, after))
-    yield from found[:MOST_LINES]
-    if len(found) > MOST_LINES:
-        yield f"... and {len(found) - MOST_LINES} lines more"
+    lines = list(_changed(before, after))
+    yield from lines[:MOST_LINES]
+    if len(lines) > MOST_LINES:
+        yield f"... and {len(lines) - MOST_LINES} lines more"
 
 
 def _changed(before: Sequence[str], after: Sequence[str]) -> Iterator[str]:

@@ -133,8 +133,8 @@ def _root_in(folder: Path, word: str) -> str:
 
 def path_in(folder: Path, word: str) -> str:
     """A word with the files of a folder that it names by their paths from here."""
-    found = (path for path in files_in(word, folder) if not Path(path).is_absolute())
-    return with_files(word, {path: os.path.relpath(folder / path) for path in found})
+    paths = (path for path in files_in(word, folder) if not Path(path).is_absolute())
+    return with_files(word, {path: os.path.relpath(folder / path) for path in paths})
 
 
 def _found(table: Table, row: Row, step: Step, options: Mapping[str, Any]) -> Found:

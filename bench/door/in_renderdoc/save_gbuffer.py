@@ -88,20 +88,20 @@ def planes(data, layout, kind, width, count, bgra=False):
     if layout == "R10G10B10A2":
         words = little("I", data)
         scale = 1.0 if kind == "UInt" else 1 / 1023.0
-        found = [[(word >> shift & 1023) * scale for word in words] for shift in (0, 10, 20)]
-        found.append([(word >> 30) * (1.0 if kind == "UInt" else 1 / 3.0) for word in words])
+        channels = [[(word >> shift & 1023) * scale for word in words] for shift in (0, 10, 20)]
+        channels.append([(word >> 30) * (1.0 if kind == "UInt" else 1 / 3.0) for word in words])
     elif layout == "R11G11B10":
         words = little("I", data)
         eleven = [small_float(bits, 6) for bits in range(2048)]
         ten = [small_float(bits, 5) for bits in range(1024)]
-        found = [[eleven[word >> shift & 2047] for word in words] for shift in (0, 11)]
-        found.append([ten[word >> 22] for word in words])
+        channels = [[eleven[word >> shift & 2047] for word in words] for shift in (0, 11)]
+        channels.append([ten[word >> 22] for word in words])
     elif layout == "Regular":
         numbers = regular(data, kind, width)
-        found = [list(numbers[channel::count]) for channel in range(count)]
+        channels = [list(numbers[channel::count]) for channel in range(count)]
     else:
         raise ValueError(f"formats like {layout} are not read")
-    return [found[2], found[1], found[0], *found[3:]] if bgra else found
+    return [channels[2], channels[1], channels[0], *channels[3:]] if bgra else channels
 
 
 def depths(data, pixels, kind, is_opengl):
@@ -119,7 +119,7 @@ def depths(data, pixels, kind, is_opengl):
 
 def from_above(plane, width):
     """Rows in the other order: OpenGL's first is the lowest."""
-    rows = [plane[at : at + width] for at in range(0, len(plane), width)]
+    rows = [plane[start : start + width] for start in range(0, len(plane), width)]
     return [value for row in reversed(rows) for value in row]
 
 
@@ -167,7 +167,7 @@ def write_text(path, text):
 def file_name(name, at, taken):
     """A texture's name as that of a file."""
     plain = f"{re.sub(r'[^A-Za-z0-9]+', '_', name).strip('_').lower() or 'target'}.exr"
-    is_free = plain != DEPTH and plain not in [one["file"] for one in taken.values()]
+    is_free = plain != DEPTH and plain not in [target["file"] for target in taken.values()]
     return plain if is_free else f"{at}_{plain}"
 
 
@@ -183,9 +183,9 @@ def covered(plane):
 def normals_in(found, mask):
     """Of unit normals "--no-unpack", of such in [0, 1] "--unpack", of anything else nothing."""
     x, y, z = found[:3]
-    inside = [at for at, is_covered in enumerate(mask) if is_covered]
+    inside = [i for i, is_covered in enumerate(mask) if is_covered]
     for option, scale, bias in (("--no-unpack", 1, 0), ("--unpack", 2, -1)):
-        lengths = [sum((plane[at] * scale + bias) ** 2 for plane in (x, y, z)) ** 0.5 for at in inside]
+        lengths = [sum((plane[pixel] * scale + bias) ** 2 for plane in (x, y, z)) ** 0.5 for pixel in inside]
         good = sum(LEAST < length < MOST for length in lengths)
         if lengths and good >= SHARE * len(lengths):
             return option
@@ -196,14 +196,14 @@ def facing(found, option, mask, width, fov, turn):
     """The share of normals that face the camera once they are turned to view space, x right, y up, z to the viewer."""
     height, up = len(mask) // width, math.tan(math.radians(fov) / 2)
     scale, bias = (2, -1) if option == "--unpack" else (1, 0)
-    inside = [at for at, is_covered in enumerate(mask) if is_covered]
+    inside = [i for i, is_covered in enumerate(mask) if is_covered]
     inside = inside[:: max(1, len(inside) // LOOKED_AT)]
     front = 0
-    for at in inside:
-        n = [plane[at] * scale + bias for plane in found[:3]]
+    for pixel in inside:
+        n = [plane[pixel] * scale + bias for plane in found[:3]]
         x, y, z = (sum(a * b for a, b in zip(row, n)) for row in turn)
-        right = (2 * (at % width + 0.5) / width - 1) * up * width / height
-        front += x * right + y * (1 - 2 * (at // width + 0.5) / height) * up < z
+        right = (2 * (pixel % width + 0.5) / width - 1) * up * width / height
+        front += x * right + y * (1 - 2 * (pixel // width + 0.5) / height) * up < z
     return front / max(len(inside), 1)
 
 
@@ -217,10 +217,12 @@ def space_of(found, option, mask, width, fov, matrices):
         # Where view space has z into the screen.
         mirrored = [turn[0], turn[1], [-value for value in turn[2]]]
         matrix = {"view_matrix": file_of_matrix(name)}
-        known = [(dict(said, **other), axes) for (said, axes), other in zip(known, (matrix, {"view_matrix": mirrored}))]
+        known = [
+            (dict(space, **other), axes) for (space, axes), other in zip(known, (matrix, {"view_matrix": mirrored}))
+        ]
         known += [(dict(space="world", **matrix), turn), ({"space": "world", "view_matrix": mirrored}, mirrored)]
     shares = [facing(found, option, mask, width, fov, turn) for _, turn in known]
-    return next(said for (said, _), share in zip(known, shares) if share >= max(shares) - MORE)
+    return next(space for (space, _), share in zip(known, shares) if share >= max(shares) - MORE)
 
 
 def views(matrices):
@@ -243,7 +245,9 @@ def camera_of(matrices, is_opengl):
 
 def guessed(targets):
     """What targets hold as far as their names say it, by the quantity: a description's words."""
-    letters = {match.group(1).lower(): one for name, one in targets.items() for match in [UNREAL.search(name)] if match}
+    letters = {
+        match.group(1).lower(): buffer for name, buffer in targets.items() for match in [UNREAL.search(name)] if match
+    }
     if set("abc") <= set(letters):
         b, c = letters["b"]["file"], letters["c"]["file"]
         return {
@@ -253,38 +257,38 @@ def guessed(targets):
             "base_color": {"file": c, "channels": "R,G,B", "curve": "srgb"},
         }
     kept = {}
-    for name, one in targets.items():
+    for name, target in targets.items():
         words = {**NUMBERS, **COLOURS}
         called = [quantity for quantity, word in words.items() if re.search(word, name, re.I)]
-        if called and called[0] in NUMBERS and len(called) == 1 == len(one["channels"]):
-            kept.setdefault(called[0], {"file": one["file"], "channel": "R"})
-        elif called and called[0] in COLOURS and len(called) == 1 and len(one["channels"]) >= 3:
-            curve = "srgb" if "SRGB" in one["format"].upper() else "linear"
-            kept.setdefault(called[0], {"file": one["file"], "channels": "R,G,B", "curve": curve})
+        if called and called[0] in NUMBERS and len(called) == 1 == len(target["channels"]):
+            kept.setdefault(called[0], {"file": target["file"], "channel": "R"})
+        elif called and called[0] in COLOURS and len(called) == 1 and len(target["channels"]) >= 3:
+            curve = "srgb" if "SRGB" in target["format"].upper() else "linear"
+            kept.setdefault(called[0], {"file": target["file"], "channels": "R,G,B", "curve": curve})
     return kept
 
 
 def description(targets, camera, has_depth):
     """What `normalbench budget --scene` reads: what is known of the frame, and null for what is not."""
-    said: dict = {"fov": None, "near": None, "far": None, "view_matrix": None}
-    said.update((name, None) for name in QUANTITIES)
+    scene: dict = {"fov": None, "near": None, "far": None, "view_matrix": None}
+    scene.update((name, None) for name in QUANTITIES)
     if camera:
         fov, near, far = camera
         planes = {"fov": fov, "near": min(near, far), "far": min(max(near, far), FARTHEST)}
         # The digits that a matrix of float32 has.
-        said.update((name, float(f"{value:.6g}")) for name, value in planes.items())
+        scene.update((name, float(f"{value:.6g}")) for name, value in planes.items())
     if camera and has_depth:
         code = "window" if camera[1] < camera[2] else "reversed_window"
-        said["depth"] = {"file": DEPTH, "channel": "Z", "depths_are": code}
-    for one in targets.values():
-        if one["normals"] and not said["normal"]:
-            said["view_matrix"] = one["space"].get("view_matrix")
-            said["normal"] = {"file": one["file"], "channels": "R,G,B", "unpack": one["normals"] == "--unpack"}
-            said["normal"].update({"space": one["space"]["space"], "mask": COVERED})
-    said.update(guessed(targets))
-    if "smoothness" in said:
-        del said["roughness"]
-    return said
+        scene["depth"] = {"file": DEPTH, "channel": "Z", "depths_are": code}
+    for target in targets.values():
+        if target["normals"] and not scene["normal"]:
+            scene["view_matrix"] = target["space"].get("view_matrix")
+            scene["normal"] = {"file": target["file"], "channels": "R,G,B", "unpack": target["normals"] == "--unpack"}
+            scene["normal"].update({"space": target["space"]["space"], "mask": COVERED})
+    scene.update(guessed(targets))
+    if "smoothness" in scene:
+        del scene["roughness"]
+    return scene
 
 
 def say(text):
@@ -295,7 +299,10 @@ def say(text):
 def say_description(folder, said, targets):
     """What was guessed, what people have to write, and the command."""
     where = folder / "gbuffer.json"
-    held = [f"{name} ({one['file']} {one.get('channel') or one['channels']})" for name, one in guessed(targets).items()]
+    held = [
+        f"{name} ({source['file']} {source.get('channel') or source['channels']})"
+        for name, source in guessed(targets).items()
+    ]
     if held:
         say(f"{where}: guessed by the targets' names: {', '.join(held)}")
     lacks = [name for name in said if said[name] is None and name != "view_matrix"]
@@ -326,7 +333,7 @@ def planes_of_projection(rows, lowest):
 def is_rotation(rows):
     """Whether the upper left of a matrix turns and does nothing else, and its last row is 0, 0, 0, 1."""
     turn = [row[:3] for row in rows[:3]]
-    products = [sum(a * b for a, b in zip(one, other)) for one in turn for other in turn]
+    products = [sum(a * b for a, b in zip(row, other)) for row in turn for other in turn]
     return rows[3] == [0.0, 0.0, 0.0, 1.0] and all(abs(p - (i % 4 == 0)) < 1e-3 for i, p in enumerate(products))
 
 
@@ -372,32 +379,34 @@ def all_actions(actions):
 
 
 def targets_of(action, rd):
-    return tuple(int(one) for one in action.outputs if one != rd.ResourceId.Null())
+    return tuple(int(output) for output in action.outputs if output != rd.ResourceId.Null())
 
 
 def chosen(controller, rd, event):
     """The draw after which targets are read."""
-    draws = [one for one in all_actions(controller.GetRootActions()) if one.flags & rd.ActionFlags.Drawcall]
+    draws = [action for action in all_actions(controller.GetRootActions()) if action.flags & rd.ActionFlags.Drawcall]
     if event is not None:
-        draws = [one for one in draws if one.eventId == event]
+        draws = [draw for draw in draws if draw.eventId == event]
         return draws[0] if draws else sys.exit(f"no draw has the number {event}")
-    several = [one for one in draws if len(targets_of(one, rd)) > 1] or [one for one in draws if targets_of(one, rd)]
+    several = [draw for draw in draws if len(targets_of(draw, rd)) > 1] or [
+        draw for draw in draws if targets_of(draw, rd)
+    ]
     if not several:
         sys.exit("no draw of the capture writes a target")
-    sets = [targets_of(one, rd) for one in several]
+    sets = [targets_of(draw, rd) for draw in several]
     most = max(sets, key=sets.count)
-    return [one for one in several if targets_of(one, rd) == most][-1]
+    return [draw for draw in several if targets_of(draw, rd) == most][-1]
 
 
 def constants(controller, rd):
     """All matrices of 4 x 4 that the draw's shaders are given, by rows, by their names."""
-    state, found = controller.GetPipelineState(), {}
+    state, matrices = controller.GetPipelineState(), {}
     for stage in (rd.ShaderStage.Vertex, rd.ShaderStage.Pixel):
         reflection = state.GetShaderReflection(stage)
-        for at, _ in enumerate(reflection.constantBlocks if reflection else ()):
-            for variable in block(controller, state, stage, at):
-                add_matrices(found, variable, rd)
-    return found
+        for index, _ in enumerate(reflection.constantBlocks if reflection else ()):
+            for variable in block(controller, state, stage, index):
+                add_matrices(matrices, variable, rd)
+    return matrices
 
 
 def block(controller, state, stage, at):
@@ -416,7 +425,7 @@ def block(controller, state, stage, at):
 def add_matrices(found, variable, rd):
     if variable.rows == 4 and variable.columns == 4 and variable.type == rd.VarType.Float:
         numbers = list(variable.value.f32v[:16])
-        found.setdefault(variable.name, [numbers[at : at + 4] for at in (0, 4, 8, 12)])
+        found.setdefault(variable.name, [numbers[start : start + 4] for start in (0, 4, 8, 12)])
     for member in variable.members:
         add_matrices(found, member, rd)
 
@@ -434,8 +443,8 @@ class Saving:
         self.action = chosen(controller, rd, event)
         controller.SetFrameEvent(self.action.eventId, True)
         self.is_opengl = controller.GetAPIProperties().pipelineType == rd.GraphicsAPI.OpenGL
-        self.textures = {int(one.resourceId): one for one in controller.GetTextures()}
-        self.names = {int(one.resourceId): one.name for one in controller.GetResources()}
+        self.textures = {int(texture.resourceId): texture for texture in controller.GetTextures()}
+        self.names = {int(resource.resourceId): resource.name for resource in controller.GetResources()}
         self.found = constants(controller, rd)
         self.camera = camera_of(self.found, self.is_opengl)
         folder.mkdir(parents=True, exist_ok=True)
@@ -467,31 +476,36 @@ class Saving:
         """The channels of a target. Raises ValueError for a format that cannot be read."""
         form = texture.format
         layout, kind = name_of(self.rd.ResourceFormatType, form.type), name_of(self.rd.CompType, form.compType)
-        found = planes(self.data_of(texture), layout, kind, form.compByteWidth, form.compCount, form.BGRAOrder())
-        return [self.upright(plane, texture) for plane in found]
+        channels = planes(self.data_of(texture), layout, kind, form.compByteWidth, form.compCount, form.BGRAOrder())
+        return [self.upright(plane, texture) for plane in channels]
 
     def target(self, texture, name, mask):
         """Writes one; what is known of it."""
-        found = self.planes(texture)
-        pixels = len(found[0])
+        channel_planes = self.planes(texture)
+        pixels = len(channel_planes[0])
         own = mask if mask and len(mask) == pixels else [1.0] * pixels
-        normals = normals_in(found, own) if len(found) >= 3 else ""
-        channels = dict(zip("RGBA", found))
+        normals = normals_in(channel_planes, own) if len(channel_planes) >= 3 else ""
+        channels = dict(zip("RGBA", channel_planes))
         channels[COVERED] = own
         self.write(name, texture, channels, ", unit normals" if normals else "")
-        kept = {"file": name, "format": texture.format.Name(), "normals": normals, "channels": "RGBA"[: len(found)]}
+        kept = {
+            "file": name,
+            "format": texture.format.Name(),
+            "normals": normals,
+            "channels": "RGBA"[: len(channel_planes)],
+        }
         if normals:
             fov = self.camera[0] if self.camera else 60.0
-            kept["space"] = space_of(found, normals, own, texture.width, fov, self.found)
+            kept["space"] = space_of(channel_planes, normals, own, texture.width, fov, self.found)
         return kept
 
     def targets(self, mask):
         """Writes all; what is known of each, by its name in the capture."""
         kept = {}
-        for at, number in enumerate(targets_of(self.action, self.rd)):
+        for index, number in enumerate(targets_of(self.action, self.rd)):
             name = self.names[number]
             try:
-                kept[name] = self.target(self.textures[number], file_name(name, at, kept), mask)
+                kept[name] = self.target(self.textures[number], file_name(name, index, kept), mask)
             except ValueError as why:
                 say(f"{name} is left out: {why}")
         return kept
@@ -512,12 +526,12 @@ def save(controller, rd, folder, event=None):
     targets = saving.targets(mask)
     matrices = saving.matrices()
     lines = measuring(folder, targets, matrices, mask is not None, saving.is_opengl)
-    said = description(targets, saving.camera, mask is not None)
+    scene = description(targets, saving.camera, mask is not None)
     kept = {"event": saving.action.eventId, "targets": targets, "matrices": matrices, "commands": lines}
-    write_text(folder / "gbuffer.json", json.dumps({**said, "capture": kept}, indent=1))
-    if not any(one["normals"] for one in targets.values()):
+    write_text(folder / "gbuffer.json", json.dumps({**scene, "capture": kept}, indent=1))
+    if not any(target["normals"] for target in targets.values()):
         say("No target holds unit normals. If one holds a code, write what your shader decodes into a float target.")
-    say("\n".join([*lines, say_description(folder, said, targets)]))
+    say("\n".join([*lines, say_description(folder, scene, targets)]))
 
 
 def opened(rd, path):

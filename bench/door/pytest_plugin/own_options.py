@@ -19,11 +19,11 @@ SESSION = pytest.StashKey["Session"]()
 
 def mirrored() -> dict[str, list[Field]]:
     """The options of all tables by name; several tables may have one of the same name."""
-    found: dict[str, list[Field]] = {}
+    options: dict[str, list[Field]] = {}
     for table in TABLES.values():
         for name, field in fields_of(table.options).items():
-            found.setdefault(name, []).append(field)
-    return found
+            options.setdefault(name, []).append(field)
+    return options
 
 
 def flag(name: str) -> str:

@@ -44,12 +44,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def _parsed(fields: list[Field]) -> dict[str, Any]:
     """How argparse takes an option."""
-    kinds, said = {field.kind for field in fields}, " ".join(dict.fromkeys(field.option.help for field in fields))
+    kinds, help_text = {field.kind for field in fields}, " ".join(dict.fromkeys(field.option.help for field in fields))
     # Where tables take different kinds, each reads the text in its own way.
     kind = kinds.pop() if len(kinds) == 1 else str
     if kind is bool:
-        return {"action": argparse.BooleanOptionalAction, "help": said.replace("%", "%%")}
-    return {"type": kind, "metavar": kind.__name__.upper(), "help": said.replace("%", "%%")}
+        return {"action": argparse.BooleanOptionalAction, "help": help_text.replace("%", "%%")}
+    return {"type": kind, "metavar": kind.__name__.upper(), "help": help_text.replace("%", "%%")}
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -79,9 +79,9 @@ def normalbench(request: pytest.FixtureRequest) -> Normalbench:
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_call(item: pytest.Item) -> None:
     """Hold what the test's markers name before the test itself."""
-    said = [said for mark in item.iter_markers("normalbench") if (said := _broken(item, mark))]
-    if said:
-        pytest.fail("\n".join(said), pytrace=False)
+    messages = [messages for mark in item.iter_markers("normalbench") if (messages := _broken(item, mark))]
+    if messages:
+        pytest.fail("\n".join(messages), pytrace=False)
 
 
 def _measuring(config: pytest.Config, folder: Path) -> Normalbench:

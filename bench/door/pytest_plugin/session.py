@@ -68,8 +68,8 @@ class Session:
         known = fields_of(table.options)
         usual = {name: known[name].parsed(value) for name, value in self.usual.items() if name in known}
         asked = checked_options(table.options, {**usual, **values})
-        said = {name: value for name, value in asked.items() if name in values}
-        options = located(table, asked, self.typed_in) | located(table, said, folder)
+        explicit = {name: value for name, value in asked.items() if name in values}
+        options = located(table, asked, self.typed_in) | located(table, explicit, folder)
         key = json.dumps([table.name, str(Path.cwd()), options], sort_keys=True)
         if key not in self._found:
             self._found[key] = measured(table, options)
@@ -94,7 +94,7 @@ class Measured:
     @property
     def rows(self) -> list[Row]:
         """The rows, by column."""
-        return [one.row for one in self.found]
+        return [measurement.row for measurement in self.found]
 
     @ends_here
     def __getitem__(self, column: str) -> Any:
@@ -118,15 +118,15 @@ class Measured:
     def hold(self, limits: Iterable[Limit]) -> None:
         """Every row keeps every limit; see assert_that."""
         limits = list(limits)
-        for one in limits:
-            one.check(self.table)
-            option = one.option_of(self.table)
+        for bound in limits:
+            bound.check(self.table)
+            option = bound.option_of(self.table)
             if option and not getattr(self.table.options(**self.asked), option):
-                raise UsageError(f"{one.column} is measured only with {option}=True; add it")
-        self._raise_for((one, self._broken(one.row, limits)) for one in self._measurable())
+                raise UsageError(f"{bound.column} is measured only with {option}=True; add it")
+        self._raise_for((measurement, self._broken(measurement.row, limits)) for measurement in self._measurable())
 
     def _broken(self, row: Row, limits: Iterable[Limit]) -> list[str]:
-        return [said for one in limits_on(row, limits) if (said := one.broken_by(self.table, row))]
+        return [message for bound in limits_on(row, limits) if (message := bound.broken_by(self.table, row))]
 
     @ends_here
     def matches_baseline(self, **tolerances: float) -> None:
@@ -143,13 +143,19 @@ class Measured:
             raise UsageError("no baseline is named; --normalbench-baseline FILE names one")
         checked_tolerances(tolerances, list(self.rows[0]))
         wrong: list[tuple[Found, list[str]]] = []
-        for one in self._measurable():
-            said = entry(self.table, self._request(), one.row, one.listing)
+        for measurement in self._measurable():
+            record = entry(self.table, self._request(), measurement.row, measurement.listing)
             if baseline.writes:
-                baseline.record(said)
+                baseline.record(record)
             else:
                 wrong.append(
-                    (one, [f"{self.table.name_of(one.row)}: {x}" for x in baseline.differences(said, tolerances)])
+                    (
+                        measurement,
+                        [
+                            f"{self.table.name_of(measurement.row)}: {x}"
+                            for x in baseline.differences(record, tolerances)
+                        ],
+                    )
                 )
         self._raise_for(wrong)
 
@@ -160,13 +166,13 @@ class Measured:
     def _measurable(self) -> list[Found]:
         """The rows less those that a missing GL driver left empty."""
         missing = found_device()[1] if any(row.get("skipped") for row in self.rows) else ""
-        return [one for one in self.found if not missing or one.row.get("skipped") != missing]
+        return [measurement for measurement in self.found if not missing or measurement.row.get("skipped") != missing]
 
     def _raise_for(self, wrong: Iterable[tuple[Found, list[str]]]) -> None:
         lines: list[str] = []
-        for one, said in wrong:
-            lines += said
-            lines += [f"  worst normal: {one.worst}"] if said and one.worst else []
+        for measurement, messages in wrong:
+            lines += messages
+            lines += [f"  worst normal: {measurement.worst}"] if messages and measurement.worst else []
         if lines:
             raise AssertionError("\n".join(lines))
         self._skip_where_lacking()
@@ -177,10 +183,10 @@ class Measured:
 
 
 def _checked_limit(column: str, text: Any) -> Limit:
-    found = limit(column, text)
-    if not found:
+    bound = limit(column, text)
+    if not bound:
         raise not_a_limit(column, text)
-    return found
+    return bound
 
 
 @dataclass(frozen=True)
@@ -203,8 +209,8 @@ class Normalbench:
     def hold(self, table: Table, options: Mapping[str, Any], limits: Iterable[Limit]) -> None:
         """Measure, and hold every row to limits; see Measured.assert_that."""
         limits = list(limits)
-        for one in limits:
-            one.check(table)
+        for bound in limits:
+            bound.check(table)
         self._measured(table, **with_their_options(table, options, limits)).hold(limits)
 
     def matches(self, table: Table, options: Mapping[str, Any], path: Path) -> None:

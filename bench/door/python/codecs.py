@@ -78,7 +78,7 @@ def codec_of(codec: Codec | str) -> Codec:
         MissingError: a user's shader has no Python twin, and there is no GL device.
     """
     if isinstance(codec, Codec):
-        found = codec
+        chosen_codec = codec
     else:
         before, _, last = codec.rpartition("/")
         before, rounding = (before, last) if last in ROUNDINGS else (codec, "nearest")
@@ -88,10 +88,14 @@ def codec_of(codec: Codec | str) -> Codec:
         several = codecs_named((name,), (storage,), (rounding,))
         if len(several) != 1:
             raise UsageError(f"codec {codec!r}: one codec at a time, not {len(several)}")
-        (found,) = several
-    if found.misfit:
-        raise UsageError(f"{found.name}: {found.misfit}")
-    return found if has_twin(found.encoding) else replace(found, encoding=_by_gl(found.encoding))
+        (chosen_codec,) = several
+    if chosen_codec.misfit:
+        raise UsageError(f"{chosen_codec.name}: {chosen_codec.misfit}")
+    return (
+        chosen_codec
+        if has_twin(chosen_codec.encoding)
+        else replace(chosen_codec, encoding=_by_gl(chosen_codec.encoding))
+    )
 
 
 def _by_gl(encoding: Encoding) -> Encoding:
@@ -99,18 +103,18 @@ def _by_gl(encoding: Encoding) -> Encoding:
     gl = device()
 
     def run(side: int, given: Any, view: Vec3) -> Any:
-        shape = jnp.broadcast_shapes(*(jnp.shape(one) for one in (*given, *view)))
+        shape = jnp.broadcast_shapes(*(jnp.shape(component) for component in (*given, *view)))
         rows, views = (_rows_of_four(vector, shape) for vector in (given, view))
-        made = exact_values(gl, encoding, rows, views, rows)[side]
+        outputs = exact_values(gl, encoding, rows, views, rows)[side]
         size = NORMAL if side else encoding.components
-        return CODES[size](*(jnp.asarray(made[:, at]).reshape(shape) for at in range(size)))
+        return CODES[size](*(jnp.asarray(outputs[:, i]).reshape(shape) for i in range(size)))
 
     return replace(encoding, encode=lambda n, view: run(0, n, view), decode=lambda code, view: run(1, code, view))
 
 
 def _rows_of_four(vector: Any, shape: tuple[int, ...]) -> np.ndarray:
     """A vector of arrays as float32 rows of four numbers, (count, 4)."""
-    columns = [np.broadcast_to(np.asarray(one, np.float32), shape).ravel() for one in vector]
+    columns = [np.broadcast_to(np.asarray(component, np.float32), shape).ravel() for component in vector]
     return np.stack([*columns, *[np.zeros_like(columns[0])] * (4 - len(columns))], axis=1)
 
 

@@ -46,8 +46,8 @@ def pack(layout: Layout | str, surface: Mapping[str, Any], **settings: Any) -> t
     shape = np.broadcast_shapes(*(_shape(surface[name], kind) for name, kind in kinds.items()))
     rows = np.concatenate([_rows(surface[name], kind, shape) for name, kind in kinds.items()], axis=1)
     width = len(target_leaves(code.texts))
-    made = _ran(code, np.pad(rows, ((0, 0), (0, width))), settings, shape)[:, :width]
-    held = stored_texels(code.layout, written_texels(code, made))
+    leaves = _ran(code, np.pad(rows, ((0, 0), (0, width))), settings, shape)[:, :width]
+    held = stored_texels(code.layout, written_texels(code, leaves))
     return tuple(
         _target(held[:, number], target.storage.is_integer, target.storage.channels, shape)
         for number, target in enumerate(code.layout.targets)
@@ -66,14 +66,16 @@ def unpack(layout: Layout | str, targets: Sequence[Any], **settings: Any) -> dic
         raise UsageError(f"layout {code.layout.name} has {len(code.texts.targets)} targets, not {len(targets)}")
     kinds = [target.kind for target in code.texts.targets]
     # A target of one integer is one number of each pixel.
-    held = [np.asarray(one)[..., 0] if kind == "uint" else one for one, kind in zip(targets, kinds, strict=True)]
-    shape = np.broadcast_shapes(*(_shape(one, kind) for one, kind in zip(held, kinds, strict=True)))
-    rows = np.concatenate([_rows(one, kind, shape) for one, kind in zip(held, kinds, strict=True)], axis=1)
+    held = [
+        np.asarray(target)[..., 0] if kind == "uint" else target for target, kind in zip(targets, kinds, strict=True)
+    ]
+    shape = np.broadcast_shapes(*(_shape(target, kind) for target, kind in zip(held, kinds, strict=True)))
+    rows = np.concatenate([_rows(target, kind, shape) for target, kind in zip(held, kinds, strict=True)], axis=1)
     width = len(surface_leaves(code.texts))
-    made = _ran(code, np.pad(rows, ((0, 0), (width, 0))), settings, shape)[:, -width:]
+    leaves = _ran(code, np.pad(rows, ((0, 0), (width, 0))), settings, shape)[:, -width:]
     fields = code.texts.contents.fields
     ends = np.cumsum([size_of(field.kind) for field in fields])[:-1]
-    parts = np.split(made, ends, axis=1)
+    parts = np.split(leaves, ends, axis=1)
     return {field.name: _field(part, field.kind, shape) for field, part in zip(fields, parts, strict=True)}
 
 

@@ -41,9 +41,9 @@ def stub() -> str:
 
 def _function(table: Table) -> str:
     options = fields_of(table.options)
-    said = "".join(f"\n    {name}: {one.option.help}" for name, one in options.items()) + f"\n    on: {HELP}"
-    doc = textwrap.indent(f'"""{table.help}\n\nArgs:{said}\n"""', "    ")
-    parameters = "".join(f"    {name}: {_type(one)} = ...,\n" for name, one in options.items())
+    arguments = "".join(f"\n    {name}: {field.option.help}" for name, field in options.items()) + f"\n    on: {HELP}"
+    doc = textwrap.indent(f'"""{table.help}\n\nArgs:{arguments}\n"""', "    ")
+    parameters = "".join(f"    {name}: {_type(field)} = ...,\n" for name, field in options.items())
     parameters += "    on: str | None = ...,\n"
     return f"def {table.name}(\n    *,\n{parameters}) -> Rows:\n{doc}\n"
 

@@ -79,8 +79,8 @@ def function_of(name: str) -> Callable[..., Rows]:
     parameters.append(inspect.Parameter("on", inspect.Parameter.KEYWORD_ONLY, default=None))
     call.__name__ = call.__qualname__ = name
     call.__signature__ = inspect.Signature(parameters, return_annotation=Rows)  # pyright: ignore[reportFunctionMemberAccess]
-    said = "".join(f"\n    {n}: {f.option.help}" for n, f in known.items()) + f"\n    on: {HELP}"
-    call.__doc__ = f"{table.help}\n\nArgs:{said}\n\nReturns:\n    a pandas DataFrame, a line for each row.\n"
+    arguments = "".join(f"\n    {n}: {f.option.help}" for n, f in known.items()) + f"\n    on: {HELP}"
+    call.__doc__ = f"{table.help}\n\nArgs:{arguments}\n\nReturns:\n    a pandas DataFrame, a line for each row.\n"
     return call
 
 
@@ -125,8 +125,10 @@ def _check_unit(name: str, array: np.ndarray) -> None:
 
 def _depths(name: str, array: np.ndarray) -> np.ndarray:
     if array.ndim != 2 or not array.size or not (np.issubdtype(array.dtype, np.floating) or array.dtype.kind == "u"):
-        said = f"of {array.dtype} and shape {array.shape}"
-        raise UsageError(f"depths: {name} is {said}; give floats or unsigned whole numbers of shape (height, width)")
+        description = f"of {array.dtype} and shape {array.shape}"
+        raise UsageError(
+            f"depths: {name} is {description}; give floats or unsigned whole numbers of shape (height, width)"
+        )
     return array
 
 

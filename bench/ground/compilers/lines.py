@@ -44,11 +44,11 @@ def bare(text: str, is_wgsl: bool = False) -> str:
 
 def _without_nested_comments(text: str) -> str:
     """As `without_comments`, of WGSL."""
-    made, place = [], 0
+    pieces, place = [], 0
     while (match := _OF_WGSL.search(text, place)) and (end := _end_of_comment(text, match)):
-        made += [text[place : match.start()], blank(text[match.start() : end])]
+        pieces += [text[place : match.start()], blank(text[match.start() : end])]
         place = end
-    return _FEEDS.sub(" ", "".join([*made, text[place:]]))
+    return _FEEDS.sub(" ", "".join([*pieces, text[place:]]))
 
 
 def _end_of_comment(text: str, match: re.Match[str]) -> int:

@@ -167,7 +167,7 @@ def is_own_file(path: Path) -> bool:
 
 def _check_letters(text: str, rules: Rules) -> None:
     if not text.replace("\n", "").replace("\t", "").isprintable():
-        place = next(at for at, letter in enumerate(text) if not (letter.isprintable() or letter in "\n\t"))
+        place = next(i for i, letter in enumerate(text) if not (letter.isprintable() or letter in "\n\t"))
         raise _refusal_at(text, place, f"the letter U+{ord(text[place]):04X} is not read")
     for match in _ODD.finditer(text):
         raise _refusal_at(text, match.start(), f"{_REASONS[match[0][0]]} is not read here")

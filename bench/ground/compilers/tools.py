@@ -195,10 +195,10 @@ def slang_text(text: str, words: Sequence[str], folder: Path) -> Text:
 
 def module_of(text: Text, words: Sequence[str]) -> tuple[Ran, bytes]:
     """Return how glslang ended, and the module of SPIR-V that it made of a text, which it reads from standard input."""
-    with file_of_child() as made:
-        command = [str(path_of(GLSLANG)), "--stdin", *words, "-o", made.path]
-        done = _piped(command, text.content.encode(), *made.descriptors)
-        return Ran(done.returncode, done.stdout.decode(errors="replace"), ""), made.content()
+    with file_of_child() as module_file:
+        command = [str(path_of(GLSLANG)), "--stdin", *words, "-o", module_file.path]
+        done = _piped(command, text.content.encode(), *module_file.descriptors)
+        return Ran(done.returncode, done.stdout.decode(errors="replace"), ""), module_file.content()
 
 
 def optimised(binary: bytes) -> bytes:

@@ -26,9 +26,9 @@ def python(module: str, *words: str) -> list[str]:
 
 def environment() -> dict[str, str]:
     """This process's, less the folders of PYTHONPATH that stand for the current one."""
-    found = [word for word in os.environ.get("PYTHONPATH", "").split(os.pathsep) if Path(word).is_absolute()]
+    folders = [word for word in os.environ.get("PYTHONPATH", "").split(os.pathsep) if Path(word).is_absolute()]
     return {name: value for name, value in os.environ.items() if name != "PYTHONPATH"} | (
-        {"PYTHONPATH": os.pathsep.join(found)} if found else {}
+        {"PYTHONPATH": os.pathsep.join(folders)} if folders else {}
     )
 
 
@@ -68,10 +68,10 @@ def finished(command: Sequence[str], seconds: float, folder: Path | None = None)
             end_group(process)
             process.wait()
             _under_way.discard(process)
-        said = [text_of(file) for file in (out, err)]
+        outputs = [text_of(file) for file in (out, err)]
     if status is None:
-        raise subprocess.TimeoutExpired(command, seconds, *said)
-    return subprocess.CompletedProcess(list(command), status, *said)
+        raise subprocess.TimeoutExpired(command, seconds, *outputs)
+    return subprocess.CompletedProcess(list(command), status, *outputs)
 
 
 def how_it_ended(done: subprocess.CompletedProcess[str]) -> str:

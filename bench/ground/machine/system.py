@@ -26,9 +26,11 @@ def _home_for_the_unknown() -> Path:
     home = Path(tempfile.gettempdir()) / f"normalbench-home-{user()}"
     try:
         home.mkdir(PRIVATE, exist_ok=True)
-        found = home.lstat()
+        status = home.lstat()
     except OSError:
         return Path(tempfile.mkdtemp(prefix="normalbench-home-"))
     return (
-        home if stat.S_ISDIR(found.st_mode) and is_closed(found) else Path(tempfile.mkdtemp(prefix="normalbench-home-"))
+        home
+        if stat.S_ISDIR(status.st_mode) and is_closed(status)
+        else Path(tempfile.mkdtemp(prefix="normalbench-home-"))
     )

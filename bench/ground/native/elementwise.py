@@ -75,11 +75,11 @@ def c_function(name: str, function: Callable[..., Any], *arguments: Any) -> str:
     if any(aval.shape != (LANES,) for aval in traced.out_avals):
         raise NotElementwiseError("a result of another shape")
     writer = _Writer()
-    taken = [f"a{at}" for at in range(len(traced.in_avals))]
+    taken = [f"a{i}" for i in range(len(traced.in_avals))]
     results = writer.results(traced, taken)
     given = [f"{_type(aval)} {name}" for aval, name in zip(traced.in_avals, taken, strict=True)]
-    given += [f"{_type(aval)} *r{at}" for at, aval in enumerate(traced.out_avals)]
-    stores = [f"*r{at} = {result};" for at, result in enumerate(results)]
+    given += [f"{_type(aval)} *r{i}" for i, aval in enumerate(traced.out_avals)]
+    stores = [f"*r{i} = {result};" for i, result in enumerate(results)]
     lines = "".join(f"    {line}\n" for line in (*writer.lines, *stores))
     return f"INLINED void {name}({', '.join(given)}) {{\n{lines}}}\n"
 
@@ -108,12 +108,12 @@ def _literal(value: Any) -> _Constant:
     if value.ndim:
         raise NotElementwiseError("an array of constants")
     if value.dtype.kind == "f" and np.isfinite(value):
-        said = float(value).hex()
+        literal = float(value).hex()
     elif value.dtype.kind == "f":
-        said = "NAN" if np.isnan(value) else "-INFINITY" if value < 0 else "INFINITY"
+        literal = "NAN" if np.isnan(value) else "-INFINITY" if value < 0 else "INFINITY"
     else:
-        said = str(int(value))
-    written = _Constant(f"(({c_type(value.dtype)}){said})")
+        literal = str(int(value))
+    written = _Constant(f"(({c_type(value.dtype)}){literal})")
     written.value = value.item()
     return written
 
@@ -133,8 +133,8 @@ class _Writer:
             return _literal(atom.val) if isinstance(atom, core.Literal) else names[atom]
 
         for equation in traced.jaxpr.eqns:
-            found = self._of(equation, [*map(named, equation.invars)])
-            names |= dict(zip(equation.outvars, found, strict=True))
+            outputs = self._of(equation, [*map(named, equation.invars)])
+            names |= dict(zip(equation.outvars, outputs, strict=True))
         return [*map(named, traced.jaxpr.outvars)]
 
     def _of(self, equation: Any, given: list[str]) -> Iterable[str]:

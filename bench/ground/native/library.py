@@ -50,7 +50,7 @@ def source(file: Path, function: str, given: Sequence[str], **numbers: int) -> T
         given: the types of what the function takes of the array `given`.
         numbers: further macros.
     """
-    taken = "".join(f", ({kind})given[{at}]" for at, kind in enumerate(given))
+    taken = "".join(f", ({kind})given[{i}]" for i, kind in enumerate(given))
     called = judged(f"#define GIVEN{taken and ' '}{taken}\n{function}", "c")
     return own(HEAD, **{name.upper(): number for name, number in numbers.items()}) + called + own(file)
 
@@ -65,10 +65,10 @@ def library(text: Text, *functions: str) -> ctypes.CDLL:
     Raises:
         NoCompilerError: it cannot be compiled here.
     """
-    made = _made(text, functions)
-    if isinstance(made, str):
-        raise NoCompilerError(made)
-    return made
+    outcome = _made(text, functions)
+    if isinstance(outcome, str):
+        raise NoCompilerError(outcome)
+    return outcome
 
 
 @cache
@@ -81,13 +81,13 @@ def _made(text: Text, functions: tuple[str, ...]) -> ctypes.CDLL | str:
         if not kept.is_off() and (own := _whole(path)):
             return _loaded(own, functions)
         with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
-            made = _compiled(text, Path(folder))
-            found = _loaded(made, functions)
+            library_path = _compiled(text, Path(folder))
+            handle = _loaded(library_path, functions)
             if not kept.is_off() and kept.keeps_code():
                 # A folder that cannot be written is no error.
                 with contextlib.suppress(OSError):
-                    kept.put(path, made.read_bytes())
-            return found
+                    kept.put(path, library_path.read_bytes())
+            return handle
     except (NoCompilerError, OSError) as error:
         return str(error)
 
@@ -116,12 +116,12 @@ def _whole(path: Path) -> Path | None:
 def _loaded(path: Path, functions: Sequence[str]) -> ctypes.CDLL:
     """A library, which its file need not outlive. Raises NoCompilerError where it lacks a function, and OSError."""
     try:
-        found = ctypes.CDLL(str(path))
+        handle = ctypes.CDLL(str(path))
     except OSError:
-        found = _loaded_elsewhere(path)
-    if missing := [name for name in functions if not hasattr(found, name)]:
+        handle = _loaded_elsewhere(path)
+    if missing := [name for name in functions if not hasattr(handle, name)]:
         raise NoCompilerError(f"cc: {', '.join(missing)} is not in what it made")
-    return found
+    return handle
 
 
 def _loaded_elsewhere(path: Path) -> ctypes.CDLL:
@@ -158,8 +158,8 @@ def _compile(text: Text, folder: Path) -> None:
     except MissingError as error:
         raise NoCompilerError(str(error)) from error
     if done.status:
-        said = [*done.err.splitlines(), f"exit status {done.status}"]
-        raise NoCompilerError(f"cc: {next((line for line in said if 'error' in line), said[-1])}")
+        lines = [*done.err.splitlines(), f"exit status {done.status}"]
+        raise NoCompilerError(f"cc: {next((line for line in lines if 'error' in line), lines[-1])}")
 
 
 def address(array: np.ndarray) -> ctypes.c_void_p:

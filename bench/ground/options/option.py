@@ -270,12 +270,12 @@ KINDS = {str: "a text", int: "a whole number", float: "a number", bool: "true or
 @cache
 def fields_of(group: type) -> Mapping[str, Field]:
     """The options of a dataclass by their names in Python; its own first, then those that it inherits."""
-    hints, found = get_type_hints(group, include_extras=True), {}
+    hints, options = get_type_hints(group, include_extras=True), {}
     for field in fields(group):
         kind, option = get_args(hints[field.name])
-        found[field.name] = Field(field.name, kind, field.default, option)
+        options[field.name] = Field(field.name, kind, field.default, option)
     own = inspect.get_annotations(group)
-    return MappingProxyType(dict(sorted(found.items(), key=lambda item: item[0] not in own)))
+    return MappingProxyType(dict(sorted(options.items(), key=lambda item: item[0] not in own)))
 
 
 def checked_options(group: type, values: Mapping[str, Any]) -> dict[str, Any]:

@@ -25,17 +25,17 @@ def in_names(values: Mapping[str, Any]) -> dict[str, Any]:
         UsageError: there is no such file, or a value cannot be.
     """
     given = {field.name: value for field in fields(Sources) if (value := values.get(field.name))}
-    said = {
+    settings = {
         name: value if isinstance(value, tuple) else ("yes" if value is True else value,)
         for name, value in given.items()
     }
-    if not said:
+    if not settings:
         return dict(values)
     if not names_files(values):
-        option = next(iter(said))
+        option = next(iter(settings))
         raise UsageError(NO_FILE.format(option.replace("_", "-"), option))
-    named = {name: with_settings(value, **said) for name in NAMED if (value := values.get(name))}
-    return {**values, **{field.name: field.default for field in fields(Sources) if field.name in said}, **named}
+    named = {name: with_settings(value, **settings) for name in NAMED if (value := values.get(name))}
+    return {**values, **{field.name: field.default for field in fields(Sources) if field.name in settings}, **named}
 
 
 def names_files(values: Mapping[str, Any]) -> bool:

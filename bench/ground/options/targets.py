@@ -65,9 +65,9 @@ F = TypeVar("F", bound=Fitted)
 
 def that_fit(codecs: Iterable[F]) -> list[F]:
     """The codecs of any kind that fit; the rest is named on standard error. Raises UsageError where nothing is left."""
-    made = list(codecs)
-    complaints = [f"{codec.name}: {codec.misfit}" for codec in made if codec.misfit]
-    return what_is_left([codec for codec in made if not codec.misfit], complaints)
+    candidates = list(codecs)
+    complaints = [f"{codec.name}: {codec.misfit}" for codec in candidates if codec.misfit]
+    return what_is_left([codec for codec in candidates if not codec.misfit], complaints)
 
 
 class Noisy(Protocol):

@@ -59,12 +59,12 @@ def make_folder(path: Path) -> None:
     Raises:
         OSError: it cannot be made, or it is another user's.
     """
-    for one in reversed((path, *path.parents)):
-        if not one.is_dir():
+    for directory in reversed((path, *path.parents)):
+        if not directory.is_dir():
             # Something else of that name is an error.
-            one.mkdir(PRIVATE, exist_ok=not one.is_symlink())
-        elif one.is_relative_to(folder()) and not is_closed(one.stat()):
-            _close(one)
+            directory.mkdir(PRIVATE, exist_ok=not directory.is_symlink())
+        elif directory.is_relative_to(folder()) and not is_closed(directory.stat()):
+            _close(directory)
 
 
 def _close(path: Path) -> None:
@@ -72,9 +72,9 @@ def _close(path: Path) -> None:
     if not is_own(path.stat()):
         raise PermissionError(EACCES, "another user's folder", str(path))
     path.chmod(PRIVATE)
-    for one in path.iterdir():
-        if not is_own(one.lstat()):
-            shutil.rmtree(one) if one.is_dir() and not one.is_symlink() else one.unlink()
+    for entry in path.iterdir():
+        if not is_own(entry.lstat()):
+            shutil.rmtree(entry) if entry.is_dir() and not entry.is_symlink() else entry.unlink()
 
 
 def require_folder() -> None:
@@ -98,11 +98,11 @@ def keep_only_files(path: Path) -> None:
 
 def is_private(path: Path) -> bool:
     """Whether there is a file, which nobody but this user can have written or put there."""
-    above = [one for one in path.parents if one.is_relative_to(folder())]
+    above = [parent for parent in path.parents if parent.is_relative_to(folder())]
     try:
-        found = path.lstat()
+        status = path.lstat()
         # A pipe would be waited for, and a device read without an end.
-        return stat.S_ISREG(found.st_mode) and is_closed(found) and all(is_closed(one.stat()) for one in above)
+        return stat.S_ISREG(status.st_mode) and is_closed(status) and all(is_closed(parent.stat()) for parent in above)
     except OSError:
         return False
 

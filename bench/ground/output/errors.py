@@ -104,8 +104,8 @@ def hearing() -> Iterator[list[tuple[bool, str]]]:
 
 def hear(is_error: bool, text: str) -> None:
     """Note what is said, where somebody listens."""
-    for said in _heard:
-        said.append((is_error, text))
+    for listener in _heard:
+        listener.append((is_error, text))
 
 
 def tell(line: str) -> None:
@@ -133,5 +133,5 @@ def tell_together(first: str, lines: Iterable[str]) -> None:
     """A line to standard error, and indented ones that belong to it; all of them, however often they were said."""
     from ....reports.tables import visible
 
-    for at, line in enumerate((first, *lines)):
-        print(("  " if at else "normalbench: ") + visible(" ".join(line.split())), file=sys.stderr)
+    for index, line in enumerate((first, *lines)):
+        print(("  " if index else "normalbench: ") + visible(" ".join(line.split())), file=sys.stderr)

@@ -22,13 +22,13 @@ def kept_arrays(key: str, make: Callable[[], Arrays]) -> Arrays:
         key: lower-case hexadecimal digits; it differs where the arrays would.
     """
     path = cache.folder() / "arrays" / f"{key}.npz"
-    found = None if cache.is_off() else _read(path)
-    if found is None:
-        found = make()
+    arrays = None if cache.is_off() else _read(path)
+    if arrays is None:
+        arrays = make()
         if not cache.is_off():
             with suppress(OSError):
-                cache.put(path, _packed(found))
-    return found
+                cache.put(path, _packed(arrays))
+    return arrays
 
 
 def _read(path: Path) -> Arrays | None:

@@ -53,5 +53,5 @@ def jackknife(figure: Callable[[np.ndarray], float], samples: Sequence[int]) -> 
     """
     # se^2 = (n - 1) / n sum (x_i - mean x)^2, x_i without sample i
     indices = np.asarray(samples)
-    left = np.array([figure(np.delete(indices, at)) for at in range(len(indices))])
+    left = np.array([figure(np.delete(indices, i)) for i in range(len(indices))])
     return float(np.sqrt((len(indices) - 1) / len(indices) * np.sum((left - left.mean()) ** 2)))

@@ -66,7 +66,7 @@ def gap_db(errors: Errors, other: Errors) -> tuple[float, float]:
     yaws = range(min(count_of(errors, poles[0]), count_of(other, poles[1])))
 
     def gap(kept: Sequence[int] | np.ndarray) -> float:
-        found = (min(worst_db(*part, kept), INDISTINGUISHABLE_DB) for part in zip((errors, other), poles, strict=True))
-        return next(found) - next(found)
+        psnrs = (min(worst_db(*part, kept), INDISTINGUISHABLE_DB) for part in zip((errors, other), poles, strict=True))
+        return next(psnrs) - next(psnrs)
 
     return gap(yaws), jackknife(gap, yaws) if len(yaws) > 1 else 0.0

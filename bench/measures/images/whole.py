@@ -105,7 +105,7 @@ class WholeImage:
     def by_class(self, trip: Trip, turns: Sequence[Turn], domain: str) -> dict[str, Float[np.ndarray, " turns"]]:
         """Return the mean squared error of each class, and as "" that of the frame; as `SampledImage.by_class`."""
         held, rows = self.held_by(domain), []
-        numbers = {"": held} | {name: held & (self.classes == at) for at, name in enumerate((AXIS_ALIGNED, *UP_TO))}
+        numbers = {"": held} | {name: held & (self.classes == i) for i, name in enumerate((AXIS_ALIGNED, *UP_TO))}
         for turn in turns:
             shown = self.shown(trip, turn)
             errors = np.mean(np.where(np.isfinite(shown), shown - self.exact, 1.0) ** 2, axis=-1)
@@ -126,6 +126,6 @@ def whole_images(
     plan = Plan(
         maker.within(SIZE), 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], max(pipeline.light_targets), True, 1.0
     )
-    made = stack.enter_context(rendering(device, pipeline, scene, plan))
+    renderer = stack.enter_context(rendering(device, pipeline, scene, plan))
     moments = {power: scene if power is None else scene.with_power(power) for power in powers}
-    return {power: WholeImage(moment, maker, made) for power, moment in moments.items()}
+    return {power: WholeImage(moment, maker, renderer) for power, moment in moments.items()}

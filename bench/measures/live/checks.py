@@ -50,7 +50,7 @@ def common() -> dict[str, Any]:
 @cache
 def sums(domain: str) -> list[int]:
     """The checksums of a domain's normals and views, by which a browser knows that it makes the same."""
-    return [checksum(made) for made in normals.normals(domain)]
+    return [checksum(vectors) for vectors in normals.normals(domain)]
 
 
 def is_whole(found: Mapping[str, Any], domain: str, size: int) -> bool:
@@ -82,9 +82,9 @@ def checks(codec: Codec) -> dict[str, Any]:
 
 def _codec_checks(codec: Codec) -> dict[str, Any]:
     n, view = normals.normals(codec.encoding.domain)
-    made = reference_of(codec, n, view, compiled=False)
-    codes = ordered(codec, made)
-    angles = angles_deg(n, made.decoded)
+    reference = reference_of(codec, n, view, compiled=False)
+    codes = ordered(codec, reference)
+    angles = angles_deg(n, reference.decoded)
     # What is not a number is as far as can be.
     angles = np.where(np.isfinite(angles), angles, 180.0)
     return {
@@ -100,7 +100,7 @@ def _codec_checks(codec: Codec) -> dict[str, Any]:
 def ordered(codec: Codec, made: Reference) -> np.ndarray:
     """Stored codes as integers in the order of the numbers that they stand for: int32 of shape (count, components)."""
     channels = Channels(codec).channels
-    whole = [signed(channel, made.integers[:, at]) for at, channel in enumerate(channels)]
+    whole = [signed(channel, made.integers[:, i]) for i, channel in enumerate(channels)]
     return np.stack(whole, axis=1).astype(np.int32)
 
 

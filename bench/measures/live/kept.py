@@ -97,11 +97,11 @@ def write_live(codecs: Iterable[Codec], folder: Path) -> None:
     written."""
     for codec in dict.fromkeys(codecs):
         try:
-            made = {**program(codec), "checks": _checks_or_none(codec)}
+            record = {**program(codec), "checks": _checks_or_none(codec)}
         except NotLiveError as error:
-            made = {"encoding": codec.encoding.name, "storage": codec.storage.name, "left_out": str(error)}
+            record = {"encoding": codec.encoding.name, "storage": codec.storage.name, "left_out": str(error)}
         with whole_file(folder / file_name(codec)) as partial:
-            partial.write_text(json.dumps(made), encoding="utf-8", newline="\n")
+            partial.write_text(json.dumps(record), encoding="utf-8", newline="\n")
 
 
 def _checks_or_none(codec: Codec) -> Record | None:
@@ -114,14 +114,14 @@ def _checks_or_none(codec: Codec) -> Record | None:
 
 def _current_record(record: Record) -> Record:
     """A record whose checks are of the normals that the page makes; without them where they are of others."""
-    found = record["checks"]
-    is_whole = found and checks.is_whole(found, record["domain"], len(record["channels"]))
+    kept_checks = record["checks"]
+    is_whole = kept_checks and checks.is_whole(kept_checks, record["domain"], len(record["channels"]))
     return record if is_whole else {**record, "checks": None}
 
 
 def read_live(folder: Path) -> tuple[list[Record], dict[str, str]]:
     """The codecs of a run's folder, and by name why others are left out; damaged files among them."""
-    found, left_out = [], {}
+    records, left_out = [], {}
     for name, path in sorted(files_of(folder).items()):
         if path.suffix != ".json":
             continue
@@ -130,7 +130,7 @@ def read_live(folder: Path) -> tuple[list[Record], dict[str, str]]:
             if isinstance(record, dict) and isinstance(record.get("left_out"), str):
                 left_out[f"{record.get('encoding')} {record.get('storage')}"] = record["left_out"]
             else:
-                found.append(_current_record(KEPT.validate_python(record)))
+                records.append(_current_record(KEPT.validate_python(record)))
         except (OSError, ValueError, ValidationError):
             left_out[name] = "its file is damaged"
-    return found, left_out
+    return records, left_out

@@ -44,17 +44,17 @@ def _random_normals(index: np.ndarray) -> np.ndarray:
     G. Marsaglia, "Choosing a Point from the Surface of a Sphere" (1972): the first (a, b) with s = a^2 + b^2 < 1 gives
     (2 a sqrt(1 - s), 2 b sqrt(1 - s), 1 - 2 s).
     """
-    one, two = np.float32(1), np.float32(2)
+    unity, two = np.float32(1), np.float32(2)
     a, b, open_, turn = (np.zeros(len(index), kind) for kind in ("f4", "f4", "?", "u4"))
     open_[:] = True
     while open_.any():
         word = np.uint32(NORMALS) + np.uint32(PER_TRY) * (turn[open_] * np.uint32(COUNT) + index[open_])
         a[open_], b[open_] = _uniform_numbers(word), _uniform_numbers(word + np.uint32(1))
         turn += 1
-        open_ = a * a + b * b >= one
+        open_ = a * a + b * b >= unity
     s = a * a + b * b
-    root = np.sqrt(one - s)
-    return np.stack([two * a * root, two * b * root, one - two * s], axis=1)
+    root = np.sqrt(unity - s)
+    return np.stack([two * a * root, two * b * root, unity - two * s], axis=1)
 
 
 def _at_length_1(vectors: np.ndarray) -> np.ndarray:
@@ -63,27 +63,27 @@ def _at_length_1(vectors: np.ndarray) -> np.ndarray:
 
 def _fold_normals() -> np.ndarray:
     """Normals on the planes where maps fold, x = 0 and |x| = |y| for every pair of axes, and next to those of zeros."""
-    points, found = _random_normals(np.arange(ON_LINES, dtype=np.uint32)).astype(np.float64), []
-    for one, other in PAIRS:
+    points, parts = _random_normals(np.arange(ON_LINES, dtype=np.uint32)).astype(np.float64), []
+    for axis, other in PAIRS:
         for value in BESIDE:
-            found.append(points.copy())
-            found[-1][:, one] = value
+            parts.append(points.copy())
+            parts[-1][:, axis] = value
         for sign in (1.0, -1.0):
-            found.append(points.copy())
-            found[-1][:, other] = sign * points[:, one]
-    return _at_length_1(np.concatenate(found))
+            parts.append(points.copy())
+            parts[-1][:, other] = sign * points[:, axis]
+    return _at_length_1(np.concatenate(parts))
 
 
 def _neighbour_normals(n: np.ndarray) -> np.ndarray:
     """Normals with one component one float32 up or down; next to 0 a number that stays normal where it is multiplied,
     because devices may flush subnormal ones."""
-    found = []
+    parts = []
     for axis in range(3):
         for toward in (-2.0, 2.0):
             next_ = np.nextafter(n[:, axis], np.float32(toward))
-            found.append(n.copy())
-            found[-1][:, axis] = np.where(n[:, axis] == 0, np.float32(np.sign(toward) * NEXT_TO_0), next_)
-    return np.concatenate(found)
+            parts.append(n.copy())
+            parts[-1][:, axis] = np.where(n[:, axis] == 0, np.float32(np.sign(toward) * NEXT_TO_0), next_)
+    return np.concatenate(parts)
 
 
 @cache

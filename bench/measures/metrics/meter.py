@@ -125,8 +125,8 @@ def _traced_scan(chunk: Decoded) -> tuple[Float[Array, " figures"], Int[Array, "
 
     zero, whole = jnp.zeros(SUM_LANES, jnp.float64), jnp.zeros(SUM_LANES, jnp.int64)
     start = Figures(zero, whole, zero, zero, whole, zero.astype(jnp.float32))
-    found, bins = jax.lax.scan(step, start, _chunk_in_rows(chunk))
-    figures = [*(total.sum().astype(jnp.float64) for total in found[:-1]), found.largest.max().astype(jnp.float64)]
+    totals, bins = jax.lax.scan(step, start, _chunk_in_rows(chunk))
+    figures = [*(total.sum().astype(jnp.float64) for total in totals[:-1]), totals.largest.max().astype(jnp.float64)]
     return jnp.stack(figures), tally(bins), bins.ravel()
 
 
@@ -135,14 +135,14 @@ _scan = jax.jit(_traced_scan)
 
 def _worst(bins: UInt[np.ndarray, " count"], largest: float, n: Vec3, decoded: Vec3) -> Worst | None:
     """The normal of a chunk with the largest angle, among those of the highest bin; None where none counts."""
-    at = np.flatnonzero(bins == bin_of(largest))
-    if not at.size:
+    indices = np.flatnonzero(bins == bin_of(largest))
+    if not indices.size:
         return None
-    normals, found = ([np.asarray(plane).ravel()[at] for plane in planes] for planes in (n, decoded))
+    normals, decoded_normals = ([np.asarray(plane).ravel()[indices] for plane in planes] for planes in (n, decoded))
     # What comes back as it was has an angle of 0: the first of these stands for all.
-    moved = np.any([a != b for a, b in zip(normals, found, strict=True)], axis=0)
+    moved = np.any([a != b for a, b in zip(normals, decoded_normals, strict=True)], axis=0)
     some = np.concatenate([[0], np.flatnonzero(moved)])
-    return worst_of(*(np.stack([plane[some] for plane in planes], axis=1) for planes in (normals, found)))
+    return worst_of(*(np.stack([plane[some] for plane in planes], axis=1) for planes in (normals, decoded_normals)))
 
 
 def worst_of(normals: Float[np.ndarray, "count 3"], decoded: Float[np.ndarray, "count 3"]) -> Worst | None:
@@ -224,8 +224,8 @@ class Meter:
         with jax.enable_x64(True), jax.default_device(device):
             chunk = jax.tree.map(_on_device, load())
             decoded = self.decoded(chunk)
-            found = jax.device_get(_scan(Decoded(chunk.n, decoded, chunk.covered)))
-        figures, histogram, bins = Figures(*found[0].tolist()), *found[1:]
+            outputs = jax.device_get(_scan(Decoded(chunk.n, decoded, chunk.covered)))
+        figures, histogram, bins = Figures(*outputs[0].tolist()), *outputs[1:]
         if is_smaller(figures.largest, met_deg):
             return figures, histogram, None
         return figures, histogram, _worst(bins, figures.largest, chunk.n, decoded)

@@ -108,10 +108,10 @@ def drawn_pixels(
     """An effect drawn over an fp32 G-buffer, at covered pixels drawn by lot."""
     plan = Plan(size, 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 1, False, 1.0)
     pipeline = PIPELINES["deferred"].with_effect(chosen.passes())
-    with rendering(device, pipeline, scene, plan) as made:
-        made.draw()
-        position, direction, *_ = made.gbuffer()
-        visibility = made.read(chosen.effect.result)[0].reshape(position.shape[:2])
+    with rendering(device, pipeline, scene, plan) as renderer:
+        renderer.draw()
+        position, direction, *_ = renderer.gbuffer()
+        visibility = renderer.read(chosen.effect.result)[0].reshape(position.shape[:2])
     there = np.flatnonzero((position[..., 2] != 0) & (direction[..., 3] != HAIR))
     lot = np.random.default_rng(seed).permutation(there)[:pixels]
     return Pixels(

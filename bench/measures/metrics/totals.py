@@ -112,8 +112,8 @@ class ErrorTotal:
 
     def as_text(self) -> str:
         """All its numbers as text, from which `total_of` makes it again, exactly."""
-        at = np.flatnonzero(self.histogram)
-        counted = np.stack([np.diff(at, prepend=0), self.histogram[at]]).astype("<i8")
+        bins = np.flatnonzero(self.histogram)
+        counted = np.stack([np.diff(bins, prepend=0), self.histogram[bins]]).astype("<i8")
         worst = self.worst and [*map(float, (*self.worst.normal, *self.worst.decoded, self.worst.angle_deg))]
         packed = base64.b64encode(zlib.compress(counted.tobytes())).decode()
         return json.dumps({"sums": [*map(str, self.figures)], "counts": packed, "worst": worst})
@@ -121,14 +121,14 @@ class ErrorTotal:
 
 def total_of(text: str) -> ErrorTotal:
     """The total that a text of `ErrorTotal.as_text` stands for."""
-    said, made = json.loads(text), ErrorTotal()
-    steps, counts = np.frombuffer(zlib.decompress(base64.b64decode(said["counts"])), "<i8").reshape(2, -1)
-    made.figures = Figures(*map(Fraction, said["sums"]))
-    made.histogram[np.cumsum(steps)] = counts
-    if found := said["worst"]:
-        normal, decoded = np.array(found[:6], np.float32).reshape(2, 3)
-        made.worst = Worst(normal, decoded, found[6])
-    return made
+    record, total = json.loads(text), ErrorTotal()
+    steps, counts = np.frombuffer(zlib.decompress(base64.b64decode(record["counts"])), "<i8").reshape(2, -1)
+    total.figures = Figures(*map(Fraction, record["sums"]))
+    total.histogram[np.cumsum(steps)] = counts
+    if worst := record["worst"]:
+        normal, decoded = np.array(worst[:6], np.float32).reshape(2, 3)
+        total.worst = Worst(normal, decoded, worst[6])
+    return total
 
 
 def statistics(pixels: int, total: ErrorTotal) -> Statistics:

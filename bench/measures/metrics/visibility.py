@@ -127,6 +127,6 @@ def cosine_directions(
     z, turn = rng.uniform(-1, 1, (2, len(normals), count)) * np.array([1.0, np.pi])[:, None, None]
     ring = np.sqrt(1 - z**2)
     ball = np.stack([ring * np.cos(turn), ring * np.sin(turn), z], axis=-1)
-    found = normals[:, None] + ball
+    directions = normals[:, None] + ball
     # At the foot of the ball all directions are in the tangent plane; the length is 0 there and the odds are nil.
-    return found / np.maximum(np.linalg.norm(found, axis=-1, keepdims=True), 1e-12)
+    return directions / np.maximum(np.linalg.norm(directions, axis=-1, keepdims=True), 1e-12)

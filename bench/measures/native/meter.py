@@ -59,12 +59,12 @@ def _row_library() -> ctypes.CDLL:
     def errors_of(n: Vec3, decoded: Vec3) -> tuple:
         squared, article, angle, invalid = errors(n, decoded, True)
         # In numbers as wide as the others: what holds as many of these makes four times as many of the others.
-        return squared, article, angle, *(jnp.asarray(one, jnp.int32) for one in (invalid, bins_of(angle, True)))
+        return squared, article, angle, *(jnp.asarray(figure, jnp.int32) for figure in (invalid, bins_of(angle, True)))
 
     function = c_function("errors_of", errors_of, FLOATS, FLOATS)
-    made = library(source(HERE / "row.c", function, (), bins=BINS, block=BLOCK), "row", "in_bin")
-    made.in_bin.restype = ctypes.c_size_t
-    return made
+    row_library = library(source(HERE / "row.c", function, (), bins=BINS, block=BLOCK), "row", "in_bin")
+    row_library.in_bin.restype = ctypes.c_size_t
+    return row_library
 
 
 def decoder(round_trip: Callable[..., Vec3], given: Sequence[Any] = ()) -> ctypes.CDLL:

@@ -78,16 +78,18 @@ def _all_cells(exact: ExactCodec, tables: list[np.ndarray]) -> np.ndarray:
         ends = [start + size for start, size in zip(starts, SLAB, strict=True)]
         around = [side[start : end + 1] for side, start, end in zip(numbers, starts, ends, strict=True)]
         across = [side[start:end] for side, start, end in zip(edges, starts, ends, strict=True)]
-        found = exact.corners(across, around, np.array([t[i] for t, i in zip(tables, others, strict=True)]))
-        chords, index = column_peaks(found.ravel(), KEPT)
+        corner_chords = exact.corners(across, around, np.array([t[i] for t, i in zip(tables, others, strict=True)]))
+        chords, index = column_peaks(corner_chords.ravel(), KEPT)
         cells = np.repeat(np.array(others)[:, None], len(index), axis=1)
-        cells[u], cells[v] = starts[0] + index // found.shape[1], starts[1] + index % found.shape[1]
+        cells[u], cells[v] = starts[0] + index // corner_chords.shape[1], starts[1] + index % corner_chords.shape[1]
         return chords, cells
 
     begins = (range(0, len(side), size) for side, size in zip(edges, SLAB, strict=True))
     worst, cells = np.empty(0), np.empty((exact.size, 0), np.int64)
-    for chords, found in on_all_cores(slab, itertools.product(itertools.product(*begins), itertools.product(*rest))):
-        worst, cells = np.concatenate([worst, chords]), np.concatenate([cells, found], axis=1)
+    for chords, slab_cells in on_all_cores(
+        slab, itertools.product(itertools.product(*begins), itertools.product(*rest))
+    ):
+        worst, cells = np.concatenate([worst, chords]), np.concatenate([cells, slab_cells], axis=1)
         kept = np.argsort(-worst, kind="stable")[:CLIMBERS]
         worst, cells = worst[kept], cells[:, kept]
     steps = np.zeros((exact.size, 4), np.int64)
@@ -147,9 +149,9 @@ def across_faces(directions: np.ndarray) -> np.ndarray:
     """
     edges = np.linspace(-1.0, 1.0, BANDS + 1)
     bands = zip(edges, (*edges[1:-1], np.inf), strict=False)
-    found = np.concatenate(list(on_all_cores(partial(_across_band, directions), bands)), axis=1)
-    is_whole = found.shape[1] == 2 * directions.shape[1] - 4
-    return found if is_whole else _hull(directions)[:3]
+    face_normals = np.concatenate(list(on_all_cores(partial(_across_band, directions), bands)), axis=1)
+    is_whole = face_normals.shape[1] == 2 * directions.shape[1] - 4
+    return face_normals if is_whole else _hull(directions)[:3]
 
 
 def _across_band(directions: np.ndarray, band: tuple[float, float]) -> np.ndarray:

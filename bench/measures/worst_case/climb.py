@@ -101,9 +101,9 @@ def _climb_from(ground: Ground, starts: Starts, sizes: np.ndarray) -> Starts:
     errors, lane = ground.errors(chords), np.arange(len(chords))
     for step in range(STEPS):
         around = ground.around(places, sizes, step)
-        found = ground.chords(around.reshape(len(places), -1)).reshape(WAYS, -1)
-        way = found.argmax(axis=0)
-        worst = found[way, lane]
+        around_chords = ground.chords(around.reshape(len(places), -1)).reshape(WAYS, -1)
+        way = around_chords.argmax(axis=0)
+        worst = around_chords[way, lane]
         is_worse = worst > chords
         chords = np.where(is_worse, worst, chords)
         places = np.where(is_worse, around[:, way, lane], places)

@@ -48,10 +48,10 @@ def odd(codec: Codec, domain: str | None) -> Row:
     """
     from .odd_codes import odd_codes
 
-    found = _exactly(odd_codes, codec, domain or codec.encoding.domain) if _has_exact_map(codec.encoding) else None
-    if not found:
+    counts = _exactly(odd_codes, codec, domain or codec.encoding.domain) if _has_exact_map(codec.encoding) else None
+    if not counts:
         return {}
-    return {"codes_unused": found.unused, "codes_duplicate": found.duplicate, "codes_unstable": found.unstable}
+    return {"codes_unused": counts.unused, "codes_duplicate": counts.duplicate, "codes_unstable": counts.unstable}
 
 
 def _has_exact_map(encoding: Encoding) -> bool:
@@ -64,8 +64,8 @@ def _exactly(search: Callable[[Codec, bool], T], codec: Codec, domain: str) -> T
         return search(codec, domain != "sphere")
     except TypeError as error:
         where = codec.encoding.twin
-        said = str(error).splitlines()[0]
-        raise UsageError(f"{where}: in float64: {said}; leave out --worst-case and --codes") from error
+        message = str(error).splitlines()[0]
+        raise UsageError(f"{where}: in float64: {message}; leave out --worst-case and --codes") from error
 
 
 def held(codec: Codec, domain: str | None, s: Statistics, sup_deg: float | None) -> Row:

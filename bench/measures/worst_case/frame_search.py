@@ -71,8 +71,8 @@ def worst_frame(codec: FrameCodec) -> WorstFrame:
 def _moves(codec: FrameCodec, quaternions, hands):
     """How far the axes of tangent frames are moved in all, squared; FARTHEST where what comes back is no frame."""
     given = rotated_frame(Vec4(*quaternions), hands)
-    found = _at_right_angles(codec.round_trip(frame_of(*given)))
-    pairs = zip((*given[:2], cross(*given[:2])), (*found[:2], cross(*found[:2])), strict=True)
+    decoded = _at_right_angles(codec.round_trip(frame_of(*given)))
+    pairs = zip((*given[:2], cross(*given[:2])), (*decoded[:2], cross(*decoded[:2])), strict=True)
     moved = sum(dot(a - b, a - b) for a, b in pairs)
     return jnp.where(jnp.isfinite(moved), jnp.minimum(moved, FARTHEST), FARTHEST)
 
@@ -93,8 +93,8 @@ def _worst_of(moves: Callable[[np.ndarray], np.ndarray]) -> Starts:
         low, high = np.sqrt(1 - u), np.sqrt(u)
         hands = np.where(np.arange(BLOCK) % 2, 1.0, -1.0)
         frames = np.stack([low * np.sin(a), low * np.cos(a), high * np.sin(b), high * np.cos(b), hands])
-        found, at = column_peaks(moves(frames), KEPT)
-        return Starts(found, frames[:, at])
+        peaks, indices = column_peaks(moves(frames), KEPT)
+        return Starts(peaks, frames[:, indices])
 
     return reduce(add, on_all_cores(block, range(0, SPREAD, BLOCK))).best(LANES)
 

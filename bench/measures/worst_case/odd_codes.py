@@ -99,15 +99,15 @@ class _Numbers:
 
 def _made_within(exact: ExactCodec, numbers: _Numbers, tables: list[np.ndarray], index: np.ndarray) -> np.ndarray:
     """Which of some codes are made by normals at the middle, the edges and the corners of their cells."""
-    found = np.zeros(len(index), bool)
+    is_made = np.zeros(len(index), bool)
     for where in _stencil(exact):
-        left = np.flatnonzero(~found)
+        left = np.flatnonzero(~is_made)
         if not len(left):
             break
         normals = exact.normals(_code_points(exact, numbers, tables, index[left], where))
         makes = numbers.index(exact.codes(normals)) == index[left]
-        found[left] = makes & (normals[2] >= 0.0) if exact.is_half else makes
-    return index[found]
+        is_made[left] = makes & (normals[2] >= 0.0) if exact.is_half else makes
+    return index[is_made]
 
 
 def _stencil(exact: ExactCodec) -> list[tuple[int, ...]]:
@@ -140,10 +140,10 @@ def _distinct_count(exact: ExactCodec, numbers: _Numbers) -> int:
 
     def boxes(index: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         place = exact.normals(numbers.codes(index)) / SAME
-        found = [np.floor(place + offset).astype(np.int64).view(np.uint64) for offset in OFFSETS]
-        return index, np.stack([(box * MIX[:, None]).sum(axis=0, dtype=np.uint64) for box in found])
+        cells = [np.floor(place + offset).astype(np.int64).view(np.uint64) for offset in OFFSETS]
+        return index, np.stack([(box * MIX[:, None]).sum(axis=0, dtype=np.uint64) for box in cells])
 
-    for index, found in on_all_cores(boxes, _index_blocks(exact.codec.codes)):
-        keys[:, index] = found
+    for index, hashes in on_all_cores(boxes, _index_blocks(exact.codec.codes)):
+        keys[:, index] = hashes
     keys.sort(axis=1)
     return int((np.diff(keys, axis=1) != 0).sum(axis=1).min()) + 1

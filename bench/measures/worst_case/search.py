@@ -96,8 +96,8 @@ def _worst_of(exact: ExactCodec, blocks: Iterable[Sequence[Callable[[], np.ndarr
         return reduce(add, map(_peak_starts, chords, parts))
 
     best = Starts(np.empty(0), np.empty((3, 0)))
-    for found in on_all_cores(peaks, blocks):
-        best = (best + found).best(count)
+    for starts in on_all_cores(peaks, blocks):
+        best = (best + starts).best(count)
     return best
 
 

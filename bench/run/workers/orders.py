@@ -68,12 +68,12 @@ class Packing:
             path = file_of(part)
             read, named = [path, *companions(part)], files_in(part)
             folder = self._place(path, [*read, *map(Path, named)])
-            self.files |= {os.path.normpath(folder / os.path.relpath(one, path.parent)): one for one in read}
+            self.files |= {os.path.normpath(folder / os.path.relpath(file, path.parent)): file for file in read}
             # What else it names lies as far from it as here.
-            moved = {one: os.path.normpath(folder / os.path.relpath(one, path.parent)) for one in named}
+            moved = {name: os.path.normpath(folder / os.path.relpath(name, path.parent)) for name in named}
             if folder != path.parent:
                 others |= moved
-                self.typed |= {place: one for one, place in moved.items()}
+                self.typed |= {place: name for name, place in moved.items()}
         return with_files(word, others)
 
     def _place(self, path: Path, read: Sequence[Path]) -> Path:
@@ -85,7 +85,7 @@ class Packing:
         if os.pardir not in path.parts and all(map(_is_below, read)):
             return path.parent
         above = os.path.commonpath(
-            [os.path.normpath((one.parent if one.is_file() else one).absolute()) for one in read]
+            [os.path.normpath((source.parent if source.is_file() else source).absolute()) for source in read]
         )
         own = Path(ELSEWHERE) / hashlib.sha256(os.fsencode(path.parent.absolute())).hexdigest()[:12]
         own /= os.path.relpath(path.parent.absolute(), above)
@@ -114,7 +114,7 @@ def order_of(ask: Asked) -> Order:
 
 
 def _packed(options: Any, packing: Packing) -> dict[str, Any]:
-    values = {one.name: getattr(options, one.name) for one in fields(options)}
+    values = {option.name: getattr(options, option.name) for option in fields(options)}
     for name, value in values.items():
         if own := [word.name for word in value if isinstance(word, Given)] if isinstance(value, tuple) else []:
             raise UsageError(f"{name}: {', '.join(own)} is a value of this process; workers measure names and files")

@@ -200,20 +200,20 @@ class Channels:
         storage = self.numbers.storage
         return [
             Channel(
-                FIELDS[at],
+                FIELDS[i],
                 storage.kind,
-                storage.bits[at],
-                self._first_bit(at),
-                storage.scale(at),
-                storage.most(at),
+                storage.bits[i],
+                self._first_bit(i),
+                storage.scale(i),
+                storage.most(i),
                 rounding,
-                storage.float_form(at) if storage.kind == "float" else None,
+                storage.float_form(i) if storage.kind == "float" else None,
                 self.numbers.share,
                 storage.kind == "snorm" and (storage.is_packed or storage.is_centred),
                 self.words,
-                self._pieces(at),
+                self._pieces(i),
             )
-            for at, rounding in enumerate(self.numbers.roundings)
+            for i, rounding in enumerate(self.numbers.roundings)
         ]
 
     def _first_bit(self, at: int) -> int:
@@ -228,12 +228,12 @@ class Channels:
         bits = self.numbers.storage.bits
         start = self.numbers.skipped + sum(bits[:at])
         end = start + bits[at]
-        found = []
+        pieces = []
         for part in range(start // self.part, -(-end // self.part)):
             low, high = max(start, part * self.part), min(end, (part + 1) * self.part)
             is_first = low == part * self.part
-            found.append(Piece(part, low - start, end - high, (part + 1) * self.part - high, high - low, is_first))
-        return tuple(found)
+            pieces.append(Piece(part, low - start, end - high, (part + 1) * self.part - high, high - low, is_first))
+        return tuple(pieces)
 
     def _texel_text(self, word: int) -> str:
         """A word of the texel."""
@@ -241,7 +241,7 @@ class Channels:
             return " | ".join(c.placed for c in self.channels if c.first // WORD == word) or "0u"
         each = WORD // self.part
         inside = range(word * each, min(self.parts, word * each + each))
-        return " | ".join(_shifted_text(PARTS[at], self.part * (at % each)) for at in inside) or "0u"
+        return " | ".join(_shifted_text(PARTS[i], self.part * (i % each)) for i in inside) or "0u"
 
     def _part_text(self, part: int) -> str:
         """The channel that numbers are laid across."""
@@ -298,7 +298,7 @@ class Channels:
             "settle": numbers.settle,
             "is_biased": numbers.is_biased,
             "is_centred": numbers.storage.is_centred,
-            "rounds_itself": numbers.storage.is_centred or any(one != "nearest" for one in numbers.roundings),
+            "rounds_itself": numbers.storage.is_centred or any(rounding != "nearest" for rounding in numbers.roundings),
             "channels": self.channels,
             "size": numbers.size,
             "layout": self.layout,
@@ -314,11 +314,11 @@ class Channels:
         if not self.parts:
             return {"parts": [], "target_parts": []}
         size, each = self.numbers.storage.part, WORD // self.numbers.storage.part
-        read = [self._read_part(at) for at in range(self.parts)]
+        read = [self._read_part(i) for i in range(self.parts)]
         words = [range(word * each, min(self.parts, word * each + each)) for word in range(self.words)]
-        joined = [" | ".join(_shifted_text(f"parts.{FIELDS[at]}", size * (at % each)) for at in w) for w in words]
+        joined = [" | ".join(_shifted_text(f"parts.{FIELDS[i]}", size * (i % each)) for i in w) for w in words]
         return {
-            "parts": [(PARTS[at], self._part_text(at), read[at]) for at in range(self.parts) if self.part],
+            "parts": [(PARTS[i], self._part_text(i), read[i]) for i in range(self.parts) if self.part],
             "part_scale": f"{(1 << size) - 1}.0",
             "target_parts": [f"float({part})" for part in read] + ["0.0"] * (4 - self.parts),
             "from_parts": [part or "0u" for part in joined],
@@ -329,11 +329,11 @@ class Channels:
     def texel_words(self, integers: np.ndarray) -> np.ndarray:
         """Texels of the bits of numbers (uint32 of shape (count, numbers)): uint32 of shape (count, words)."""
         words = np.zeros((len(integers), self.words), np.uint32)
-        for at, channel in enumerate(self.channels):
+        for index, channel in enumerate(self.channels):
             if not channel.pieces:
-                words[:, channel.first // WORD] |= integers[:, at] << np.uint32(channel.first % WORD)
+                words[:, channel.first // WORD] |= integers[:, index] << np.uint32(channel.first % WORD)
             for piece in channel.pieces:
-                bits = integers[:, at] >> np.uint32(piece.below) & np.uint32((1 << piece.bits) - 1)
+                bits = integers[:, index] >> np.uint32(piece.below) & np.uint32((1 << piece.bits) - 1)
                 place = piece.part * self.part
                 words[:, place // WORD] |= bits << np.uint32(place % WORD + piece.left)
         return words
@@ -344,12 +344,12 @@ class Channels:
         if not channel.pieces:
             word = words[:, channel.first // WORD]
             return word >> np.uint32(channel.first % WORD) & np.uint32((1 << channel.bits) - 1)
-        found = np.zeros(len(words), np.uint32)
+        integers = np.zeros(len(words), np.uint32)
         for piece in channel.pieces:
             place = piece.part * self.part
             bits = words[:, place // WORD] >> np.uint32(place % WORD + piece.left) & np.uint32((1 << piece.bits) - 1)
-            found |= bits << np.uint32(piece.below)
-        return found
+            integers |= bits << np.uint32(piece.below)
+        return integers
 
     def part_in(self, words: np.ndarray, part: int) -> np.ndarray:
         """The integers of a channel that numbers are laid across, uint32 of shape (count,)."""

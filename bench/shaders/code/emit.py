@@ -90,8 +90,8 @@ def program_of(codec: Any, prefix: str) -> Program:
     except TranslationError as error:
         # At the place in the file that it was included from.
         raise TranslationError(source.explain(re.sub(r"^(\d+):\d+: ", r"0:\1: ", str(error)))) from error
-    made = {"nearest_encode": channels.numbers.is_precise, "settled_encode": channels.numbers.settle}
-    encode = next((name for name, is_made in made.items() if is_made), str(defines["ENCODE"]))
+    variants = {"nearest_encode": channels.numbers.is_precise, "settled_encode": channels.numbers.settle}
+    encode = next((name for name, is_made in variants.items() if is_made), str(defines["ENCODE"]))
     own = {"encode": encode, "decode": str(defines["DECODE"])}
     roots = {own.get(name, name): name for name in PUBLIC}
     return given_back(reduced(program, roots, prefix, encoding.prefix, kind.bound(codec)))

@@ -66,7 +66,7 @@ class Code:
 def commented(body: str, language: str, guard: str, head: Iterable[str]) -> str:
     """The text of a file under a comment of these paragraphs; one that is indented stays as it is. Languages with a
     preprocessor take the text once, however often it is included: `guard` says what it is."""
-    comment = "".join(in_a_comment(f"// {line}").rstrip() + "\n" for said in head for line in _lines(said))
+    comment = "".join(in_a_comment(f"// {line}").rstrip() + "\n" for paragraph in head for line in _lines(paragraph))
     if not LANGUAGES[language].has_preprocessor:
         return f"{comment}\n{body}"
     name = f"{identifier(guard).upper()}_INCLUDED"

@@ -37,13 +37,13 @@ def _folded_line(line: str) -> list[str]:
 
 def _broken_lines(line: str, indent: str) -> list[str]:
     """The parts of a line that is too long."""
-    found: list[str] = []
+    parts: list[str] = []
     depth = 0
-    while len(line) > WIDTH and (at := _best_break(line, depth)):
-        found.append(line[:at].rstrip())
-        depth += _opened(line[:at])
-        line = indent + line[at:].lstrip()
-    return [*found, line]
+    while len(line) > WIDTH and (place := _best_break(line, depth)):
+        parts.append(line[:place].rstrip())
+        depth += _opened(line[:place])
+        line = indent + line[place:].lstrip()
+    return [*parts, line]
 
 
 def _opened(text: str) -> int:
@@ -55,9 +55,9 @@ def _best_break(line: str, depth: int) -> int:
     brackets as there can be, and as late there; 0 where it cannot be."""
     begin = len(line) - len(line.lstrip())
     for pattern in (COMMA, OPERATOR, BRACKET):
-        places = [one.end() for one in pattern.finditer(line[: WIDTH + 1], begin) if one.end() <= WIDTH]
-        open_at = {at: depth + _opened(line[:at]) for at in places}
-        inside = [at for at in places if open_at[at] >= (pattern is COMMA)]
+        places = [match.end() for match in pattern.finditer(line[: WIDTH + 1], begin) if match.end() <= WIDTH]
+        open_at = {place: depth + _opened(line[:place]) for place in places}
+        inside = [place for place in places if open_at[place] >= (pattern is COMMA)]
         if inside:
             return min(inside, key=lambda at: (open_at[at], -at))
     return 0

@@ -57,13 +57,13 @@ def reference_of(codec: Any, n: np.ndarray, view: np.ndarray, compiled: bool = T
         compiled: whether XLA compiles the codec as a whole. Else each step is rounded by itself, as GPUs round it: XLA
             may round a product and a sum once. Step by step takes less time where a codec is needed once.
     """
-    made = jax.jit if compiled else _step_by_step
+    transform = jax.jit if compiled else _step_by_step
     kind, channels = kind_of(codec), Channels(codec)
     by_device = None if kind.has_twin(codec) else kind.by_device(codec, n, view)
     given = jnp.asarray(n), jnp.asarray(view)
-    code = by_device[0] if by_device else _array(made(lambda *rows: kind.stored(codec, *rows))(*given))
+    code = by_device[0] if by_device else _array(transform(lambda *rows: kind.stored(codec, *rows))(*given))
     texels = code.astype(np.float64) * 0.5 + 0.5 if channels.numbers.is_biased else code
-    integers = np.stack([_integers(c, texels[:, at]) for at, c in enumerate(channels.channels)], axis=1)
+    integers = np.stack([_integers(c, texels[:, i]) for i, c in enumerate(channels.channels)], axis=1)
     words = channels.texel_words(integers)
     stored = _stored_numbers(channels, integers, code)
     if by_device:
@@ -71,7 +71,7 @@ def reference_of(codec: Any, n: np.ndarray, view: np.ndarray, compiled: bool = T
     else:
         planes = [jnp.asarray(number) for number in stored.T]
         read = VECTORS[len(planes)](*planes) if len(planes) > 1 else planes[0]
-        decoded = _array(made(lambda *given: kind.decoded(codec, *given))(read, given[1]))
+        decoded = _array(transform(lambda *given: kind.decoded(codec, *given))(read, given[1]))
     return Reference(n, view, stored, integers, words, _texels(channels, integers, words), decoded)
 
 
@@ -86,9 +86,9 @@ def _step_by_step(function: Callable[..., Any]) -> Callable[..., Any]:
 def _stored_numbers(channels: Channels, integers: np.ndarray, code: np.ndarray) -> np.ndarray:
     """The numbers that bits stand for, each product and sum rounded: a compiler may round the two of them once."""
     stored = code.copy()
-    for at, channel in enumerate(channels.channels):
-        texel = values_of(channel, integers[:, at])
-        stored[:, at] = texel * np.float32(2) - np.float32(1) if channels.numbers.is_biased else texel
+    for index, channel in enumerate(channels.channels):
+        texel = values_of(channel, integers[:, index])
+        stored[:, index] = texel * np.float32(2) - np.float32(1) if channels.numbers.is_biased else texel
     return stored
 
 
@@ -117,13 +117,13 @@ def _texels(channels: Channels, integers: np.ndarray, words: np.ndarray) -> np.n
         texels[:, part] = channels.part_in(words, part) * np.float32(1 / ((1 << channels.numbers.storage.part) - 1))
     if channels.parts:
         return texels
-    for at, channel in enumerate(channels.channels):
+    for index, channel in enumerate(channels.channels):
         # A centred number is read as UNORM.
         is_plain = not channel.is_offset
-        texels[:, at] = (
-            values_of(channel, integers[:, at])
+        texels[:, index] = (
+            values_of(channel, integers[:, index])
             if is_plain
-            else integers[:, at].astype(np.float32) * np.float32(1 / ((1 << channel.bits) - 1))
+            else integers[:, index].astype(np.float32) * np.float32(1 / ((1 << channel.bits) - 1))
         )
     return texels
 

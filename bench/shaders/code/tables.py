@@ -80,8 +80,8 @@ def table_lines(tables: Mapping[str, np.ndarray]) -> list[str]:
     """What the head of a file says of tables, a line each."""
     held = {name: texels_of(table) for name, table in tables.items()}
     return [
-        f"Table: {name}, {one.width} x {one.height} texels of {one.format}, {one.bytes / KB:.4g} kB."
-        for name, one in held.items()
+        f"Table: {name}, {texels.width} x {texels.height} texels of {texels.format}, {texels.bytes / KB:.4g} kB."
+        for name, texels in held.items()
     ]
 
 

@@ -37,9 +37,9 @@ def by_wgsl(codec: Codec) -> Iterator[Trip]:
             def trip(n: np.ndarray, view: np.ndarray) -> Ran:
                 starts = range(0, max(len(n), 1), BLOCK)
                 texels = np.zeros((min(len(n), BLOCK), 4), np.float32)
-                parts = [(n[at : at + BLOCK], view[at : at + BLOCK]) for at in starts]
-                found = [run(some, rays, texels[: len(some)]) for some, rays in parts]
-                return Ran(*(np.concatenate(each) for each in zip(*found, strict=True)))
+                parts = [(n[start : start + BLOCK], view[start : start + BLOCK]) for start in starts]
+                outputs = [run(some, rays, texels[: len(some)]) for some, rays in parts]
+                return Ran(*(np.concatenate(each) for each in zip(*outputs, strict=True)))
 
             yield trip
 

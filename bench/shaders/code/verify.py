@@ -114,7 +114,7 @@ def interface_of(codec: Any, prefix: str, program: Program) -> Interface:
         program: its functions, from which settings that nothing reads are gone.
     """
     parameters = program.function(f"{prefix}_encode").parameters
-    names, kinds = ([getattr(one, word) for one in parameters] for word in ("name", "kind"))
+    names, kinds = ([getattr(parameter, word) for parameter in parameters] for word in ("name", "kind"))
     kind, channels = kind_of(codec), Channels(codec)
     tables = codec.encoding.tables() if hasattr(codec.encoding, "tables") else {}
     return Interface(
@@ -147,11 +147,11 @@ def agreement(codec: Any, language: str, path: Path, interface: Interface) -> Ag
 def compared(codec: Any, expected: Reference, ran: Ran) -> Agreement:
     """How the results of a file differ from the catalogue's."""
     channels = Channels(codec)
-    found = np.stack([channels.bits_in(ran.words, at) for at in range(len(channels.channels))], axis=1)
+    integers = np.stack([channels.bits_in(ran.words, i) for i in range(len(channels.channels))], axis=1)
     apart = np.stack(
         [
-            np.abs(signed(c, found[:, at]) - signed(c, expected.integers[:, at]))
-            for at, c in enumerate(channels.channels)
+            np.abs(signed(c, integers[:, i]) - signed(c, expected.integers[:, i]))
+            for i, c in enumerate(channels.channels)
         ],
         axis=1,
     )
@@ -171,7 +171,7 @@ def compared(codec: Any, expected: Reference, ran: Ran) -> Agreement:
         differing=int(differs.sum()),
         steps=int(apart.max(initial=0)),
         are_ties=bool(((apart <= 1) | (_numbers_apart(expected, ran) <= CODE)).all()),
-        share=MOST_SHARE + max(channels.numbers.storage.levels(at) for at in range(len(channels.channels))) * CODE,
+        share=MOST_SHARE + max(channels.numbers.storage.levels(i) for i in range(len(channels.channels))) * CODE,
         worse=_worse(codec, expected, ran, differs),
         unpacked=int((ran.unpacked[same] != expected.stored[same]).any(axis=1).sum())
         + int((ran.from_targets != expected.stored)[same].any(axis=1).sum()),
@@ -207,7 +207,7 @@ def _worse(codec: Any, expected: Reference, ran: Ran, differs: np.ndarray) -> fl
 def _targets_apart(channels: Channels, expected: Reference, ran: Ran, same: np.ndarray) -> int:
     """Texels of the render target, as its own conversion stores them, that are not the expected ones."""
     target, apart = channels.numbers.target, np.zeros(len(same), bool)
-    for at in range(channels.parts or channels.numbers.count):
-        stored = np.asarray(store_texel(jnp.asarray(ran.targets[:, at]), target, at))
-        apart |= stored != expected.texels[:, at]
+    for index in range(channels.parts or channels.numbers.count):
+        stored = np.asarray(store_texel(jnp.asarray(ran.targets[:, index]), target, index))
+        apart |= stored != expected.texels[:, index]
     return int((apart & same).sum())

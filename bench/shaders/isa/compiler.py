@@ -80,11 +80,11 @@ def _instance(vk: Any) -> Any:
 def uses_halves(code: bytes) -> bool:
     """Whether a SPIR-V module computes in 16 bits: its capabilities, which come first, say so."""
     words = struct.unpack(f"<{len(code) // 4}I", code)
-    at = 5
-    while at < len(words) and words[at] & 0xFFFF == OP_CAPABILITY:
-        if words[at + 1] == FLOAT16:
+    index = 5
+    while index < len(words) and words[index] & 0xFFFF == OP_CAPABILITY:
+        if words[index + 1] == FLOAT16:
             return True
-        at += 2
+        index += 2
     return False
 
 
@@ -172,9 +172,11 @@ class Compiler:
             raise DriverError(f"{self.device} computes no shaders in 16 bits")
         self._layout = self._layout or self._pipeline_layout(planes)
         try:
-            made = self._compute_pipeline(code) if stage == "compute" else self._graphics_pipeline(code, vertex)
+            pipeline = self._compute_pipeline(code) if stage == "compute" else self._graphics_pipeline(code, vertex)
             bit = vk.VK_SHADER_STAGE_COMPUTE_BIT if stage == "compute" else vk.VK_SHADER_STAGE_FRAGMENT_BIT
-            kernels = [self._kernel(made, i, width) for i, stages, width in self._executables(made) if stages & bit]
+            kernels = [
+                self._kernel(pipeline, i, width) for i, stages, width in self._executables(pipeline) if stages & bit
+            ]
         except vk.VkError as error:
             raise DriverError(f"{self.device} does not compile it: {type(error).__name__}") from error
         if not kernels:
@@ -261,7 +263,9 @@ class Compiler:
         """A pass that draws into targets of these formats."""
         vk = self._vk
         layout = vk.VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL
-        targets = [vk.VkAttachmentDescription(format=one, samples=1, finalLayout=layout) for one in formats]
+        targets = [
+            vk.VkAttachmentDescription(format=target_format, samples=1, finalLayout=layout) for target_format in formats
+        ]
         drawn_to = [vk.VkAttachmentReference(attachment=i, layout=layout) for i in range(len(formats))]
         parts = [vk.VkSubpassDescription(colorAttachmentCount=len(drawn_to), pColorAttachments=drawn_to)]
         return vk.vkCreateRenderPass(
@@ -271,8 +275,8 @@ class Compiler:
     def _executables(self, pipeline: Any) -> Iterator[tuple[int, int, int]]:
         """(index, stages, lanes) of each part of a pipeline."""
         ask = self._vk.vkGetDeviceProcAddr(self._device, "vkGetPipelineExecutablePropertiesKHR")
-        found = ask(self._device, self._vk.VkPipelineInfoKHR(pipeline=pipeline))
-        return ((i, executable.stages, executable.subgroupSize) for i, executable in enumerate(found))
+        executables = ask(self._device, self._vk.VkPipelineInfoKHR(pipeline=pipeline))
+        return ((i, executable.stages, executable.subgroupSize) for i, executable in enumerate(executables))
 
     def _statistics(self, executable: Any) -> Iterator[tuple[str, float]]:
         vk = self._vk
@@ -289,14 +293,14 @@ class Compiler:
         ask = ffi.cast(f"PFN_{name}", vk.lib.vkGetDeviceProcAddr(self._device, name.encode()))
         count, which = ffi.new("uint32_t*"), ffi.addressof(executable)
         ask(self._device, which, count, ffi.NULL)
-        found = ffi.new("VkPipelineExecutableInternalRepresentationKHR[]", count[0])
-        for one in found:
-            one.sType = vk.VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INTERNAL_REPRESENTATION_KHR
-        ask(self._device, which, count, found)
-        texts = [ffi.new("char[]", max(one.dataSize, 1)) for one in found]
-        for one, text in zip(found, texts, strict=True):
-            one.pData = text
-        ask(self._device, which, count, found)
-        names = [ffi.string(one.name).decode().split() for one in found]
+        representations = ffi.new("VkPipelineExecutableInternalRepresentationKHR[]", count[0])
+        for representation in representations:
+            representation.sType = vk.VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INTERNAL_REPRESENTATION_KHR
+        ask(self._device, which, count, representations)
+        texts = [ffi.new("char[]", max(entry.dataSize, 1)) for entry in representations]
+        for representation, text in zip(representations, texts, strict=True):
+            representation.pData = text
+        ask(self._device, which, count, representations)
+        names = [ffi.string(entry.name).decode().split() for entry in representations]
         listing = next((text for name, text in zip(names, texts, strict=True) if LISTINGS & {*name}), None)
         return ffi.string(listing).decode(errors="replace") if listing is not None else ""

@@ -46,13 +46,13 @@ SLOTS: Mapping[str, Mapping[str, int]] = MappingProxyType(
 
 def names(assembly: str) -> list[str]:
     """The name of each instruction, in order; labels, comments and blank lines are none."""
-    found: list[str] = []
+    mnemonics: list[str] = []
     for line in assembly.splitlines():
         if match := _INSTRUCTION.match(line):
-            found.append(match[1])
+            mnemonics.append(match[1])
         elif match := _REPEATED.match(line):
-            found += found[-1:] * int(match[1])
-    return found
+            mnemonics += mnemonics[-1:] * int(match[1])
+    return mnemonics
 
 
 @cache
@@ -62,9 +62,9 @@ def kind(name: str, family: str = "") -> str:
         raise ValueError(f"{name} computes doubles")
     if family in _SLOW and re.match(_SLOW[family], name):
         return "quarter_rate"
-    for found, rule in _RULES:
+    for rule_kind, rule in _RULES:
         if re.match(rf"(?:{rule})", name):
-            return found
+            return rule_kind
     raise ValueError(f"unknown instruction {name}")
 
 
@@ -106,18 +106,18 @@ def packed(assembly: str) -> int:
 def loops(assembly: str) -> list[range]:
     """The instructions of each loop, by their places: from the label that a jump goes back to, to that jump."""
     begins: dict[str, int] = {}
-    found: list[range] = []
-    at = 0
+    spans: list[range] = []
+    place = 0
     for line in assembly.splitlines():
         if label := _LABEL.match(line):
-            begins[label[1]] = at
+            begins[label[1]] = place
         elif match := _INSTRUCTION.match(line):
-            at += 1
+            place += 1
             if match[1].startswith(("s_cbranch", "s_branch")) and match[2] in begins:
-                found.append(range(begins[match[2]], at))
+                spans.append(range(begins[match[2]], place))
         elif match := _REPEATED.match(line):
-            at += int(match[1])
-    return found
+            place += int(match[1])
+    return spans
 
 
 def jumps(assembly: str) -> tuple[int, int]:

@@ -21,16 +21,16 @@ UNWANTED = ("RADV_", "ACO_", "AMD_", "ANV_", "INTEL_", "NIR_", "MESA_", "VK_", "
 
 def no_driver(library: str) -> str:
     """What to install where there is no description of a driver."""
-    said = f"no {TITLES[library]}: no Vulkan driver file names {library}"
-    return f"{said}; install Mesa's ({how_to_install('mesa-vulkan-drivers', counts=True)})"
+    message = f"no {TITLES[library]}: no Vulkan driver file names {library}"
+    return f"{message}; install Mesa's ({how_to_install('mesa-vulkan-drivers', counts=True)})"
 
 
 @cache
 def driver_file(library: str = RADV) -> Path | None:
     """A driver's own description for the Vulkan loader; None where there is none."""
-    found = [path for path in _descriptions() if _library(path) == library]
+    paths = [path for path in _descriptions() if _library(path) == library]
     # A machine may have the driver for several architectures; the file's name says for which, if anything does.
-    return next((path for path in found if platform.machine() in path.name), found[0] if found else None)
+    return next((path for path in paths if platform.machine() in path.name), paths[0] if paths else None)
 
 
 def _descriptions() -> Iterator[Path]:

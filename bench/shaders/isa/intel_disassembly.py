@@ -51,7 +51,7 @@ def instructions(assembly: str) -> Iterator[Instruction]:
 
 def names(assembly: str) -> list[str]:
     """The name of each instruction, in order."""
-    return [one.name for one in instructions(assembly)]
+    return [instruction.name for instruction in instructions(assembly)]
 
 
 @cache
@@ -84,10 +84,10 @@ def _is_conversion(one: Instruction) -> bool:
 def kinds(assembly: str, total: int, _: str = "") -> dict[str, int] | None:
     """How many instructions of each kind; None where the text does not list `total` instructions that are known."""
     every = list(instructions(assembly))
-    without = [one for one in every if (one.name, one.function) != ("sync", "nop")]
+    without = [instruction for instruction in every if (instruction.name, instruction.function) != ("sync", "nop")]
     listed = next((some for some in (every, without) if len(some) == total), None)
     try:
-        counts = Counter(kind(one) for one in listed or ())
+        counts = Counter(kind(instruction) for instruction in listed or ())
     except ValueError:
         return None
     return {name: counts[name] for name in KINDS} if listed else None
@@ -111,27 +111,29 @@ def rates(family: str) -> Mapping[str, int]:
 
 def kinds_in_order(assembly: str, _: str) -> list[str]:
     """The kind of each instruction of a listing whose instructions are all known, in order."""
-    return [kind(one) for one in instructions(assembly)]
+    return [kind(instruction) for instruction in instructions(assembly)]
 
 
 def loops(assembly: str) -> list[range]:
     """The instructions of each loop, by their places: from the label that a `while` goes back to, to that `while`."""
     begins: dict[str, int] = {}
-    found: list[range] = []
-    at = 0
+    spans: list[range] = []
+    place = 0
     for line in assembly.splitlines():
         if label := _LABEL.match(line):
-            begins[label[1]] = at
-        for one in instructions(line):
-            at += 1
-            target = _TARGET.search(one.operands)
-            if one.name == "while" and target and target[1] in begins:
-                found.append(range(begins[target[1]], at))
-    return found
+            begins[label[1]] = place
+        for instruction in instructions(line):
+            place += 1
+            target = _TARGET.search(instruction.operands)
+            if instruction.name == "while" and target and target[1] in begins:
+                spans.append(range(begins[target[1]], place))
+    return spans
 
 
 def jumps(assembly: str) -> tuple[int, int]:
     """(branches, loops): conditional jumps ahead, and jumps back."""
-    found = list(instructions(assembly))
-    loops = sum(one.name == "while" for one in found)
-    return sum(one.name == "if" or (one.name == "jmpi" and one.is_predicated) for one in found), loops
+    listed = list(instructions(assembly))
+    loops = sum(instruction.name == "while" for instruction in listed)
+    return sum(
+        instruction.name == "if" or (instruction.name == "jmpi" and instruction.is_predicated) for instruction in listed
+    ), loops

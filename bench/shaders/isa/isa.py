@@ -111,9 +111,9 @@ def missing(library: str = RADV) -> str:
     path = driver_file(library)
     if path is None:
         return no_driver(library)
-    found = _loaded(path)
-    if isinstance(found, Failure) and found.is_missing:
-        return found.reason
+    outcome = _loaded(path)
+    if isinstance(outcome, Failure) and outcome.is_missing:
+        return outcome.reason
     try:
         _null_device(library)
     except NullDeviceError as error:
@@ -131,21 +131,21 @@ def compile_all(
     jobs: Sequence[Job], families: Sequence[str], tick: Callable[[str], None]
 ) -> dict[tuple[str, Job], Outcome]:
     """What each family's compiler makes of each job; `tick` is called with a family as it is done."""
-    found: dict[tuple[str, Job], Outcome] = {}
+    by_job: dict[tuple[str, Job], Outcome] = {}
     stop = threading.Event()
     with ThreadPoolExecutor(cores()) as pool:
         try:
             # Asked of each driver once, before its families ask at the same time.
             list(pool.map(missing, dict.fromkeys(FAMILIES[family].library for family in families)))
             for family, outcomes in zip(families, pool.map(lambda f: _family(f, stop, jobs), families), strict=True):
-                found |= {(family, job): outcome for job, outcome in zip(jobs, outcomes, strict=True)}
+                by_job |= {(family, job): outcome for job, outcome in zip(jobs, outcomes, strict=True)}
                 tick(family)
         except BaseException:
             # An interrupted command ends at once, whatever a driver does.
             stop.set()
             pool.shutdown(wait=False, cancel_futures=True)
             raise
-    return found
+    return by_job
 
 
 def driver_versions() -> dict[str, str]:
@@ -192,8 +192,8 @@ def _counted(family: str, stop: threading.Event, jobs: Sequence[Job]) -> list[Ou
     keys = [kept.key_of("isa", identity, family, gpu, job.stage, job.code, job.vertex) for job in jobs]
     outcomes: dict[str, Outcome] = {}
     for key in keys if identity else ():
-        if found := _as_compiled(kept.read(key)):
-            outcomes[key] = found
+        if cached := _as_compiled(kept.read(key)):
+            outcomes[key] = cached
     left = {key: job for key, job in zip(keys, jobs, strict=True) if key not in outcomes}
     if left:
         compiled = _compiled(family, driver, left)
@@ -218,8 +218,8 @@ def _identity(library: str) -> str:
     if library == NVRTC:
         return tools.identity()
     path = driver_file(library)
-    found = _loaded(path) if path else ""
-    return "" if isinstance(found, Failure) else found
+    identity = _loaded(path) if path else ""
+    return "" if isinstance(identity, Failure) else identity
 
 
 def _as_compiled(value: dict[str, Any] | None) -> Compiled | None:

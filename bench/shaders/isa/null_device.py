@@ -79,15 +79,15 @@ def _built_library(folder: Path, stem: str) -> Path:
     try:
         kept.make_folder(folder)
         # Others see a whole file or none: it is moved there once it is complete.
-        with tempfile.TemporaryDirectory(dir=folder) as made:
-            whole = Path(made) / "library.so"
+        with tempfile.TemporaryDirectory(dir=folder) as scratch:
+            whole = Path(scratch) / "library.so"
             _compile(whole)
             path = folder / _library_name(stem, whole)
             whole.replace(path)
             return path.resolve()
     except OSError as error:
-        said = f"the null device cannot be written into the cache folder {folder}: {error.strerror or error}"
-        raise NullDeviceError(f"{said}; XDG_CACHE_HOME names another one") from error
+        message = f"the null device cannot be written into the cache folder {folder}: {error.strerror or error}"
+        raise NullDeviceError(f"{message}; XDG_CACHE_HOME names another one") from error
 
 
 def _compile(path: Path) -> None:
@@ -101,7 +101,7 @@ def _compile(path: Path) -> None:
         raise NullDeviceError(f"{error} for {SOURCE.name}") from error
     if done.status or not path.exists():
         last = [line.strip() for line in done.err.splitlines() if line.strip()][-1:]
-        said = f"{COMPILER} does not compile {SOURCE.name}: {last[0][:200] if last else f'status {done.status}'}"
+        message = f"{COMPILER} does not compile {SOURCE.name}: {last[0][:200] if last else f'status {done.status}'}"
         raise NullDeviceError(
-            f"{said}; the headers of libc may be missing ({how_to_install('gcc libc6-dev', counts=True)})"
+            f"{message}; the headers of libc may be missing ({how_to_install('gcc libc6-dev', counts=True)})"
         )

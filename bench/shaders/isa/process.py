@@ -100,10 +100,10 @@ class _Heard:
 def _parsed(line: str | None) -> dict[str, Any] | None:
     """A child's line; None at the end, and for one that was cut off when the child died."""
     try:
-        found = json.loads(line or "null")
+        answer = json.loads(line or "null")
     except ValueError:
         return None
-    return found if isinstance(found, dict) else None
+    return answer if isinstance(answer, dict) else None
 
 
 def _read(stream: Any, lines: queue.Queue[str | None]) -> None:

@@ -43,10 +43,10 @@ def version(tool: str) -> str | None:
 
 def compiler() -> str:
     """The GLSL compiler's version. Raises MissingError, one line that names the package."""
-    said = version(COMPILER)
-    if said is None:
+    compiler_version = version(COMPILER)
+    if compiler_version is None:
         raise MissingError(NO_COMPILER)
-    return said
+    return compiler_version
 
 
 class ToolError(ShaderError):
@@ -81,9 +81,9 @@ def compiled(source: Source, stage: str, counted: bool = True) -> Module:
     optimiser = version(OPTIMISER) if counted else None
     ours = Path(__file__).read_text(encoding="utf-8")
     key = kept.key_of("spirv", source.text, stage, compiler(), optimiser or "", ours)
-    found = _as_module(kept.read(key))
-    if found:
-        return found
+    cached = _as_module(kept.read(key))
+    if cached:
+        return cached
     binary = _glslang_binary(source, stage)
     optimised = _optimised(binary) if optimiser else None
     module = Module(binary, _count(optimised) if optimised else None)

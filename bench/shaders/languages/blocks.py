@@ -14,10 +14,10 @@ COMMON = "INCLUDE"
 def programs_of(source: Source) -> list[Source]:
     """A source for each program of a file that has such blocks: what is common to all, and the program, each line where
     it stands. A file without blocks is one program."""
-    found = list(_BLOCK.finditer(source.text))
-    if not found:
+    matches = list(_BLOCK.finditer(source.text))
+    if not matches:
         return [source]
-    common = [match for match in found if match[1] == COMMON]
-    alone = [match for match in found if match[1] != COMMON]
-    several = [sorted([*common, one], key=re.Match.start) for one in alone] or [common]
+    common = [match for match in matches if match[1] == COMMON]
+    alone = [match for match in matches if match[1] != COMMON]
+    several = [sorted([*common, match], key=re.Match.start) for match in alone] or [common]
     return [source.with_text(only(source.text, [match.span(2) for match in blocks])) for blocks in several]

@@ -26,19 +26,19 @@ def main(folder: Path) -> None:
     """Run the file of a folder on a Vulkan device, and write what it gives there."""
     import wgpu
 
-    found = adapters()
-    if not found:
+    all_adapters = adapters()
+    if not all_adapters:
         raise MissingError(NO_DRIVER)
     given = np.fromfile(folder / "given.bin", "<f4")
     count = len(given) // 12
-    gpu = found[0].request_device_sync()
+    gpu = all_adapters[0].request_device_sync()
     text = judged((folder / "given.wgsl").read_text(encoding="utf-8"), "wgsl")
     module = tools.webgpu_module(gpu, text)
     program = gpu.create_compute_pipeline(layout="auto", compute={"module": module, "entry_point": ENTRY})
     storage = wgpu.BufferUsage.STORAGE | wgpu.BufferUsage.COPY_SRC
     source = gpu.create_buffer_with_data(data=given, usage=storage)
-    made = gpu.create_buffer(size=2 * count * ROW, usage=storage)
-    entries: list[Any] = [{"binding": at, "resource": {"buffer": one}} for at, one in enumerate((source, made))]
+    output = gpu.create_buffer(size=2 * count * ROW, usage=storage)
+    entries: list[Any] = [{"binding": i, "resource": {"buffer": buffer}} for i, buffer in enumerate((source, output))]
     group = gpu.create_bind_group(layout=program.get_bind_group_layout(0), entries=entries)
     commands = gpu.create_command_encoder()
     compute = commands.begin_compute_pass()
@@ -47,7 +47,7 @@ def main(folder: Path) -> None:
     compute.dispatch_workgroups(-(-count // GROUP))
     compute.end()
     gpu.queue.submit([commands.finish()])
-    (folder / "made.bin").write_bytes(gpu.queue.read_buffer(made))
+    (folder / "made.bin").write_bytes(gpu.queue.read_buffer(output))
 
 
 if __name__ == "__main__":

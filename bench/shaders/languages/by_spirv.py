@@ -43,7 +43,7 @@ def defined(module: bytes) -> bytes:
     """
     words = np.frombuffer(module, "<u4")
     instructions = [*_instructions(words)]
-    first = next(at for at, (opcode, _) in enumerate(instructions) if opcode == FUNCTION)
+    first = next(i for i, (opcode, _) in enumerate(instructions) if opcode == FUNCTION)
     declared, bodies = instructions[:first], instructions[first:]
     names = {of[0]: of[1:].tobytes() for opcode, of in declared if opcode == NAME}
     parameters = {of[0]: of[2:] for opcode, of in declared if opcode == FUNCTION_TYPE}
@@ -54,8 +54,8 @@ def defined(module: bytes) -> bytes:
     unset = dict.fromkeys(pointees[of[0]] for opcode, of in bodies if opcode == VARIABLE and len(of) == UNSET)
     numbers = itertools.count(int(words[BOUND]))
     zeros = dict(zip(unset, numbers, strict=False))
-    made = [word for instruction in declared for word in _written(*instruction)]
-    made += [word for of_type, zero in zeros.items() for word in _written(NULL, (of_type, zero))]
+    new_words = [word for instruction in declared for word in _written(*instruction)]
+    new_words += [word for of_type, zero in zeros.items() for word in _written(NULL, (of_type, zero))]
     function = 0
     for opcode, of in bodies:
         function = of[1] if opcode == FUNCTION else function
@@ -64,15 +64,15 @@ def defined(module: bytes) -> bytes:
             if divided_type not in notes:
                 raise ValueError("it divides whole numbers of other than 32 bits")
             result, note = notes[divided_type]
-            made += _written(CALL, (result, next(numbers), note, x, y))
+            new_words += _written(CALL, (result, next(numbers), note, x, y))
         if opcode in CONVERSIONS and of[0] in converters and function not in converters.values():
-            made += _written(CALL, (of[0], of[1], converters[of[0]], of[2]))
+            new_words += _written(CALL, (of[0], of[1], converters[of[0]], of[2]))
         elif opcode == VARIABLE and len(of) == UNSET:
-            made += _written(VARIABLE, (*of, zeros[pointees[of[0]]]))
+            new_words += _written(VARIABLE, (*of, zeros[pointees[of[0]]]))
         else:
-            made += _written(opcode, of)
+            new_words += _written(opcode, of)
     header = [*words[:BOUND], next(numbers), *words[BOUND + 1 : HEADER]]
-    return np.array([*header, *made], "<u4").tobytes()
+    return np.array([*header, *new_words], "<u4").tobytes()
 
 
 def _written(opcode: int, operands: Iterable[int]) -> list[int]:
@@ -82,11 +82,11 @@ def _written(opcode: int, operands: Iterable[int]) -> list[int]:
 
 def _instructions(words: np.ndarray) -> Iterator[tuple[int, np.ndarray]]:
     """The code and the operands of each instruction; its first word has its size as well."""
-    at = HEADER
-    while at < len(words):
-        size, opcode = divmod(int(words[at]), 1 << 16)
-        yield opcode, words[at + 1 : at + size]
-        at += size
+    offset = HEADER
+    while offset < len(words):
+        size, opcode = divmod(int(words[offset]), 1 << 16)
+        yield opcode, words[offset + 1 : offset + size]
+        offset += size
 
 
 def main(folder: Path) -> int:
@@ -99,11 +99,11 @@ def main(folder: Path) -> int:
     groups = -(-len(given) // GROUP)
     # The last group is filled up with the first rows.
     source = context.buffer(np.resize(given, (groups * GROUP, GIVEN * 4)).tobytes())
-    made, undefined = context.buffer(reserve=groups * GROUP * MADE * ROW), context.buffer(bytes(12))
-    for at, buffer in enumerate((source, made, undefined)):
-        buffer.bind_to_storage_buffer(at)
+    output, undefined = context.buffer(reserve=groups * GROUP * MADE * ROW), context.buffer(bytes(12))
+    for binding, buffer in enumerate((source, output, undefined)):
+        buffer.bind_to_storage_buffer(binding)
     dispatch(program, groups)
-    (folder / "made.bin").write_bytes(made.read(len(given) * MADE * ROW))
+    (folder / "made.bin").write_bytes(output.read(len(given) * MADE * ROW))
     return UNDEFINED if any(undefined.read(4)) else 0
 
 

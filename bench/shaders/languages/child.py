@@ -80,8 +80,8 @@ def answer(
     except UsageError as error:
         return {"error": str(error)}
     once_read(source)
-    found = _answer(source, folder, by, kind)
-    return found | {"left_out": source.left_out} if any(part) else found
+    facts = _answer(source, folder, by, kind)
+    return facts | {"left_out": source.left_out} if any(part) else facts
 
 
 def _answer(source: Source, folder: Path, by: str, kind: Kind) -> dict[str, Any]:
@@ -135,23 +135,23 @@ def _facts_of_a_program(whole: Source, folder: Path, by: str, kind: Kind) -> dic
 
 def _translation_facts(source: Source, asked: tuple[str, str] | None, folder: Path, by: str) -> dict[str, Any]:
     path = source.path
-    found = language_of(source.file, by).read(source, folder)
+    parsed = language_of(source.file, by).read(source, folder)
     try:
-        pair, text, named = _pair_and_text(found, asked, path)
+        pair, text, named = _pair_and_text(parsed, asked, path)
     except NoPairError as error:
         if not isinstance(error, SeveralPairsError):
-            _check_refused(found, asked)
-        if one := alone(found.functions):
+            _check_refused(parsed, asked)
+        if single_pair := alone(parsed.functions):
             with suppress(TranslationError, NotPlainError, ToolError):
-                error.alone = _pair_facts(found, one, "", folder, by)
+                error.alone = _pair_facts(parsed, single_pair, "", folder, by)
         raise
     notes = [
-        *(f"it is read without an include: {line}" for line in found.source.missing),
+        *(f"it is read without an include: {line}" for line in parsed.source.missing),
         *_read_with(source),
         *([WHICH.format(named)] if text or not (asked or speaks_of_normals(pair)) else []),
-        *([] if asked else _others(found.functions, pair)),
+        *([] if asked else _others(parsed.functions, pair)),
     ]
-    facts = _pair_facts(found, pair, text, folder, by, asked) | {"named": named}
+    facts = _pair_facts(parsed, pair, text, folder, by, asked) | {"named": named}
     by_glslang = f"it is read by {GLSLANG} alone, as {slang.COMPILER} does not read it"
     return facts | {"notes": [*([by_glslang] if facts["read_by"] == GLSLANG else []), *notes]}
 
@@ -165,35 +165,35 @@ def _check_refused(found: Read, asked: tuple[str, str] | None) -> None:
 def _shaped_facts(source: Source, asked: tuple[str, str] | None, folder: Path, by: str, kind: Kind) -> dict[str, Any]:
     """As `_translation_facts`, of a code of something else than normals."""
     language = language_of(source.file, by)
-    found = language.read(source, folder)
+    parsed = language.read(source, folder)
     if asked and not all(wiring_of(text).is_plain for text in asked):
         raise NoPairError("what a function is given is said of normals alone; name the two functions")
-    own = functions_in(found.source.own_text)
+    own = functions_in(parsed.source.own_text)
     try:
-        pair = shaped_pair(language.placed(found.source, found.functions), kind, asked, str(source.path), own)
+        pair = shaped_pair(language.placed(parsed.source, parsed.functions), kind, asked, str(source.path), own)
     except SeveralPairsError:
         raise
     except NoPairError:
-        _check_refused(found, asked)
+        _check_refused(parsed, asked)
         raise
     sides = pair.sides(language.adapter)
-    called = {letter: one for letter, (one, _) in sides.items()}
+    called = {letter: function for letter, (function, _) in sides.items()}
     text = "".join(text for _, text in sides.values())
 
     def texts(reader: Language, part: Source, prefix: str) -> list[str]:
-        made = _adapter_texts(part, reader, called, prefix, folder)
-        return [made + programs.shaped(prefix, pair, is_unit) for is_unit in (False, True)]
+        adapter_text = _adapter_texts(part, reader, called, prefix, folder)
+        return [adapter_text + programs.shaped(prefix, pair, is_unit) for is_unit in (False, True)]
 
     both = Pair(pair.encode.function, pair.decode.function)
     # An adapter's name begins as that of the function that it calls.
     facts = _facts_of_texts(
-        found, text, [one.name for one in called.values()], _row_name(source, both, asked), by, texts
+        parsed, text, [function.name for function in called.values()], _row_name(source, both, asked), by, texts
     )
-    notes = [*(f"it is read without an include: {line}" for line in found.source.missing), *_read_with(source)]
+    notes = [*(f"it is read without an include: {line}" for line in parsed.source.missing), *_read_with(source)]
     return facts | {
         "components": pair.components,
         "notes": notes,
-        "functions": [(one.name, False) for one in (both.encode, both.decode)],
+        "functions": [(function.name, False) for function in (both.encode, both.decode)],
         "named": pair.named,
         "shaped": {"template": pair.shape.template, "settings": pair.settings, "parts": pair.parts},
     }
@@ -204,8 +204,8 @@ def _adapter_texts(
 ) -> str:
     """Adapters as functions of GLSL, each by its letter behind the prefix."""
     return "".join(
-        plain(language.shader(source, one, folder), f"{prefix}_{letter}", "vec4", HAS_PARAMETERS)
-        for letter, one in called.items()
+        plain(language.shader(source, function, folder), f"{prefix}_{letter}", "vec4", HAS_PARAMETERS)
+        for letter, function in called.items()
     )
 
 
@@ -225,7 +225,7 @@ def _pair_facts(
     return _facts_of_texts(found, text, names, _row_name(found.source, pair, asked), by, texts) | {
         "components": pair.components,
         "packed": pair.encode.kind if pair.is_packed else "",
-        "functions": [(one.name, one.takes_view) for one in (pair.encode, pair.decode)],
+        "functions": [(function.name, function.takes_view) for function in (pair.encode, pair.decode)],
         "named": pair.named,
     }
 
@@ -251,7 +251,7 @@ def _facts_of_texts(
     if why := next((why for name, why in found.refused.items() if name in used), ""):
         raise TranslationError(why)
     try:
-        by, made = _texts_by_whoever_reads_it(source, by, texts, prefix)
+        by, glsl_texts = _texts_by_whoever_reads_it(source, by, texts, prefix)
     except TranslationError as error:
         # What was cut out for another reason is not defined for that one.
         unknown = _UNDEFINED.search(str(error))
@@ -262,7 +262,7 @@ def _facts_of_texts(
         "prefix": prefix,
         "packed": "",
         "notes": [],
-        "texts": made,
+        "texts": glsl_texts,
         "text": source.text,
         "read_by": by,
         "shaped": {},
@@ -271,9 +271,9 @@ def _facts_of_texts(
 
 def _pair_and_text(found: Read, asked: tuple[str, str] | None, path: Path) -> tuple[Pair, str, str]:
     """The pair that is measured; the text of its two functions, where they call others; and how it is asked for."""
-    one, other = wirings = [wiring_of(text) for text in asked] if asked else (Wiring(""), Wiring(""))
-    names = (one.function, other.function) if asked else None
-    if not (one.is_plain and other.is_plain):
+    first, other = wirings = [wiring_of(text) for text in asked] if asked else (Wiring(""), Wiring(""))
+    names = (first.function, other.function) if asked else None
+    if not (first.is_plain and other.is_plain):
         return _wired_pair(wirings, found)
     own = functions_in(found.source.own_text)
     try:
@@ -285,7 +285,7 @@ def _pair_and_text(found: Read, asked: tuple[str, str] | None, path: Path) -> tu
     except SeveralPairsError:
         raise
     except NoPairError:
-        several = candidates([one for one in found.functions if not names or one.name in names])
+        several = candidates([function for function in found.functions if not names or function.name in names])
         if not several:
             raise
     if len(several) == 1:
@@ -294,7 +294,7 @@ def _pair_and_text(found: Read, asked: tuple[str, str] | None, path: Path) -> tu
 
 
 def _own_candidates(found: Read, own: Collection[str]) -> list[tuple[Wiring, Wiring]]:
-    return candidates([one for one in found.functions if one.name in own])
+    return candidates([function for function in found.functions if function.name in own])
 
 
 def _wired_pair(wirings: Sequence[Wiring], found: Read) -> tuple[Pair, str, str]:
@@ -317,16 +317,20 @@ def _texts_by_whoever_reads_it(source: Source, by: str, texts: _Texts, prefix: s
 def _others(found: Sequence[Function], pair: Pair) -> list[str]:
     """A line on each other pair, but those of numbers alone: one of 32 bits, or of functions with more parameters."""
     others = [] if pair.is_packed else packed_pairs(found)
-    packed = {one.named: f", which packs into {_A[one.encode.kind]}," for one in others}
-    wired = dict.fromkeys(f"{one.function}:{other.function}" for one, other in candidates(_but(found, pair)))
+    packed = {other.named: f", which packs into {_A[other.encode.kind]}," for other in others}
+    wired = dict.fromkeys(f"{first.function}:{other.function}" for first, other in candidates(_but(found, pair)))
     named = {**dict.fromkeys(wired, ""), **packed}
     measured = {pair.encode.name.removesuffix("_wired"), pair.decode.name.removesuffix("_wired")}
-    left = {one: what for one, what in named.items() if not measured & set(one.replace("::", "_").split(":"))}
-    return [f"{one}{what} {IF_NAMED}" for one, what in list(left.items())[:MOST_OTHERS]]
+    left = {
+        pair_name: what
+        for pair_name, what in named.items()
+        if not measured & set(pair_name.replace("::", "_").split(":"))
+    }
+    return [f"{pair_name}{what} {IF_NAMED}" for pair_name, what in list(left.items())[:MOST_OTHERS]]
 
 
 def _but(found: Sequence[Function], pair: Pair) -> list[Function]:
-    return [one for one in found if one.name not in (pair.encode.name, pair.decode.name)]
+    return [function for function in found if function.name not in (pair.encode.name, pair.decode.name)]
 
 
 def _read_with(source: Source) -> list[str]:
@@ -334,8 +338,8 @@ def _read_with(source: Source) -> list[str]:
     others = [str(path) for path in source.files.values() if path not in source.mains]
     more = f" and {len(others) - MOST_NAMED} others" if len(others) > MOST_NAMED else ""
     macros = [f"-D {macro}" for macro in source.settings.defines]
-    said = ", ".join([*macros, *others[:MOST_NAMED]])
-    return [f"it is read with {said}{more}"] if said else []
+    extras = ", ".join([*macros, *others[:MOST_NAMED]])
+    return [f"it is read with {extras}{more}"] if extras else []
 
 
 def _row_name(source: Source, pair: Pair, asked: tuple[str, str] | None) -> str:
@@ -352,17 +356,17 @@ def _row_name(source: Source, pair: Pair, asked: tuple[str, str] | None) -> str:
 def _function_texts(source: Source, language: Language, pair: Pair, prefix: str, folder: Path) -> list[str]:
     """The two functions in GLSL, of codes in [-1, 1] and of codes in [0, 1]."""
     sides = {f"{prefix}_e": pair.encode, f"{prefix}_d": pair.decode}
-    made = "".join(
-        plain(language.shader(source, one, folder), name, one.takes or f"vec{one.given[0]}")
-        if one.name
-        else f"vec{one.result} {name}_main(vec{one.given[0]} a, vec3 view) {{ return vec{one.result}(0.0); }}\n"
-        for name, one in sides.items()
+    text = "".join(
+        plain(language.shader(source, side, folder), name, side.takes or f"vec{side.given[0]}")
+        if side.name
+        else f"vec{side.result} {name}_main(vec{side.given[0]} a, vec3 view) {{ return vec{side.result}(0.0); }}\n"
+        for name, side in sides.items()
     )
-    mains = (replace(one, name=f"{name}_main", given=(one.given[0], NORMAL)) for name, one in sides.items())
+    mains = (replace(side, name=f"{name}_main", given=(side.given[0], NORMAL)) for name, side in sides.items())
     encoder, decoder = mains
     if pair.is_packed:
-        return [made + programs.packed_pair(prefix, encoder, decoder)] * 2
-    return [made + programs.pair(prefix, pair.components, encoder, decoder, is_unit) for is_unit in (False, True)]
+        return [text + programs.packed_pair(prefix, encoder, decoder)] * 2
+    return [text + programs.pair(prefix, pair.components, encoder, decoder, is_unit) for is_unit in (False, True)]
 
 
 if __name__ == "__main__":

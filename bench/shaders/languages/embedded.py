@@ -42,8 +42,8 @@ def _block(text: str, start: int) -> tuple[int, int]:
 
 def only(text: str, spans: list[tuple[int, int]]) -> str:
     """A text with blanks for what is in none of some spans."""
-    made, last = [], 0
+    parts, last = [], 0
     for start, end in spans:
-        made += [blank(text[last:start]), text[start:end]]
+        parts += [blank(text[last:start]), text[start:end]]
         last = end
-    return "".join([*made, blank(text[last:])])
+    return "".join([*parts, blank(text[last:])])

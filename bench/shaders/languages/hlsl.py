@@ -53,10 +53,10 @@ def _check(source: Source, status: int, said: str) -> None:
     """Raises TranslationError where glslang refuses a source."""
     if not status:
         return
-    found = _ERROR.search(said)
-    if not found:
+    match = _ERROR.search(said)
+    if not match:
         why = next((line for line in said.splitlines() if "error" in line.lower()), f"status {status} without a word")
         raise TranslationError(f"{source.path}: {tools.GLSLANG}: {why}")
-    token, what = found[2], found[3].strip()
+    token, what = match[2], match[3].strip()
     said = f"{what.lower()} {token}" if what == "Expected" else f"{token}: {what}" if token else what
-    raise TranslationError(source.explained(int(found[1]), said, token))
+    raise TranslationError(source.explained(int(match[1]), said, token))

@@ -46,27 +46,27 @@ class Item(NamedTuple):
 
 def items(text: str) -> list[Item]:
     """The items of a text without comments, which together with the braces of its namespaces are all of it."""
-    found: list[Item] = []
+    parts: list[Item] = []
     spaces: list[str] = []
     bare = _QUOTED.sub(lambda match: blank(match[0]), _without_directives(text))
     depth = start = body = 0
     for match in re.finditer(r"[{};]", bare):
-        mark, at = match[0], match.end()
+        mark, end = match[0], match.end()
         if mark == "{" and not depth and (space := _SPACE.search(bare, start, match.start())):
             spaces.append(f"{space[1]}::")
-            start = at
+            start = end
         elif mark == "{":
             body = body if depth else match.start()
             depth += 1
         elif mark == "}" and not depth:
-            start = at
+            start = end
             del spaces[-1:]
         else:
             depth -= mark == "}"
             if not depth:
-                found += _items(bare, start, at, body if mark == "}" else at, "".join(spaces))
-                start = at
-    return [*found, Item(start, len(text), "", len(text))]
+                parts += _items(bare, start, end, body if mark == "}" else end, "".join(spaces))
+                start = end
+    return [*parts, Item(start, len(text), "", len(text))]
 
 
 def _items(bare: str, start: int, end: int, body: int, space: str) -> list[Item]:
@@ -105,7 +105,7 @@ def defined_in(text: str) -> Iterator[str]:
     """What a text defines at its top: functions, types, globals, namespaces."""
     for item in items(text):
         head = re.split(r"[{=(:;[]", _without_directives(text[item.start : item.end]), maxsplit=1)[0]
-        yield from (match[1] for one in head.split(",") if (match := re.search(r"(\w+)\s*$", one)))
+        yield from (match[1] for part in head.split(",") if (match := re.search(r"(\w+)\s*$", part)))
 
 
 def heads(text: str) -> str:
@@ -148,11 +148,11 @@ def _may_be_pasted(name: str, parts: Collection[str]) -> bool:
 
 def _rewritten(text: str, parts: Iterable[tuple[int, int, str]]) -> str:
     """A text with other words, and blanks, in parts of it: start, end and words, which come one after another."""
-    made, last = [], 0
+    pieces, last = [], 0
     for start, end, words in sorted(parts):
-        made += [text[last:start], words, blanked(text[start:end])[len(words) :]]
+        pieces += [text[last:start], words, blanked(text[start:end])[len(words) :]]
         last = end
-    return "".join([*made, text[last:]])
+    return "".join([*pieces, text[last:]])
 
 
 def blanked(text: str) -> str:

@@ -192,7 +192,7 @@ class SeveralPairsError(NoPairError):
 
     def __init__(self, file: str, named: Sequence[str]):
         several = "several encoders; name one" if len(named) > 1 else "functions that may be a pair; name them"
-        super().__init__(f"it has {several}: {', '.join(f'{file}:{one}' for one in named[:6])}")
+        super().__init__(f"it has {several}: {', '.join(f'{file}:{name}' for name in named[:6])}")
         self.named = named
 
 
@@ -210,7 +210,7 @@ def pair_of(
         NoPairError: none fits.
         SeveralPairsError: several do; the message names them.
     """
-    some = [one for one in found if not asked or one.name in asked]
+    some = [function for function in found if not asked or function.name in asked]
     pairs = [pair for pair in _fitting(some) if asked in (None, (pair.encode.name, pair.decode.name))]
     packed = [pair for pair in packed_pairs(some) if asked in (None, (pair.encode.name, pair.decode.name))]
     if asked:
@@ -234,8 +234,8 @@ def pair_of(
         raise SeveralPairsError(file, names)
     if too_many(*_sides(found)):
         encoders, decoders = map(len, _sides(found))
-        said = f"{encoders} functions may encode and {decoders} may decode, and no two are named alike"
-        raise NoPairError(f"{said}; name two: {file}:ENCODE:DECODE")
+        message = f"{encoders} functions may encode and {decoders} may decode, and no two are named alike"
+        raise NoPairError(f"{message}; name two: {file}:ENCODE:DECODE")
     if other := _of_something_else(found, file):
         raise NoPairError(other)
     wanted = "float2 (or float3) ENCODE(float3 n) and float3 DECODE(float2 code)"
@@ -258,7 +258,9 @@ def _fitting(found: Sequence[Function]) -> Iterator[Pair]:
 
 
 def _sides(found: Sequence[Function]) -> tuple[list[Function], list[Function]]:
-    return [one for one in found if one.may_encode], [one for one in found if one.may_decode]
+    return [function for function in found if function.may_encode], [
+        function for function in found if function.may_decode
+    ]
 
 
 def too_many(encoders: Sequence[Function], decoders: Sequence[Function]) -> bool:
@@ -268,21 +270,21 @@ def too_many(encoders: Sequence[Function], decoders: Sequence[Function]) -> bool
 
 def packed_pairs(found: Sequence[Function]) -> list[Pair]:
     """The pairs whose code is one value of 32 bits, of an encoder and a decoder by their names."""
-    sides = [one for one in found if one.packs], [one for one in found if one.unpacks]
+    sides = [function for function in found if function.packs], [function for function in found if function.unpacks]
     alike = (both for both in itertools.product(*sides) if stem(both[0].name) == stem(both[1].name))
-    return _by_name([Pair(one, other) for one, other in alike if one.kind == other.takes])
+    return _by_name([Pair(encoder, other) for encoder, other in alike if encoder.kind == other.takes])
 
 
 def _asked(found: Sequence[Function], asked: tuple[str, str], pairs: Sequence[Pair]) -> Pair:
     if pairs:
         return pairs[0]
-    missing = [name for name in asked if name not in {one.name for one in found}]
+    missing = [name for name in asked if name not in {candidate.name for candidate in found}]
     if missing:
-        known = ", ".join(dict.fromkeys(one.name for one in found)) or "none"
+        known = ", ".join(dict.fromkeys(candidate.name for candidate in found)) or "none"
         raise NoPairError(f"no function is named {missing[0]}; there are: {known}")
-    for one in found:
-        if one.name in asked and one.gives_by_parameter:
-            raise NoPairError(BY_PARAMETER.format(one.name))
+    for function in found:
+        if function.name in asked and function.gives_by_parameter:
+            raise NoPairError(BY_PARAMETER.format(function.name))
     raise NoPairError(f"{asked[0]} must take a float3 and give what {asked[1]} takes; {asked[1]} must give a float3")
 
 
@@ -300,9 +302,9 @@ def _by_parameter(found: Sequence[Function], best: Sequence[Pair]) -> str:
     """
     if any(stem(pair.encode.name) == stem(pair.decode.name) for pair in best):
         return ""
-    sides = {(role(one.name), stem(one.name)) for pair in best for one in (pair.encode, pair.decode)}
+    sides = {(role(function.name), stem(function.name)) for pair in best for function in (pair.encode, pair.decode)}
     other = {"encode": "decode", "decode": "encode"}
-    voids = (one.name for one in found if one.gives_by_parameter)
+    voids = (function.name for function in found if function.gives_by_parameter)
     return next((name for name in voids if (other.get(role(name)), stem(name)) in sides), "")
 
 
@@ -343,8 +345,8 @@ def _ways(name: str) -> tuple[list[str], list[str]] | None:
     words = [word.lower() for word in WORD.findall(name)]
     for between in ("to", "from"):
         if between in words[1:-1]:
-            at = words.index(between)
-            first, last = words[:at], words[at + 1 :]
+            index = words.index(between)
+            first, last = words[:index], words[index + 1 :]
             return (first, last) if between == "to" else (last, first)
     return None
 
@@ -353,8 +355,8 @@ def _ways(name: str) -> tuple[list[str], list[str]] | None:
 def role(name: str) -> str:
     """What a function is by its name: "encode", "decode", or empty."""
     if ways := _ways(name):
-        given, made = (any(word.startswith(CODES) for word in one) for one in ways)
-        if given != made:
+        given, is_code_made = (any(word.startswith(CODES) for word in words) for words in ways)
+        if given != is_code_made:
             return "decode" if given else "encode"
     lower = name.lower()
     if any(word in lower for word in DECODES):
@@ -366,14 +368,14 @@ def role(name: str) -> str:
 def stem(name: str) -> str:
     """A function's name without what says that it encodes or decodes."""
     if ways := _ways(name):
-        return " ".join(sorted(" ".join(one) for one in ways))
+        return " ".join(sorted(" ".join(words) for words in ways))
     return re.sub("|".join((*DECODES, *ENCODES, "_")), "", name.lower())
 
 
 def alone(found: Sequence[Function]) -> Pair | None:
     """The one function of a file that encodes or decodes, and the other one without a name; None of other files."""
-    encoders = [one for one in found if one.may_encode and role(one.name) == "encode"]
-    decoders = [one for one in found if one.may_decode and role(one.name) == "decode"]
+    encoders = [function for function in found if function.may_encode and role(function.name) == "encode"]
+    decoders = [function for function in found if function.may_decode and role(function.name) == "decode"]
     if len(encoders) + len(decoders) != 1:
         return None
     size = encoders[0].result if encoders else decoders[0].given[0]
@@ -382,19 +384,23 @@ def alone(found: Sequence[Function]) -> Pair | None:
 
 def _of_something_else(found: Sequence[Function], file: str, among: Collection[kinds.Kind] = kinds.KINDS) -> str:
     """That a file without a pair is of something else, by the names of its functions; else empty."""
-    for name in (one.name for one in found if role(one.name)):
+    for name in (function.name for function in found if role(function.name)):
         if (kind := kind_spoken_of(name)) and kind in among and not name_speaks_of_normals(name):
             return OF_OTHERS.format(name, kind.plural, kinds.NORMAL.plural, kind.command.format(file))
     return ""
 
 
 def _none_fits(found: Sequence[Function]) -> str:
-    encoders = [one.name for one in found if one.may_encode and role(one.name) != "decode"]
-    decoders = [one.name for one in found if one.may_decode and role(one.name) != "encode"]
-    for one in found:
-        if one.gives_by_parameter and role(one.name):
-            return BY_PARAMETER.format(one.name)
-    others = [one for one in found if one.takes_a_normal and not one.result and role(one.name) == "encode"]
+    encoders = [candidate.name for candidate in found if candidate.may_encode and role(candidate.name) != "decode"]
+    decoders = [candidate.name for candidate in found if candidate.may_decode and role(candidate.name) != "encode"]
+    for function in found:
+        if function.gives_by_parameter and role(function.name):
+            return BY_PARAMETER.format(function.name)
+    others = [
+        candidate
+        for candidate in found
+        if candidate.takes_a_normal and not candidate.result and role(candidate.name) == "encode"
+    ]
     if others and not encoders:
         return f"{others[0].name} gives a {others[0].kind}, but a code is two or three numbers that are not packed yet"
     if encoders and not decoders:

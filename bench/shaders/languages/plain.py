@@ -56,8 +56,8 @@ def plain(shader: str, prefix: str, given: str, has: str = HAS_A_NORMAL) -> str:
     text = _VARIABLE.sub("", text)
     names = {name: called if called == "view" else f"{prefix}_{called}" for name, called in names.items()}
     text = _NAME.sub(lambda match: names.get(match[0], f"{prefix}_{match[0].strip('_')}"), text)
-    if found := _RESOURCE.search(text):
-        what = "a texture or a constant buffer" if not found[0].startswith("gl_") else found[0]
+    if resource := _RESOURCE.search(text):
+        what = "a texture or a constant buffer" if not resource[0].startswith("gl_") else resource[0]
         raise NotPlainError(f"its functions read {what}; {has}")
     return _function_text(re.sub(r"\n\s*\n+", "\n", text.strip()), prefix, given, result.strip()) + "\n"
 

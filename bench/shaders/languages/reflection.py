@@ -21,26 +21,26 @@ def functions_of(compiled: Compiled, names: Mapping[str, str]) -> list[Function]
         names: what the text defines, by what its functions are called: the library does not bear names of its own.
     """
     reflection = api().reflection(compiled.request)
-    found = [(name, api().find(reflection, spelled.encode())) for name, spelled in names.items()]
-    each = ((name, one) for name, several in found if several for one in _overloads(several))
-    return list(dict.fromkeys(_function(name, one) for name, one in each))
+    handles = [(name, api().find(reflection, spelled.encode())) for name, spelled in names.items()]
+    each = ((name, overload) for name, several in handles if several for overload in _overloads(several))
+    return list(dict.fromkeys(_function(name, overload) for name, overload in each))
 
 
 def _overloads(function: int) -> list[int]:
     library = api()
     if not library.is_overloaded(function):
         return [function]
-    found = (library.overload(function, at) for at in range(library.overloads(function)))
-    return [one for one in found if one]
+    overloads = (library.overload(function, i) for i in range(library.overloads(function)))
+    return [overload for overload in overloads if overload]
 
 
 def _function(name: str, function: int) -> Function:
     library = api()
-    parameters = [_parameter(library.parameter(function, at)) for at in range(library.parameters(function))]
+    parameters = [_parameter(library.parameter(function, i)) for i in range(library.parameters(function))]
     # What has a value of its own need not be given.
-    given = [one for one in parameters if not one.has_default]
+    given = [parameter for parameter in parameters if not parameter.has_default]
     result = library.result(function)
-    sizes = tuple(0 if one.is_made else size_of(one.places) for one in given)
+    sizes = tuple(0 if parameter.is_made else size_of(parameter.places) for parameter in given)
     takes = given[0].kind if given and not given[0].is_made else ""
     results = tuple(_places("", result))
     return Function(
@@ -78,7 +78,7 @@ def _places(path: str, kind: int) -> Iterator[Place]:
     if library.kind(kind) in (VECTOR, SCALAR) and scalar in NUMBERS:
         yield Place(path, scalar, int(library.count(kind)) if library.kind(kind) == VECTOR else 1)
     elif library.kind(kind) == STRUCTURE:
-        for field in (library.field(kind, at) for at in range(library.fields(kind))):
+        for field in (library.field(kind, i) for i in range(library.fields(kind))):
             inner = (library.variable_name(field) or b"").decode()
             yield from _places(f"{path}.{inner}" if path else inner, library.type_of(field))
 

@@ -72,8 +72,8 @@ def second_way(file: UserFile, encoder: Translated, folder: Path) -> Way:
         given[:, 0, :3], given[:, 1, :3], given[:, 2, :3] = n, view, codes
         given.tofile(folder / GIVEN)
         run(len(n))
-        made = np.fromfile(folder / MADE, "<f4").reshape(len(n), 2, 4)
-        return made[:, 0, :3], made[:, 1, :3]
+        output = np.fromfile(folder / MADE, "<f4").reshape(len(n), 2, 4)
+        return output[:, 0, :3], output[:, 1, :3]
 
     return way
 

@@ -50,7 +50,7 @@ class Fitted:
     def size(self, part: str) -> int:
         """How many numbers a part has here; 0 where it has none."""
         both = [*((part, place) for place, part in self.given.items()), *self.made.items()]
-        return next((place.size for one, place in both if one.name == part), 0)
+        return next((place.size for argument, place in both if argument.name == part), 0)
 
 
 @dataclass(frozen=True)
@@ -74,19 +74,23 @@ class ShapedPair:
     @property
     def settings(self) -> list[str]:
         """The names of the settings that either function is given."""
-        return [one.name for one in self.shape.settings if any(f.size(one.name) for f in (self.encode, self.decode))]
+        return [
+            setting.name
+            for setting in self.shape.settings
+            if any(f.size(setting.name) for f in (self.encode, self.decode))
+        ]
 
     @property
     def parts(self) -> dict[str, list[int]]:
         """By each part how many numbers the encoder is given of it, and the decoder gives; 0 for none."""
-        return {part.name: [one.size(part.name) for one in (self.encode, self.decode)] for part in self.shape.parts}
+        return {part.name: [side.size(part.name) for side in (self.encode, self.decode)] for part in self.shape.parts}
 
     def sides(self, adapter: Adapter) -> dict[str, tuple[Function, str]]:
         """By the letter that a program calls it by, each adapter and its text."""
-        made = {"e": _adapted(self.encode, "e", (self.shape.code.name,), adapter)}
+        by_letter = {"e": _adapted(self.encode, "e", (self.shape.code.name,), adapter)}
         for letter, names in zip(LETTERS, self.shape.results, strict=False):
-            made[letter] = _adapted(self.decode, letter, names, adapter)
-        return made
+            by_letter[letter] = _adapted(self.decode, letter, names, adapter)
+        return by_letter
 
 
 # What a program calls the adapters of a decoder by.
@@ -97,8 +101,8 @@ def _adapted(fitted: Fitted, letter: str, results: Sequence[str], adapter: Adapt
     """A function of seven numbers that gives four, and its text."""
     name = f"{fitted.function.name.replace('::', '_')}_{letter}"
     given = {place.path: part.sizes[place.size] for place, part in fitted.given.items()}
-    made = {part.name: place for part, place in fitted.made.items()}
-    text = adapter(fitted.function, name, given, [made.get(result) for result in results])
+    places = {part.name: place for part, place in fitted.made.items()}
+    text = adapter(fitted.function, name, given, [places.get(result) for result in results])
     return Function(name, MADE, GIVEN, f"float{MADE}"), text
 
 
@@ -130,14 +134,14 @@ def shaped_pair(
 
 def _all_pairs(found: Sequence[Function], kind: Kind, asked: tuple[str, str] | None) -> Iterator[ShapedPair]:
     for shape in SHAPES[kind]:
-        encoders = [one for one in found if _may_be(one, "encode", asked)]
-        decoders = [one for one in found if _may_be(one, "decode", asked)]
-        made = [fit for one in encoders if (fit := _fitted(one, shape.parts, (shape.code,), shape))]
-        back = [fit for one in decoders if (fit := _fitted(one, (shape.code,), shape.parts, shape))]
+        encoders = [function for function in found if _may_be(function, "encode", asked)]
+        decoders = [function for function in found if _may_be(function, "decode", asked)]
+        forward = [fit for function in encoders if (fit := _fitted(function, shape.parts, (shape.code,), shape))]
+        back = [fit for function in decoders if (fit := _fitted(function, (shape.code,), shape.parts, shape))]
         code = shape.code.name
-        for one, other in itertools.product(made, back):
-            if one.size(code) == other.size(code):
-                yield ShapedPair(shape, one, other)
+        for encoder, other in itertools.product(forward, back):
+            if encoder.size(code) == other.size(code):
+                yield ShapedPair(shape, encoder, other)
 
 
 def _may_be(function: Function, side: str, asked: tuple[str, str] | None) -> bool:
@@ -161,21 +165,21 @@ def _assigned(places: Sequence[Place], parts: Sequence[CodeArgument]) -> dict[Pl
 
     What a structure has besides may be left.
     """
-    found: dict[Place, CodeArgument] = {}
+    assigned: dict[Place, CodeArgument] = {}
     likely = sorted(
         ((_likeness(place, part), place, part) for place in places for part in parts if _fits(place, part)),
         key=lambda one: -one[0],
     )
     for letters, place, part in likely:
-        if letters and place not in found and part not in found.values():
-            found[place] = part
+        if letters and place not in assigned and part not in assigned.values():
+            assigned[place] = part
     for part in sorted(parts, key=lambda part: not part.is_needed):
-        left = [place for place in places if place not in found and _fits(place, part)]
-        if part not in found.values() and left and (part.is_needed or "." not in left[0].path):
-            found[left[0]] = part
-    is_whole = all(part in found.values() for part in parts if part.is_needed)
-    is_used = all(place in found or "." in place.path for place in places)
-    return {place: found[place] for place in places if place in found} if is_whole and is_used else None
+        left = [place for place in places if place not in assigned and _fits(place, part)]
+        if part not in assigned.values() and left and (part.is_needed or "." not in left[0].path):
+            assigned[left[0]] = part
+    is_whole = all(part in assigned.values() for part in parts if part.is_needed)
+    is_used = all(place in assigned or "." in place.path for place in places)
+    return {place: assigned[place] for place in places if place in assigned} if is_whole and is_used else None
 
 
 def _fits(place: Place, part: CodeArgument) -> bool:
@@ -202,7 +206,7 @@ def _is_of_colours(pair: ShapedPair, kind: Kind) -> bool:
 
 def _why_not(found: Sequence[Function], kind: Kind, asked: tuple[str, str]) -> str:
     """Why two functions that are asked for are no pair."""
-    names = {one.name for one in found}
+    names = {function.name for function in found}
     if missing := [name for name in asked if name not in names]:
         return f"no function is named {missing[0]}; there are: {', '.join(dict.fromkeys(names)) or 'none'}"
     return f"{asked[0]} and {asked[1]} are no code of {kind.plural}; the two functions must be {_wanted(kind)}"
@@ -211,13 +215,13 @@ def _why_not(found: Sequence[Function], kind: Kind, asked: tuple[str, str]) -> s
 def _why_none(found: Sequence[Function], kind: Kind, file: str) -> str:
     """Why no functions of a file are a pair of a kind."""
     wanted = f"the two functions must be {_wanted(kind)}"
-    sides = {side: [one for one in found if role(one.name) == side] for side in ("encode", "decode")}
-    spoken = [one for several in sides.values() for one in several]
-    of_kind = [one for one in spoken if not _other_kind(one.name, kind)]
+    sides = {side: [function for function in found if role(function.name) == side] for side in ("encode", "decode")}
+    spoken = [function for several in sides.values() for function in several]
+    of_kind = [function for function in spoken if not _other_kind(function.name, kind)]
     if spoken and not of_kind:
         other = _other_kind(spoken[0].name, kind) or NORMAL
         return OF_OTHERS.format(spoken[0].name, other.plural, kind.plural, other.command.format(file))
-    if packs := next((one for one in of_kind if one.kind in PACKED[:2]), None):
+    if packs := next((function for function in of_kind if function.kind in PACKED[:2]), None):
         return f"{packs.name} gives a {packs.kind}, but a code of {kind.plural} is numbers; {wanted}"
     for side, other in (("encode", "decode"), ("decode", "encode")):
         if sides[side] and not sides[other]:

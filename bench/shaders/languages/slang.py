@@ -80,8 +80,8 @@ def _diagonals(text: str) -> Iterator[int]:
     """The lines in which a matrix is made of one value."""
     for match in _DIAGONAL.finditer(text):
         depth, commas = 1, 0
-        for at in range(match.end(), len(text)):
-            letter = text[at]
+        for index in range(match.end(), len(text)):
+            letter = text[index]
             depth += (letter == "(") - (letter == ")")
             commas += letter == "," and depth == 1
             if not depth:
@@ -116,23 +116,23 @@ def _readable_part(source: Source, first: Callable[[str], str], folder: Path, op
         lost |= {name: why for text, why in texts.items() for name in (*defined_in(text), *_any_name(why))}
         source = left
     # The library ends the process where it is asked for a function that has the name of one of its own.
-    made = _compiled(source, marked_heads(source.text, MARK) + NO_ENTRY, (*options, *TARGET), folder)
+    compiled = _compiled(source, marked_heads(source.text, MARK) + NO_ENTRY, (*options, *TARGET), folder)
     tops = {item.function for item in items(source.text) if item.function}
     names = {name: _marked(name) if name in tops else name for name in functions_in(source.text)}
-    return Read(source, functions_of(made, names), refused, lost)
+    return Read(source, functions_of(compiled, names), refused, lost)
 
 
 def _refused_now(source: Source, options: tuple[str, ...], folder: Path) -> dict[Item, str]:
     """The items of a source that are refused, each with the first message; none where its heads compile. Raises
     TranslationError where what is refused is none."""
     try:
-        made = _compiled(source, heads(source.text) + NO_ENTRY, (*options, *TARGET), folder)
+        compiled = _compiled(source, heads(source.text) + NO_ENTRY, (*options, *TARGET), folder)
     except RefusedWordError as error:
         messages, explained = [error.place], error
     else:
-        if not made.failed:
+        if not compiled.failed:
             return {}
-        messages, explained = list(_messages(made.said)), TranslationError(_explanation(source, made.said))
+        messages, explained = list(_messages(compiled.said)), TranslationError(_explanation(source, compiled.said))
     bad = _items_at(source, messages)
     if without(source.text, bad) == source.text:
         raise explained
@@ -151,10 +151,10 @@ def _live_part(source: Source, folder: Path, options: tuple[str, ...]) -> Source
         return source
     # Of a part that is looked at, the compiler says the warning; it is given directives alone.
     marked = (
-        f"#warning {PART}{at}.\n{blanked(part)}{end}" for at, (part, end) in enumerate(zip(parts, ends, strict=True))
+        f"#warning {PART}{i}.\n{blanked(part)}{end}" for i, (part, end) in enumerate(zip(parts, ends, strict=True))
     )
     live = set(re.findall(rf"{PART}\d+\.", _compiled(source, "\n".join(marked), options, folder).said))
-    kept = (part if f"{PART}{at}." in live else blank(part) for at, part in enumerate(parts))
+    kept = (part if f"{PART}{i}." in live else blank(part) for i, part in enumerate(parts))
     return source.with_text("".join(part + blank(end) for part, end in zip(kept, ends, strict=True)))
 
 
@@ -179,13 +179,13 @@ def _items_at(source: Source, messages: Iterable[tuple[int, int, str]]) -> dict[
     """
     starts = [0, *(match.end() for match in re.finditer("\n", source.text))]
     known = items(source.text)
-    found: dict[Item, str] = {}
+    refusals: dict[Item, str] = {}
     for number, column, what in messages:
         line = starts[min(number, len(starts)) - 1]
         item = known[bisect_right(known, line + column - 1, key=lambda item: item.start) - 1]
         if item.end > line + column - 1 and not source.text.startswith("#", line):
-            found.setdefault(item, source.explained(number, what, column=column))
-    return found
+            refusals.setdefault(item, source.explained(number, what, column=column))
+    return refusals
 
 
 def shader(source: Source, function: Function, folder: Path, options: tuple[str, ...] = ()) -> str:
@@ -195,11 +195,11 @@ def shader(source: Source, function: Function, folder: Path, options: tuple[str,
         TranslationError: it does not compile.
         MissingError: the compiler is not there.
     """
-    made = _compiled(source, program(source, function), (*options, *TARGET), folder)
-    if made.failed:
-        raise TranslationError(_explanation(source, made.said))
+    compiled = _compiled(source, program(source, function), (*options, *TARGET), folder)
+    if compiled.failed:
+        raise TranslationError(_explanation(source, compiled.said))
     # The suffix is one that `plain.py` takes for a name of Slang's.
-    code = made.code
+    code = compiled.code
     return template("mix.glsl", MIX=MIX) + _MIX.sub(MIX, code) if _MIX.search(code) else code
 
 

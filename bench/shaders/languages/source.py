@@ -65,12 +65,12 @@ def _resolved(path: Path) -> Path:
 def _searched(folder: Path) -> list[Path]:
     """Where includes are searched: a folder and those above it, up to a repository's, at most eight more; never the
     home folder, what is above it, or the top of all, but where the file itself lies there."""
-    found, homes = [folder], list(_homes())
+    paths, homes = [folder], list(_homes())
     for above in folder.parents[:MOST_ABOVE]:
-        if (found[-1] / ".git").exists() or any(home.is_relative_to(above) for home in homes) or above == above.parent:
+        if (paths[-1] / ".git").exists() or any(home.is_relative_to(above) for home in homes) or above == above.parent:
             break
-        found.append(above)
-    return found
+        paths.append(above)
+    return paths
 
 
 def _option_for(name: str) -> str:
@@ -95,20 +95,20 @@ def _read(own: Path, path: Path, language: str) -> _Text:
         line = text.count("\n", 0, text.index("/*")) + 1
         raise UsageError(f"{path}:{line}: a comment that begins with /* is not closed")
     lines = text.split("\n")
-    found = {at: match[match.lastindex or 0] for at, line in enumerate(lines) if (match := _INCLUDE.fullmatch(line))}
-    if len(_ANY_INCLUDE.findall(text)) != len(found):
+    includes = {i: match[match.lastindex or 0] for i, line in enumerate(lines) if (match := _INCLUDE.fullmatch(line))}
+    if len(_ANY_INCLUDE.findall(text)) != len(includes):
         raise UsageError(f'{path}: an #include is written as #include "FILE", in one line')
     if is_wgsl:
-        return _Text(lines, found, _NATURE)
+        return _Text(lines, includes, _NATURE)
     imports: dict[int, str] = {}
     if (language or TRANSLATED.get(path.suffix.lower())) == "Slang":
-        matches = {at: match for at, line in enumerate(lines) if (match := _IMPORT.fullmatch(line))}
+        matches = {i: match for i, line in enumerate(lines) if (match := _IMPORT.fullmatch(line))}
         # A name's points part folders; what is quoted is a path.
-        imports = {at: (match[1] or "").replace(".", "/") or match[2] for at, match in matches.items()}
-        found |= {at: path.removesuffix(SLANG) + SLANG for at, path in imports.items()}
+        imports = {i: (match[1] or "").replace(".", "/") or match[2] for i, match in matches.items()}
+        includes |= {i: path.removesuffix(SLANG) + SLANG for i, path in imports.items()}
         lines = ["" if _MODULE.fullmatch(line) else line for line in lines]
     guard = _PRAGMA if any(map(_ONCE.fullmatch, lines)) else _guard(lines)
-    return _Text(lines, found, guard, frozenset(imports))
+    return _Text(lines, includes, guard, frozenset(imports))
 
 
 class _Text(NamedTuple):
@@ -129,15 +129,15 @@ class _Text(NamedTuple):
 
 def _guard(lines: list[str]) -> tuple[int, ...]:
     """The places of #ifndef NAME and its #endif where they hold all of a text; else none."""
-    written = [at for at, line in enumerate(lines) if line.strip()]
+    written = [i for i, line in enumerate(lines) if line.strip()]
     first = _UNLESS.fullmatch(lines[written[0]]) if len(written) > 2 else None
     if not first or not re.match(rf"[ \t]*#[ \t]*define[ \t]+{first[1]}\b", lines[written[1]]):
         return ()
     depth = 0
-    for at in written:
-        match = _CONDITION.match(lines[at])
+    for index in written:
+        match = _CONDITION.match(lines[index])
         depth += {"if": 1, "endif": -1}.get(match[1], 0) if match else 0
-        if (not depth and at != written[-1]) or (match and match[1] in ("else", "elif") and depth == 1):
+        if (not depth and index != written[-1]) or (match and match[1] in ("else", "elif") and depth == 1):
             return ()
     return () if depth else (written[0], written[-1])
 
@@ -254,13 +254,13 @@ class Source:
         if is_once:
             yield from (Line(f"#{word} {mark}", path, 1) for word in ("ifndef", "define"))
         self._open.append(own)
-        for at, line in enumerate(text.lines):
-            if at in text.includes:
-                yield from self._included(path, at + 1, text.includes[at], at in text.imports)
+        for index, line in enumerate(text.lines):
+            if index in text.includes:
+                yield from self._included(path, index + 1, text.includes[index], index in text.imports)
                 continue
-            if at not in text.guard:
+            if index not in text.guard:
                 self._branches.follow(line)
-            yield Line("" if is_once and _ONCE.fullmatch(line) else line.rstrip(), path, at + 1)
+            yield Line("" if is_once and _ONCE.fullmatch(line) else line.rstrip(), path, index + 1)
         self._open.pop()
         if is_once:
             yield Line("#endif", path, len(text.lines))
@@ -285,7 +285,7 @@ class Source:
 
     def _included(self, path: Path, number: int, name: str, is_module: bool) -> Iterator[Line]:
         there = [target for target in self._targets(path, name) if is_file(Path(), str(target))]
-        target = next((one for one in there if self.may_read(_resolved(one))), None)
+        target = next((candidate for candidate in there if self.may_read(_resolved(candidate))), None)
         if target is None:
             where = f"lies outside the folder of {self._main.name}" if there else f"is not next to {path.name}"
             yield Line("#error not read", path, number, f"{name} {where}; name its folder by {_option_for(name)}")
@@ -315,16 +315,16 @@ class Source:
         if not (is_module or self._text_of(own, target).guard):
             return False
         now, before = self._branches.now, self._read_in.setdefault(own, [])
-        if any(now[: len(one)] == one for one in before):
+        if any(now[: len(earlier)] == earlier for earlier in before):
             return True
         before.append(now)
         return False
 
     def with_text(self, text: str) -> Source:
         """The same with another text of as many lines, which stand where they stood."""
-        made = copy(self)
-        made.text = text
-        return made
+        clone = copy(self)
+        clone.text = text
+        return clone
 
     @property
     def own_text(self) -> str:
@@ -385,5 +385,5 @@ class Source:
 
     def _column(self, number: int, token: str) -> int:
         """Where a word stands in a line, counted from 1; 0 where it does not, or not once."""
-        found = list(re.finditer(rf"(?<!\w){re.escape(token)}(?!\w)", self._line(number).text)) if token else []
-        return found[0].start() + 1 if len(found) == 1 else 0
+        matches = list(re.finditer(rf"(?<!\w){re.escape(token)}(?!\w)", self._line(number).text)) if token else []
+        return matches[0].start() + 1 if len(matches) == 1 else 0

@@ -93,13 +93,13 @@ def translated(file: UserFile, by: str = "", kind: Kind = kinds.NORMAL) -> Trans
     source = Source(file)
     read = [str(path) for path in source.files.values()]
     key = kept.key_of("translated", source.text, file.word, *read, by, kind.name, *_tool_stamps(file, by), own())
-    found = _translated_or_none(kept.read(key))
-    if found is None:
-        found = _translated_or_none(made := _by_child(file, by, kind))
-        if found is None:
+    encoder = _translated_or_none(kept.read(key))
+    if encoder is None:
+        encoder = _translated_or_none(answer := _by_child(file, by, kind))
+        if encoder is None:
             raise UsageError(f"{source.path}: its translation ended without a result")
-        kept.write(key, made)
-    return found
+        kept.write(key, answer)
+    return encoder
 
 
 def _tool_stamps(file: UserFile, by: str) -> list[str]:
@@ -125,12 +125,12 @@ def sources_of_this() -> list[Path]:
 def _translated_or_none(value: Any) -> Translated | None:
     """What was kept or said; None where it is anything else: a file could have misled the process that says it."""
     try:
-        found = Translated(**(value or {}))
+        encoder = Translated(**(value or {}))
     except TypeError:
         return None
-    is_sound = all(isinstance(getattr(found, name), kind) for name, kind in _KINDS.items())
-    is_sound = is_sound and len(found.texts) == len(TEXTS) and all(isinstance(text, str) for text in found.texts)
-    return found if is_sound and re.fullmatch(r"\w+", found.prefix) else None
+    is_sound = all(isinstance(getattr(encoder, name), kind) for name, kind in _KINDS.items())
+    is_sound = is_sound and len(encoder.texts) == len(TEXTS) and all(isinstance(text, str) for text in encoder.texts)
+    return encoder if is_sound and re.fullmatch(r"\w+", encoder.prefix) else None
 
 
 _KINDS = dict.fromkeys(("name", "prefix", "packed", "text", "read_by", "named"), str)
@@ -140,19 +140,19 @@ _KINDS |= {"components": int, "notes": list, "texts": list, "functions": list, "
 def _by_child(file: UserFile, by: str, kind: Kind) -> dict[str, Any]:
     """The answer of the child process that translates a file: its fields, as JSON has them."""
     done = _ended_child(file, by, kind)
-    found = _answer(done)
-    if found is None and done.returncode in CRASHES:
-        found = _answer_without_killer(file, by, kind)
-    if found is None:
+    answer = _answer(done)
+    if answer is None and done.returncode in CRASHES:
+        answer = _answer_without_killer(file, by, kind)
+    if answer is None:
         raise UsageError(f"{file.path}: its translation {children.how_it_ended(done)}")
-    if "missing" in found:
-        raise MissingError(_one_line(found["missing"]))
-    one = _translated_or_none(found.get("alone"))
-    if isinstance(pairs := found.get("pairs"), list):
-        raise SeveralEncodersError(_one_line(found.get("error")), [*map(_one_line, pairs)], one)
-    if "error" in found:
-        raise AloneError(_one_line(found["error"]), one) if one else UsageError(_one_line(found["error"]))
-    return found
+    if "missing" in answer:
+        raise MissingError(_one_line(answer["missing"]))
+    single = _translated_or_none(answer.get("alone"))
+    if isinstance(pairs := answer.get("pairs"), list):
+        raise SeveralEncodersError(_one_line(answer.get("error")), [*map(_one_line, pairs)], single)
+    if "error" in answer:
+        raise AloneError(_one_line(answer["error"]), single) if single else UsageError(_one_line(answer["error"]))
+    return answer
 
 
 def _ended_child(file: UserFile, by: str, kind: Kind, part: Part = (0, 0)) -> subprocess.CompletedProcess[str]:
@@ -167,10 +167,10 @@ def _ended_child(file: UserFile, by: str, kind: Kind, part: Part = (0, 0)) -> su
 def _answer(done: subprocess.CompletedProcess[str]) -> dict[str, Any] | None:
     """What a child printed; None where it died before."""
     try:
-        found = json.loads(done.stdout)
+        answer = json.loads(done.stdout)
     except (ValueError, RecursionError):
         return None
-    return found if isinstance(found, dict) else {}
+    return answer if isinstance(answer, dict) else {}
 
 
 def _answer_without_killer(file: UserFile, by: str, kind: Kind) -> dict[str, Any] | None:
@@ -180,15 +180,15 @@ def _answer_without_killer(file: UserFile, by: str, kind: Kind) -> dict[str, Any
     while True:
         halves = [(2 * number, 2 * count), (2 * number + 1, 2 * count)]
         answers = ((half, _answer(_ended_child(file, by, kind, half))) for half in halves)
-        (number, count), found = next(((half, found) for half, found in answers if found is not None), ((0, 0), None))
-        left_out = found.get("left_out") if found else None
-        if not found or not isinstance(left_out, list) or not left_out:
+        (number, count), answer = next(((half, reply) for half, reply in answers if reply is not None), ((0, 0), None))
+        left_out = answer.get("left_out") if answer else None
+        if not answer or not isinstance(left_out, list) or not left_out:
             return None
         if len(left_out) == 1:
-            said = f"{_one_line(left_out[0])} kills the compiler"
-            more = {"error": f"{said}; without it: {found['error']}"} if "error" in found else {}
-            notes = {"notes": [f"{said} and is left out", *found["notes"]]} if "notes" in found else {}
-            return {name: value for name, value in found.items() if name not in ("left_out", "alone")} | more | notes
+            reason = f"{_one_line(left_out[0])} kills the compiler"
+            more = {"error": f"{reason}; without it: {answer['error']}"} if "error" in answer else {}
+            notes = {"notes": [f"{reason} and is left out", *answer["notes"]]} if "notes" in answer else {}
+            return {name: value for name, value in answer.items() if name not in ("left_out", "alone")} | more | notes
 
 
 def _one_line(said: Any) -> str:

@@ -35,7 +35,9 @@ def read(source: Source, folder: Path) -> Read:  # noqa: ARG001 (no tool works t
     if len(source.mains) > 1:
         raise TranslationError(f"{source.path}: WGSL in two files is not read; join them")
     source = source.with_text(_IMPORT.sub(lambda match: blank(match[0]), source.text))
-    return Read(source, [_function(one) for one in _checked(source, lambda: read_wgsl(source.text)).functions])
+    return Read(
+        source, [_function(function) for function in _checked(source, lambda: read_wgsl(source.text)).functions]
+    )
 
 
 def _function(defined: tree.Function) -> Function:
@@ -47,8 +49,8 @@ def with_places(source: Source, functions: Sequence[Function]) -> list[Function]
     """Functions of a source with the numbers and vectors that they are given and give. Raises TranslationError."""
     program = _checked(source, lambda: read_wgsl(source.text))
     structs = {struct.name: struct.kinds for struct in program.structs}
-    defined = {tree.plain_name(one): one for one in program.functions}
-    return [_with_places(one, defined[one.name], structs) for one in functions]
+    defined = {tree.plain_name(function): function for function in program.functions}
+    return [_with_places(function, defined[function.name], structs) for function in functions]
 
 
 def _with_places(function: Function, defined: tree.Function, structs: _Structs) -> Function:
@@ -75,12 +77,14 @@ def _free(place: Place) -> str:
 def adapter(function: Function, name: str, given: Mapping[str, str], made: Sequence[Place | None]) -> str:
     """As `wiring.adapter`, in WGSL."""
     words = {"n": "normalbench_n", "view": "normalbench_more", "vec4": "vec4f"}
-    of_structs = [one for one in function.parameters if any("." in place.path for place in one.places)]
-    lines = [f"var wired_{one.name}: {one.kind};" for one in of_structs]
-    lines += [f"wired_{place.path} = {_free(place)};" for one in of_structs for place in one.places]
+    of_structs = [
+        parameter for parameter in function.parameters if any("." in place.path for place in parameter.places)
+    ]
+    lines = [f"var wired_{parameter.name}: {parameter.kind};" for parameter in of_structs]
+    lines += [f"wired_{place.path} = {_free(place)};" for parameter in of_structs for place in parameter.places]
     lines += [f"wired_{path} = {with_words(value, words)};" for path, value in given.items() if "." in path]
     values = {path: with_words(value, words) for path, value in given.items()}
-    arguments = [values.get(one.name, f"wired_{one.name}") for one in function.parameters]
+    arguments = [values.get(parameter.name, f"wired_{parameter.name}") for parameter in function.parameters]
     lines.append(f"let {RESULT} = {function.name}({', '.join(arguments)});")
     parts = ["0.0" if place is None else f"{RESULT}.{place.path}".rstrip(".") for place in made]
     parts += ["0.0"] * (4 - sum(place.size if place else 1 for place in made))
@@ -97,8 +101,8 @@ def shader(source: Source, function: Function, folder: Path) -> str:  # noqa: AR
     given = ["wgsl_given_0", "wgsl_view_0"][: len(entry.parameters)]
     view = "layout(location = 1) in vec3 wgsl_view_0;" if len(given) > 1 else ""
     words = {"VIEW": view, "RESULT": f"vec{function.result}", "GIVEN": f"vec{function.given[0]}"}
-    made = template("entry.frag", FUNCTION=entry.name, ARGUMENTS=", ".join(given), **words)
-    return _checked(source, lambda: GlslWriter("wgsl", {}).program(program)) + made
+    entry_text = template("entry.frag", FUNCTION=entry.name, ARGUMENTS=", ".join(given), **words)
+    return _checked(source, lambda: GlslWriter("wgsl", {}).program(program)) + entry_text
 
 
 def _checked(source: Source, made):

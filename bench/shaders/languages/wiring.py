@@ -60,8 +60,8 @@ class Wiring:
 
     def __str__(self) -> str:
         bound = f"({'; '.join(f'{place}={value}' for place, value in self.bound)})" if self.bound else ""
-        made = "".join(self.made) if len(self.made) == 1 else f"({'; '.join(self.made)})"
-        return f"{self.function}{bound}{f'->{made}' if self.made else ''}"
+        output = "".join(self.made) if len(self.made) == 1 else f"({'; '.join(self.made)})"
+        return f"{self.function}{bound}{f'->{output}' if self.made else ''}"
 
     @property
     def is_plain(self) -> bool:
@@ -72,18 +72,18 @@ class Wiring:
 def wiring_of(text: str) -> Wiring:
     """The wiring that a text says. Raises NoPairError."""
     match = TEXT.fullmatch(text)
-    parts = [one.partition("=") for one in re.split(r"[;,]", match["bound"] or "") if one.strip()] if match else []
+    parts = [part.partition("=") for part in re.split(r"[;,]", match["bound"] or "") if part.strip()] if match else []
     if not match or not all(
         _PLACE.fullmatch(place.strip()) and _VALUE.fullmatch(value.strip()) for place, _, value in parts
     ):
         raise NoPairError(f"{text} is not written as Pack(s.normal=n; s.roughness=0.5)->o1.xyz")
-    made = re.split(r"[;,]", (match["made"] or "").strip("()"))
-    if wrong := [one.strip() for one in made if one.strip() and not _PLACE.fullmatch(one.strip())]:
+    outputs = re.split(r"[;,]", (match["made"] or "").strip("()"))
+    if wrong := [place.strip() for place in outputs if place.strip() and not _PLACE.fullmatch(place.strip())]:
         raise NoPairError(f"{text}: {wrong[0]!r} is no place of what a function gives")
     return Wiring(
         match["name"],
         tuple((place.strip(), value.strip()) for place, _, value in parts),
-        tuple(one.strip() for one in made if one.strip()),
+        tuple(place.strip() for place in outputs if place.strip()),
     )
 
 
@@ -93,13 +93,13 @@ def wired(pair: Sequence[Wiring], found: Sequence[Function]) -> tuple[str, Pair]
     Raises:
         NoPairError: what is wired is not there, or is no normal and no code.
     """
-    encode, decode = (_function_of(one, found) for one in pair)
+    encode, decode = (_function_of(side, found) for side in pair)
     for wiring, not_given, given in zip(pair, (CODE, N), (N, CODE), strict=True):
         if any(value.partition(".")[0] == not_given for _, value in wiring.bound):
             raise NoPairError(f"{wiring}: it is given {given}, not {not_given}")
     size, kind = _made(encode, pair[0])
-    made, kind_back = _made(decode, pair[1])
-    if made != NORMAL or kind_back != "float":
+    size_back, kind_back = _made(decode, pair[1])
+    if size_back != NORMAL or kind_back != "float":
         raise NoPairError(f"{pair[1]} gives no normal; say where it is, as in {pair[1].function}(...)->n")
     if not (size in (2, 3) and kind == "float") and not (size == 1 and kind in PACKED):
         raise NoPairError(f"{pair[0]} gives a code of {size} numbers; say which two or three, as in ->o1.xy")
@@ -108,7 +108,7 @@ def wired(pair: Sequence[Wiring], found: Sequence[Function]) -> tuple[str, Pair]
     sizes = ((size if size > 1 else 0), NORMAL), (NORMAL, size if size > 1 else 0)
     (made_e, given_e), (made_d, given_d) = sizes
     takes = code if size == 1 else ""
-    views = [(NORMAL,) if _uses_view(one) else () for one in pair]
+    views = [(NORMAL,) if _uses_view(side) else () for side in pair]
     return text, Pair(
         Function(_name(encode), made_e, (given_e, *views[0]), code),
         Function(_name(decode), made_d, (given_d, *views[1]), "float3", takes),
@@ -116,16 +116,16 @@ def wired(pair: Sequence[Wiring], found: Sequence[Function]) -> tuple[str, Pair]
 
 
 def _function_of(wiring: Wiring, found: Sequence[Function]) -> Function:
-    several = [one for one in found if one.name == wiring.function]
+    several = [function for function in found if function.name == wiring.function]
     if not several:
-        known = ", ".join(dict.fromkeys(one.name for one in found)) or "none"
+        known = ", ".join(dict.fromkeys(function.name for function in found)) or "none"
         raise NoPairError(f"no function is named {wiring.function}; there are: {known}")
     places = {place for place, _ in wiring.bound}
-    return next((one for one in several if places <= set(_all_paths(one))), several[0])
+    return next((function for function in several if places <= set(_all_paths(function))), several[0])
 
 
 def _all_paths(function: Function) -> Iterator[str]:
-    for place in (place for one in function.parameters for place in one.places):
+    for place in (place for parameter in function.parameters for place in parameter.places):
         yield place.path
         yield from (f"{place.path}.{swizzle}" for swizzle in _swizzles(place.size))
 
@@ -136,8 +136,8 @@ def _swizzles(size: int) -> Iterator[str]:
 
 def outputs_of(function: Function) -> list[Place]:
     """What a function gives: its result, and its parameters."""
-    made = [place for one in function.parameters if one.is_made for place in one.places]
-    return [*function.results, *made]
+    outputs = [place for parameter in function.parameters if parameter.is_made for place in parameter.places]
+    return [*function.results, *outputs]
 
 
 def _output(function: Function, path: str) -> Place:
@@ -178,7 +178,7 @@ def _caller(function: Function, wiring: Wiring, given: str, called: str, made: s
     known = set(_all_paths(function))
     if unknown := next((place for place, _ in wiring.bound if place not in known), ""):
         raise NoPairError(
-            f"{function.name} is not given {unknown}; it is given {', '.join(one.path for one in inputs_of(function))}"
+            f"{function.name} is not given {unknown}; it is given {', '.join(p.path for p in inputs_of(function))}"
         )
     bound = {path: _value(function, path, value) for path, value in wiring.bound}
     view = f", float3 {_local(VIEW)}_given" if _uses_view(wiring) else ""
@@ -195,12 +195,15 @@ def _body(function: Function, head: str, bound: Mapping[str, str], made: str) ->
     """
     asked = {place.partition(".")[0] for place in bound}
     parameters = list(itertools.takewhile(lambda one: not one.has_default or one.name in asked, function.parameters))
-    lines = [f"{one.kind} {_local(one.name)} = ({one.kind})0;" for one in parameters]
+    lines = [f"{parameter.kind} {_local(parameter.name)} = ({parameter.kind})0;" for parameter in parameters]
     lines += [
-        f"{_local(place.path)} = {FREE[place.kind]};" for one in parameters if one.is_given for place in one.places
+        f"{_local(place.path)} = {FREE[place.kind]};"
+        for parameter in parameters
+        if parameter.is_given
+        for place in parameter.places
     ]
     lines += [f"{_local(place)} = {value};" for place, value in bound.items()]
-    call = f"{function.name}({', '.join(_local(one.name) for one in parameters)})"
+    call = f"{function.name}({', '.join(_local(parameter.name) for parameter in parameters)})"
     lines.append(f"{function.kind} {RESULT} = {call};" if function.results else f"{call};")
     body = "\n    ".join([*lines, f"return {made};"])
     return f"{head} {{\n    {body}\n}}\n"
@@ -246,7 +249,7 @@ def _local(path: str) -> str:
 
 
 def inputs_of(function: Function) -> list[Place]:
-    return [place for one in function.parameters if one.is_given for place in one.places]
+    return [place for parameter in function.parameters if parameter.is_given for place in parameter.places]
 
 
 def _value(function: Function, path: str, value: str) -> str:
@@ -255,7 +258,9 @@ def _value(function: Function, path: str, value: str) -> str:
     if name not in (N, CODE, VIEW):
         return value
     given = f"{_local(name)}_given{f'.{letters}' if letters else ''}"
-    kind = next((place.kind for one in function.parameters for place in one.places if place.path == path), "float")
+    kind = next(
+        (place.kind for parameter in function.parameters for place in parameter.places if place.path == path), "float"
+    )
     # A whole number may come back from a storage a little less.
     return f"({kind})({given} + 0.5)" if kind in ("uint", "int") and letters else given
 
@@ -266,13 +271,13 @@ _Ways = Iterator[tuple[tuple[str, ...], tuple[tuple[str, str], ...]]]
 
 def candidates(found: Sequence[Function]) -> list[tuple[Wiring, Wiring]]:
     """The ways in which functions whose names say so may be an encoder and its decoder, the likeliest first."""
-    encoders = [one for one in found if role(one.name) == "encode" and one.parameters]
-    decoders = [one for one in found if role(one.name) == "decode" and one.parameters]
-    alike = [(one, other) for one in encoders for other in decoders if stem(one.name) == stem(other.name)]
+    encoders = [function for function in found if role(function.name) == "encode" and function.parameters]
+    decoders = [function for function in found if role(function.name) == "decode" and function.parameters]
+    alike = [(encoder, other) for encoder in encoders for other in decoders if stem(encoder.name) == stem(other.name)]
     both = _of_normals(alike)
     if not both and not too_many(encoders, decoders):
-        both = _of_normals([(one, other) for one in encoders for other in decoders])
-    return [wirings for one, other in both for wirings in sorted(_wirings(one, other), key=_is_of_other_names)]
+        both = _of_normals([(encoder, other) for encoder in encoders for other in decoders])
+    return [wirings for encoder, other in both for wirings in sorted(_wirings(encoder, other), key=_is_of_other_names)]
 
 
 def _of_normals(pairs: Sequence[tuple[Function, Function]]) -> list[tuple[Function, Function]]:
@@ -283,9 +288,9 @@ def _of_normals(pairs: Sequence[tuple[Function, Function]]) -> list[tuple[Functi
 def _is_of_other_names(wirings: tuple[Wiring, Wiring]) -> bool:
     """Whether a code comes from a place of one name and goes to one of another: GBuffer2 is meant for gbuffer2."""
     encode, decode = wirings
-    made = {place.partition(".")[0].lower() for place in encode.made}
+    outputs = {place.partition(".")[0].lower() for place in encode.made}
     given = {place.partition(".")[0].lower() for place, value in decode.bound if value.partition(".")[0] == CODE}
-    return made != given
+    return outputs != given
 
 
 def _wirings(encode: Function, decode: Function) -> Iterator[tuple[Wiring, Wiring]]:
@@ -294,10 +299,10 @@ def _wirings(encode: Function, decode: Function) -> Iterator[tuple[Wiring, Wirin
         return
     made_back = _named(decode, back.path if back.size == NORMAL else f"{back.path}.xyz".strip("."), NORMAL)
     bound = ((normal.path, N), *_free(encode, [normal.path]))
-    for made, given in _codes(encode, decode, normal):
+    for outputs, given in _codes(encode, decode, normal):
         rest = _free(decode, [place for place, _ in given])
         yield (
-            Wiring(encode.name, bound, made),
+            Wiring(encode.name, bound, outputs),
             Wiring(decode.name, (*given, *rest), made_back),
         )
 
@@ -309,8 +314,8 @@ def _named(function: Function, path: str, size: int) -> tuple[str, ...]:
 
 def _free(function: Function, taken: Sequence[str]) -> Iterator[tuple[str, str]]:
     """What else a function is given: the position by its name, and values in the middle."""
-    for one in function.parameters:
-        for place in one.places if one.is_given and not one.has_default else ():
+    for parameter in function.parameters:
+        for place in parameter.places if parameter.is_given and not parameter.has_default else ():
             is_view = place.size == NORMAL and any(word in place.path.lower() for word in OF_VIEW)
             if not any(path == place.path or path.startswith(f"{place.path}.") for path in taken):
                 yield place.path, VIEW if is_view else FREE[place.kind]
@@ -357,7 +362,7 @@ def _parts(outputs: Sequence[Place]) -> Iterator[list[Place]]:
 def _given(parts: Sequence[Place], encode: Function, decode: Function) -> _Ways:
     """A code of some parts, if the decoder takes it in the same order."""
     inputs, size = inputs_of(decode), sum(part.size for part in parts)
-    made = tuple(path for part in parts for path in _named(encode, part.path, part.size))
+    outputs = tuple(path for part in parts for path in _named(encode, part.path, part.size))
     if size > NORMAL:
         return
     if len(parts) == 1:
@@ -366,7 +371,7 @@ def _given(parts: Sequence[Place], encode: Function, decode: Function) -> _Ways:
         for place in inputs:
             # Four numbers may hold something else as well; three are a code or a normal.
             if place.size == size or (place.size > NORMAL and size > 1):
-                yield made, ((place.path if place.size == size else f"{place.path}.{letters}", CODE),)
+                yield outputs, ((place.path if place.size == size else f"{place.path}.{letters}", CODE),)
     elif len(inputs) == len(parts):
         ends = [0, *itertools.accumulate(part.size for part in parts)]
         letters = ["xyz"[start:end] for start, end in itertools.pairwise(ends)]
@@ -374,4 +379,4 @@ def _given(parts: Sequence[Place], encode: Function, decode: Function) -> _Ways:
             place.path if place.size == part.size else f"{place.path}.{'xyz'[: part.size]}"
             for place, part in zip(inputs, parts, strict=True)
         ]
-        yield made, tuple((path, f"{CODE}.{some}") for path, some in zip(paths, letters, strict=True))
+        yield outputs, tuple((path, f"{CODE}.{some}") for path, some in zip(paths, letters, strict=True))

@@ -68,22 +68,22 @@ def counted(loop: For) -> dict[str, Range]:
 def range_of(mark: str, left: Range | None, right: Range | None) -> Range | None:
     """What an operation of two ranges gives; None where that is not known or does not fit."""
     if mark == "&":
-        known = [most for one in (left, right) if one and one[0] >= 0 for most in one[1:]]
+        known = [most for operand in (left, right) if operand and operand[0] >= 0 for most in operand[1:]]
         return (0, min(known)) if known else None
     if not left or not right:
         return None
     match mark:
         case "+":
-            made = left[0] + right[0], left[1] + right[1]
+            bounds = left[0] + right[0], left[1] + right[1]
         case "-":
-            made = left[0] - right[1], left[1] - right[0]
+            bounds = left[0] - right[1], left[1] - right[0]
         case "*":
             corners = [a * b for a in left for b in right]
-            made = min(corners), max(corners)
+            bounds = min(corners), max(corners)
         case "<<" if left[0] >= 0 and right[0] >= 0 and right[1] < 32:
-            made = left[0] << right[0], left[1] << right[1]
+            bounds = left[0] << right[0], left[1] << right[1]
         case ">>" if left[0] >= 0 and right[0] >= 0:
-            made = left[0] >> right[1], left[1] >> right[0]
+            bounds = left[0] >> right[1], left[1] >> right[0]
         case _:
             return None
-    return made if INT[0] <= made[0] and made[1] <= INT[1] else None
+    return bounds if INT[0] <= bounds[0] and bounds[1] <= INT[1] else None

@@ -226,8 +226,8 @@ class CWriter(Writer):
             case Assign(target, mark, value):
                 if mark != "=" and self._is_plain(target, mark, value):
                     return super()._simple_text(statement)
-                made = value if mark == "=" else Binary(target.kind, mark[:-1], target, value)
-                return f"{self._place(target)} = {self._whole(made)}"
+                new_value = value if mark == "=" else Binary(target.kind, mark[:-1], target, value)
+                return f"{self._place(target)} = {self._whole(new_value)}"
             case Return(value) if value is not None:
                 return f"return {self._whole(value)}"
         return super()._simple_text(statement)
@@ -242,7 +242,7 @@ class CWriter(Writer):
         """A value as C has it: a scalar, or a structure."""
         assert value
         if isinstance(value, Elements):
-            values = [self._whole(one, is_initial=True) for one in value.values]
+            values = [self._whole(element, is_initial=True) for element in value.values]
             return f"{{{self._rows_text(values)}}}"
         if value.kind in SCALARS:
             return self._text(value)
@@ -330,7 +330,7 @@ class CWriter(Writer):
         raise TranslationError(f"a {type(value).__name__} of {value.kind} cannot be written in C")
 
     def _indexed_parts(self, value: Index) -> list[ScalarText]:
-        inner, at = value.value, value.at
+        inner, index = value.value, value.at
         base = inner
         while isinstance(base, Index | Swizzle | Member):
             base = base.value
@@ -340,11 +340,11 @@ class CWriter(Writer):
         if inner.kind.endswith("]"):
             raise TranslationError("an element of an array without a name cannot be written in C")
         parts, size = self._parts(inner), size_of(value.kind)
-        if isinstance(at, Literal):
-            return parts[int(at.text, 0) * size :][:size]
+        if isinstance(index, Literal):
+            return parts[int(index.text, 0) * size :][:size]
         whole = self._temporary(self._kind(inner.kind), self._whole(inner))
         count = len(parts) // size
-        return self._member_parts(f"(&{whole}.x)[{self._within(at, count)}]", value.kind)
+        return self._member_parts(f"(&{whole}.x)[{self._within(index, count)}]", value.kind)
 
     def _count_of(self, kind: str) -> int:
         """How many scalars a value has."""
@@ -456,11 +456,12 @@ class CWriter(Writer):
         if "mat" not in left.kind:
             n, columns = self._named_parts(left), self._parts(right)
             return [
-                _sum_of_products(list(zip(n, columns[at : at + size], strict=True))) for at in range(0, size**2, size)
+                _sum_of_products(list(zip(n, columns[start : start + size], strict=True)))
+                for start in range(0, size**2, size)
             ]
         columns, others = self._named_parts(left), self._named_parts(right)
         return [
-            _sum_of_products([(columns[size * at + row], others[first + at]) for at in range(size)])
+            _sum_of_products([(columns[size * column + row], others[first + column]) for column in range(size)])
             for first in range(0, len(others), size)
             for row in range(size)
         ]
@@ -472,7 +473,9 @@ class CWriter(Writer):
     def _choice_parts(self, value: Choice) -> list[ScalarText]:
         count = self._count_of(value.kind)
         if size_of(value.condition.kind) > 1:
-            parts = zip(*(self._parts(one) for one in (value.condition, value.chosen, value.other)), strict=True)
+            parts = zip(
+                *(self._parts(operand) for operand in (value.condition, value.chosen, value.other)), strict=True
+            )
             return [_choice_part(*three) for three in parts]
         condition = self._text(value.condition, CHOICE + 1), UNARY
         inner = self._indent + INDENT
@@ -514,7 +517,7 @@ class CWriter(Writer):
             inner = [f"vec{kind[3]}"] * int(kind[3])
         elif kind in self._structs:
             inner = list(self._structs[kind].kinds.values())
-        return f"{{{', '.join(self._braced_text(one, texts) for one in inner)}}}"
+        return f"{{{', '.join(self._braced_text(inner_kind, texts) for inner_kind in inner)}}}"
 
     def _call_parts(self, value: Call) -> list[ScalarText]:
         if value.is_own:
@@ -615,7 +618,7 @@ class CWriter(Writer):
         first = self._temporary("int32_t", f"{texels.channels} * ({place})" if texels.channels > 1 else place)
         numbers = (f"{name}[{first}{f' + {channel}' if channel else ''}]" for channel in range(texels.channels))
         # Numbers in 8 bits are multiples of 1/255.
-        parts = [(f"{one} / 255.0f", BINDING["/"]) if texels.is_bytes else (one, PRIMARY) for one in numbers]
+        parts = [(f"{number} / 255.0f", BINDING["/"]) if texels.is_bytes else (number, PRIMARY) for number in numbers]
         return parts + [("0.0f", PRIMARY)] * (4 - texels.channels)
 
     def _constructed_parts(self, value: Construct) -> list[ScalarText]:

@@ -63,7 +63,7 @@ def given_back(program: Program) -> Program:
         function.body = list(_Calls(changing, names).statements(function.body))
         if function.name in changing:
             _give_back(function, changing[function.name])
-    return replace(program, structs=[*program.structs, *(one.made for one in changing.values())])
+    return replace(program, structs=[*program.structs, *(change.made for change in changing.values())])
 
 
 def _changing(function: Function) -> _Changing:
@@ -75,9 +75,9 @@ def _changing(function: Function) -> _Changing:
 def _unused(name: str, taken: set[str]) -> str:
     """A name that is not taken, which then is."""
     ways = (name, *(f"{name}_{number}" for number in range(2, len(taken) + 3)))
-    found = next(one for one in ways if one not in taken)
-    taken.add(found)
-    return found
+    free_name = next(way for way in ways if way not in taken)
+    taken.add(free_name)
+    return free_name
 
 
 def _give_back(function: Function, changing: _Changing) -> None:
@@ -154,17 +154,17 @@ class _Calls:
 
     def _called(self, statement: Statement, call: Call) -> Iterator[Statement]:
         changing = self.changing[call.name]
-        made = Name(changing.made.name, _unused("made", self.names))
+        output = Name(changing.made.name, _unused("made", self.names))
         pairs = list(zip(changing.parameters, call.arguments, strict=True))
-        call.arguments, call.kind = [deepcopy(value) for p, value in pairs if _is_taken(p)], made.kind
-        yield Declare(made.kind, made.name, call, above=statement.above)
+        call.arguments, call.kind = [deepcopy(value) for p, value in pairs if _is_taken(p)], output.kind
+        yield Declare(output.kind, output.name, call, above=statement.above)
         fields = list(changing.made.kinds.items())
         if isinstance(statement, Declare | Assign):
             kind = fields[0][1]
-            yield replace(statement, value=Member(kind, made, fields[0][0]), above=[])
+            yield replace(statement, value=Member(kind, output, fields[0][0]), above=[])
         for (name, kind), (_, place) in zip(
             fields[changing.has_result :], [pair for pair in pairs if pair[0].is_changed], strict=True
         ):
-            yield Assign(place, "=", Member(kind, made, name))
+            yield Assign(place, "=", Member(kind, output, name))
         if isinstance(statement, Return):
-            yield replace(statement, value=Member(fields[0][1], made, fields[0][0]), above=[])
+            yield replace(statement, value=Member(fields[0][1], output, fields[0][0]), above=[])

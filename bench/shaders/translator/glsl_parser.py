@@ -152,7 +152,7 @@ class GlslParser(Parser):
         self._made.functions.append(function)
 
     def _parameters(self) -> list[Parameter]:
-        found: list[Parameter] = []
+        parameters: list[Parameter] = []
         while not self._skip(")"):
             words = []
             while self._next_token.text in ("const", "in", "inout", "out"):
@@ -161,10 +161,10 @@ class GlslParser(Parser):
             name = "" if self._next_token.text in (",", ")") else self._word_token().text
             is_changed = bool({"inout", "out"} & set(words))
             kind = kind if "[" in kind else self._sized(kind)
-            found.append(Parameter(kind, name or f"unused{len(found)}", is_changed, "out" not in words))
+            parameters.append(Parameter(kind, name or f"unused{len(parameters)}", is_changed, "out" not in words))
             if self._next_token.text != ")":
                 self._take(",")
-        return found
+        return parameters
 
     def _sized(self, kind: str) -> str:
         """A type, or an array of it where a length follows in brackets."""
@@ -189,9 +189,9 @@ class GlslParser(Parser):
         if self._next_token.text == "{":
             return self._block()
         self._scopes.append({})
-        found = self._deeper(self._statement)
+        statements = self._deeper(self._statement)
         self._scopes.pop()
-        return found
+        return statements
 
     def _statement(self) -> list[Statement]:
         first = self._next_token
@@ -200,14 +200,14 @@ class GlslParser(Parser):
         if first.text == "{":
             return [Block(self._block())]
         if (self._is_type(first.text) and self._text_ahead(1) != "(") or first.text in ("const", *PRECISIONS):
-            made = self._declaration()
+            statements = self._declaration()
         else:
-            made = [self._simple_statement(first)]
-        if made:
-            made[0].above = [*first.above, *made[0].above]
-            if not isinstance(made[-1], If | For | While | Block):
-                made[-1].behind = self._tokens[self._at - 1].behind
-        return made
+            statements = [self._simple_statement(first)]
+        if statements:
+            statements[0].above = [*first.above, *statements[0].above]
+            if not isinstance(statements[-1], If | For | While | Block):
+                statements[-1].behind = self._tokens[self._at - 1].behind
+        return statements
 
     def _simple_statement(self, first: Token) -> Statement:
         if self._skip("if"):
@@ -280,14 +280,14 @@ class GlslParser(Parser):
         kind, is_open = self._kind(), self._next_token.text == "[" and self._text_ahead(1) == "]"
         self._at += 2 * is_open
         kind = self._sized(kind)
-        found = [d for d in [self._declarator(kind, is_constant, is_open)] if d]
+        declarations = [d for d in [self._declarator(kind, is_constant, is_open)] if d]
         while self._skip(","):
-            found += [d for d in [self._declarator(kind, is_constant, is_open)] if d]
+            declarations += [d for d in [self._declarator(kind, is_constant, is_open)] if d]
         self._take(";")
-        for declared in found:
+        for declared in declarations:
             if isinstance(declared, Declare):
                 declared.is_precise = is_precise
-        return found
+        return declarations
 
     def _declarator(self, kind: str, is_constant: bool, is_open: bool) -> Statement | None:
         """A name of a declaration; `is_open` where it is an array as long as its value."""
@@ -338,8 +338,8 @@ class GlslParser(Parser):
         kinds = list(struct.kinds.values())
         if len(given) != len(kinds):
             raise self._error(f"{struct.name} has {len(kinds)} fields, not {len(given)}")
-        made = [self._converted(one, scalar_of(kind)) for one, kind in zip(given, kinds, strict=True)]
-        return Construct(struct.name, made)
+        values = [self._converted(argument, scalar_of(kind)) for argument, kind in zip(given, kinds, strict=True)]
+        return Construct(struct.name, values)
 
     def _choice_of(self, condition: Expression, chosen: Expression, other: Expression) -> Expression:
         """A choice; of structures it is one of each field: not every language has that of wholes."""
@@ -347,8 +347,8 @@ class GlslParser(Parser):
             return super()._choice_of(condition, chosen, other)
         pairs = zip(self._field_values(chosen), self._field_values(other), strict=True)
         # Whoever renames what is called meets each call once.
-        made = (self._choice_of(*deepcopy((condition, *pair))) for pair in pairs)
-        return Construct(chosen.kind, list(made))
+        choices = (self._choice_of(*deepcopy((condition, *pair))) for pair in pairs)
+        return Construct(chosen.kind, list(choices))
 
     def _field_values(self, value: Expression) -> list[Expression]:
         """A structure's fields; of a name or of what is made of its fields, as others would be computed for each."""
@@ -374,19 +374,19 @@ class GlslParser(Parser):
         return self._element_of(value, at) if isinstance(value, Elements) else super()._index_expression(value, at)
 
     def _element_of(self, array: Elements, at: Expression) -> Expression:
-        found = array.values[-1]
+        choice = array.values[-1]
         for number, value in reversed([*enumerate(array.values[:-1])]):
-            found = self._choice_of(Binary("bool", "==", at, Literal(at.kind, str(number))), value, found)
-        return found
+            choice = self._choice_of(Binary("bool", "==", at, Literal(at.kind, str(number))), value, choice)
+        return choice
 
     def _operation(self, mark: str, left: Expression, right: Expression) -> Expression:
         """== and != of vectors are one truth value."""
         if left.kind in self._structs or right.kind in self._structs:
             raise self._error(f"{left.kind} {mark} {right.kind}: structures are compared field by field")
-        found = self._combined(mark, left, right)
-        if mark in ("==", "!=") and size_of(found.kind) > 1:
-            return Call("bool", "all" if mark == "==" else "any", [found])
-        return found
+        combined = self._combined(mark, left, right)
+        if mark in ("==", "!=") and size_of(combined.kind) > 1:
+            return Call("bool", "all" if mark == "==" else "any", [combined])
+        return combined
 
     def _member(self, value: Expression, word: Token) -> Expression:
         if value.kind in self._structs and (kind := self._structs[value.kind].kinds.get(word.text)):

@@ -79,10 +79,10 @@ class HlslWriter(Writer):
         self._choices: dict[str, tuple[str, str]] = {}
         self._makers: dict[str, str] = {}
         declared = (node for function in program.functions for node in inside(function.body))
-        constants = [*program.constants, *(one for one in declared if isinstance(one, Declare) and one.is_constant)]
+        constants = [*program.constants, *(node for node in declared if isinstance(node, Declare) and node.is_constant)]
         self._constants = {constant.name for constant in constants}
         text = super()._program(program)
-        return "".join(f"{made}\n\n" for _, made in self._choices.values()) + text
+        return "".join(f"{function}\n\n" for _, function in self._choices.values()) + text
 
     def _statement(self, statement: Statement, indent: str) -> str:
         """A loop over an array of constants is unrolled: its elements are then numbers of the instructions."""
@@ -101,9 +101,9 @@ class HlslWriter(Writer):
         fields = self._fields(struct)
         name = self._makers[struct.name] = self._global_name(f"{struct.name.removeprefix(f'{self._prefix}_')}_of")
         given = ", ".join(f"{self._kind(kind)} {field}" for field, kind in fields.items())
-        made = "made_" if "made" in fields else "made"
-        sets = "".join(f"{INDENT}{made}.{field} = {field};\n" for field in fields)
-        body = f"{INDENT}{struct.name} {made};\n{sets}{INDENT}return {made};\n"
+        local = "made_" if "made" in fields else "made"
+        sets = "".join(f"{INDENT}{local}.{field} = {field};\n" for field in fields)
+        body = f"{INDENT}{struct.name} {local};\n{sets}{INDENT}return {local};\n"
         return f"{super()._struct(struct)}\n\n{struct.name} {name}({given}) {{\n{body}}}"
 
     def _declared_table(self, table: TexelTable, binding: int) -> str:
@@ -157,23 +157,23 @@ class HlslWriter(Writer):
 
     def _component(self, value: Expression, field: str) -> str:
         """A component of a vector; of a comparison, and of numbers, without the whole."""
-        at = FIELDS.index(field)
+        index = FIELDS.index(field)
         match value:
             case Binary(_, mark, left, right) if mark in COMPARES and size_of(left.kind) == size_of(right.kind):
                 return f"({self._component(left, field)} {mark} {self._component(right, field)})"
             case Construct(_, [one]) if size_of(one.kind) == 1:
                 return self._text(one, PRIMARY)
-            case Construct(_, given) if all(size_of(one.kind) == 1 for one in given):
-                return self._text(given[at], PRIMARY)
+            case Construct(_, given) if all(size_of(part.kind) == 1 for part in given):
+                return self._text(given[index], PRIMARY)
         return f"{self._text(value, PRIMARY)}.{field}"
 
     def _choice_of(self, kind: str, condition: str, size: int) -> str:
         """The function that chooses between two values of a kind."""
         if kind not in self._choices:
-            name, made = self._global_name(f"chosen_{self._kind(kind)}"), self._kind(kind)
-            head = f"{made} {name}({self._kind(condition)} condition, {made} chosen, {made} other)"
+            name, kind_name = self._global_name(f"chosen_{self._kind(kind)}"), self._kind(kind)
+            head = f"{kind_name} {name}({self._kind(condition)} condition, {kind_name} chosen, {kind_name} other)"
             parts = (f"condition.{field} ? chosen.{field} : other.{field}" for field in FIELDS[:size])
-            body = f"return {made}({', '.join(parts)});"
+            body = f"return {kind_name}({', '.join(parts)});"
             self._choices[kind] = name, f"{head} {{\n{INDENT}{body}\n}}"
         return self._choices[kind][0]
 

@@ -111,8 +111,8 @@ class MslWriter(Writer):
         """Of truth values, what a comparison or a choice makes of them: compilers differ in what a true one is."""
         from_kind, to_kind = scalar_of(given.kind), scalar_of(value.kind)
         if size > 1 and from_kind == "bool":
-            one, zero = (Construct(value.kind, [Literal(to_kind, text)]) for text in _ends(to_kind))
-            return self._choice_and_level(Choice(value.kind, given, one, zero))[0]
+            ones, zero = (Construct(value.kind, [Literal(to_kind, text)]) for text in _ends(to_kind))
+            return self._choice_and_level(Choice(value.kind, given, ones, zero))[0]
         if size > 1 and to_kind == "bool":
             zero = Construct(given.kind, [Literal(from_kind, _ends(from_kind)[1])])
             return f"({self._binary_and_level(Binary(value.kind, '!=', given, zero))[0]})"
@@ -126,10 +126,10 @@ def _ends(scalar: str) -> tuple[str, str]:
 def tables_read(program: Program) -> dict[str, list[str]]:
     """The tables that each function reads, itself or by those it calls; by name, in order."""
     names = {table.name for table in program.tables}
-    found: dict[str, list[str]] = {}
+    tables: dict[str, list[str]] = {}
     for function in program.functions:
         nodes = list(inside(function.body))
         read = {node.name for node in nodes if isinstance(node, Name)} & names
-        read |= {name for node in nodes if isinstance(node, Call) for name in found.get(node.name, [])}
-        found[function.name] = sorted(read)
-    return found
+        read |= {name for node in nodes if isinstance(node, Call) for name in tables.get(node.name, [])}
+        tables[function.name] = sorted(read)
+    return tables

@@ -96,9 +96,9 @@ class Parser:
     def program(self) -> Program:
         """The tree of the whole text. Raises TranslationError."""
         with one_error_type(self._error):
-            found = self._program()
-        found.functions[:0] = self._made_functions.values()
-        return found
+            program = self._program()
+        program.functions[:0] = self._made_functions.values()
+        return program
 
     def _program(self) -> Program:
         raise NotImplementedError
@@ -110,8 +110,8 @@ class Parser:
         return self._tokens[self._at] if self._at < len(self._tokens) else END
 
     def _text_ahead(self, count: int) -> str:
-        at = self._at + count
-        return self._tokens[at].text if at < len(self._tokens) else ""
+        index = self._at + count
+        return self._tokens[index].text if index < len(self._tokens) else ""
 
     def _take(self, *texts: str) -> Token:
         """The next token, which must be one of these if any are named."""
@@ -174,9 +174,9 @@ class Parser:
     def _unused(self, name: str) -> str:
         """A name like this one that the program does not have."""
         plain = name.rstrip("_")
-        found = next(one for number in count(2) if (one := f"{plain}_{number}") not in self._words)
-        self._words.add(found)
-        return found
+        free_name = next(candidate for number in count(2) if (candidate := f"{plain}_{number}") not in self._words)
+        self._words.add(free_name)
+        return free_name
 
     def _add(self, function: Function) -> None:
         """Make a function known; its name becomes its own among those of that name."""
@@ -253,21 +253,21 @@ class Parser:
 
     def _converted(self, value: Expression, scalar: str) -> Expression:
         """A value with components of another type; a literal becomes a literal of it."""
-        found = scalar_of(value.kind)
-        if found == scalar:
+        current = scalar_of(value.kind)
+        if current == scalar:
             return value
-        if "bool" in (found, scalar):
-            raise self._error(f"a {found} where a {scalar} is expected")
+        if "bool" in (current, scalar):
+            raise self._error(f"a {current} where a {scalar} is expected")
         return self._cast(value, scalar)
 
     def _cast(self, value: Expression, scalar: str) -> Expression:
         """A value with components of another type, as a constructor makes it; a literal becomes a literal of it."""
-        found = scalar_of(value.kind)
-        if found == scalar:
+        current = scalar_of(value.kind)
+        if current == scalar:
             return value
-        if isinstance(value, Literal) and "bool" not in (found, scalar) and found != "float":
+        if isinstance(value, Literal) and "bool" not in (current, scalar) and current != "float":
             return Literal(scalar, f"{int(value.text, 0)}.0" if scalar == "float" else value.text)
-        if isinstance(value, Unary) and value.operator == "-" and isinstance(value.value, Literal) and found == "int":
+        if isinstance(value, Unary) and value.operator == "-" and isinstance(value.value, Literal) and current == "int":
             if scalar == "float":
                 return Unary(scalar, "-", self._cast(value.value, scalar))
             if scalar == "uint":
@@ -291,9 +291,9 @@ class Parser:
             if self._skip("."):
                 value = self._member(value, self._word_token())
             elif self._skip("["):
-                at = self._expression()
+                index = self._expression()
                 self._take("]")
-                value = self._index_expression(value, at)
+                value = self._index_expression(value, index)
             else:
                 return value
 
@@ -338,14 +338,14 @@ class Parser:
 
     def _arguments(self) -> list[Expression]:
         """What stands between parentheses, the first of which is taken."""
-        found: list[Expression] = []
+        arguments: list[Expression] = []
         if self._skip(")"):
-            return found
-        found.append(self._expression())
+            return arguments
+        arguments.append(self._expression())
         while self._skip(","):
-            found.append(self._expression())
+            arguments.append(self._expression())
         self._take(")")
-        return found
+        return arguments
 
     def _called(self, name: str, arguments: list[Expression], place: Place | None = None) -> Expression:
         """A call; `place` is where the name stands."""
@@ -405,15 +405,15 @@ class Parser:
     def _own_call(self, name: str, arguments: list[Expression]) -> Expression:
         kinds = [a.kind for a in arguments]
         same = self._functions[name]
-        found = next((f for f in same if [p.kind for p in f.parameters] == kinds), None)
-        if not found:
+        function = next((f for f in same if [p.kind for p in f.parameters] == kinds), None)
+        if not function:
             sizes = [size_of(kind) for kind in kinds]
-            found = next((f for f in same if [size_of(p.kind) for p in f.parameters] == sizes), None)
-        if not found:
+            function = next((f for f in same if [size_of(p.kind) for p in f.parameters] == sizes), None)
+        if not function:
             raise self._error(f"{name} does not take ({', '.join(kinds)})")
-        pairs = zip(arguments, found.parameters, strict=True)
+        pairs = zip(arguments, function.parameters, strict=True)
         given = [self._converted(a, scalar_of(p.kind)) if a.kind != p.kind else a for a, p in pairs]
-        return Call(found.kind, found.name, given, is_own=True)
+        return Call(function.kind, function.name, given, is_own=True)
 
     def _constructed(self, kind: str, arguments: list[Expression]) -> Expression:
         """A type's constructor, with components of that type and no more of them than it takes."""
@@ -425,16 +425,16 @@ class Parser:
         if len(arguments) == 1 and size_of(arguments[0].kind) in (1, size):
             cast = self._cast(arguments[0], scalar)
             return cast if size_of(cast.kind) == size else Construct(kind, [cast])
-        found: list[Expression] = []
+        components: list[Expression] = []
         for argument in arguments:
-            left = size - sum(size_of(one.kind) for one in found)
+            left = size - sum(size_of(component.kind) for component in components)
             if left <= 0:
                 raise self._error(f"a {kind} of too many components")
             parts = min(size_of(argument.kind), left)
             if parts < size_of(argument.kind):
                 argument = Swizzle(vector(scalar_of(argument.kind), parts), argument, FIELDS[0][:parts])
-            found.append(self._cast(argument, scalar))
-        return found[0] if size == 1 else Construct(kind, found)
+            components.append(self._cast(argument, scalar))
+        return components[0] if size == 1 else Construct(kind, components)
 
     def _matrix(self, kind: str, arguments: list[Expression]) -> Expression:
         """A matrix of its columns or of its numbers; of one number that is its diagonal."""
@@ -451,7 +451,7 @@ class Parser:
         if [a.kind for a in arguments] not in ([f"vec{size}"] * size, ["float"] * size**2):
             raise self._error(f"a {kind} is read of {size} columns, of {size**2} numbers, or of one")
         if len(arguments) > size:
-            columns = [arguments[at : at + size] for at in range(0, size**2, size)]
+            columns = [arguments[start : start + size] for start in range(0, size**2, size)]
             arguments = [Construct(f"vec{size}", column) for column in columns]
         return Construct(kind, arguments)
 
@@ -464,11 +464,11 @@ class Parser:
         """Statements between braces, in a scope of their own."""
         self._take("{")
         self._scopes.append({})
-        found: list[Statement] = []
+        statements: list[Statement] = []
         while not self._skip("}"):
-            found += self._deeper(self._statement)
+            statements += self._deeper(self._statement)
         self._scopes.pop()
-        return found
+        return statements
 
     def _about(self, statement: Statement, first: Token) -> Statement:
         """A statement with the comments around its tokens, the last of which was just taken."""
@@ -494,8 +494,8 @@ class Parser:
         return Assign(target, mark, value)
 
     def _count_statement(self, target: Expression, mark: str) -> Statement:
-        one = Literal("float", "1.0") if target.kind == "float" else Literal(target.kind, "1")
-        return Assign(target, f"{mark[0]}=", one)
+        step = Literal("float", "1.0") if target.kind == "float" else Literal(target.kind, "1")
+        return Assign(target, f"{mark[0]}=", step)
 
 
 def _is_short(value: Expression) -> bool:

@@ -67,7 +67,7 @@ def reduced(
     _keep_changes_inside(functions)
     both = {keys[name] for name, called in roots.items() if called in pair}
     for setting, value in bound.items():
-        for function in (one for one in functions if one.name in both):
+        for function in (candidate for candidate in functions if candidate.name in both):
             _bind(function, setting, value)
     for setting in SETTINGS:
         _leave_out(setting, functions, both)
@@ -101,16 +101,16 @@ def _named_structs(
 
 def _reached_names(program: Program, names: list[str]) -> set[str]:
     by_name = {f.name: f for f in program.functions}
-    found, left = set(names), list(names)
+    reached, left = set(names), list(names)
     while left:
         function = by_name[left.pop()]
         if function.unread:
             raise function.unread
         for node in inside(function.body):
-            if isinstance(node, Call) and node.is_own and node.name not in found:
-                found.add(node.name)
+            if isinstance(node, Call) and node.is_own and node.name not in reached:
+                reached.add(node.name)
                 left.append(node.name)
-    return found
+    return reached
 
 
 def _keep_changes_inside(functions: list[Function]) -> None:
@@ -132,21 +132,21 @@ def _keep_changes_inside(functions: list[Function]) -> None:
         calls = [n for n in nodes if isinstance(n, Call) and n.name in by_name]
         given = Counter(a.name for call in calls for a in call.arguments if isinstance(a, Name))
         for call in calls:
-            for at, argument in enumerate(call.arguments):
+            for index, argument in enumerate(call.arguments):
                 name = getattr(argument, "name", "")
                 is_own = named[name] == given[name] + written[name] and begun[name] >= given[name] > 0
                 if not is_own:
-                    seen.add((call.name, at))
+                    seen.add((call.name, index))
     for function in functions:
-        for at, parameter in enumerate(function.parameters):
-            parameter.is_changed = parameter.is_changed and (function.name, at) in seen
+        for index, parameter in enumerate(function.parameters):
+            parameter.is_changed = parameter.is_changed and (function.name, index) in seen
 
 
 def _bind(function: Function, setting: str, value: float) -> None:
     """Puts a number in the place of a parameter that nothing assigns to."""
     if setting not in _parameter_names(function):
         return
-    function.parameters = [one for one in function.parameters if one.name != setting]
+    function.parameters = [parameter for parameter in function.parameters if parameter.name != setting]
     function.body = _with_number(function.body, setting, with_a_point(f"{value!r}"))
 
 
@@ -155,7 +155,7 @@ def _with_number(node: Any, name: str, text: str) -> Any:
     if isinstance(node, Name) and node.name == name:
         return Literal("float", text)
     if isinstance(node, list):
-        return [_with_number(one, name, text) for one in node]
+        return [_with_number(child, name, text) for child in node]
     if not is_dataclass(node):
         return node
     for field in fields(node):
@@ -168,18 +168,18 @@ def _with_number(node: Any, name: str, text: str) -> Any:
 
 def _leave_out(setting: str, functions: list[Function], pair: set[str]) -> None:
     """Takes a setting from functions that do not read it; from both or neither of a pair."""
-    at = {f.name: _parameter_names(f).index(setting) for f in functions if setting in _parameter_names(f)}
+    indices = {f.name: _parameter_names(f).index(setting) for f in functions if setting in _parameter_names(f)}
     unread: set[str] = set()
     for function in functions:
-        if function.name in at and not _reads(setting, function, at, unread):
+        if function.name in indices and not _reads(setting, function, indices, unread):
             unread.add(function.name)
     if not pair <= unread:
         unread -= pair
     for function in functions:
         for call in (node for node in inside(function.body) if isinstance(node, Call) and node.name in unread):
-            del call.arguments[at[call.name]]
+            del call.arguments[indices[call.name]]
         if function.name in unread:
-            del function.parameters[at[function.name]]
+            del function.parameters[indices[function.name]]
 
 
 def _parameter_names(function: Function) -> list[str]:
@@ -194,12 +194,12 @@ def _reads(setting: str, function: Function, at: Mapping[str, int], unread: set[
 
 
 def _used_constants(constants: list[Declare], used: set[str]) -> list[Declare]:
-    found: list[Declare] = []
+    used_constants: list[Declare] = []
     for constant in reversed(constants):
         if constant.name in used:
-            found.insert(0, constant)
+            used_constants.insert(0, constant)
             used |= {node.name for node in inside(constant.value) if isinstance(node, Name)}
-    return found
+    return used_constants
 
 
 def _rename(functions: list[Function], names: dict[str, str], prefix: str, own: str) -> None:
@@ -230,7 +230,7 @@ def _without(own: str, name: str) -> str:
 def _free_name(name: str, taken: Collection[str]) -> str:
     """A name that is not taken: this one, or this one with a number."""
     ways = (name, *(f"{name}_{number}" for number in range(2, len(taken) + 3)))
-    return next(one for one in ways if one not in taken)
+    return next(way for way in ways if way not in taken)
 
 
 def _shorter_name(own: str, name: str) -> str:
@@ -274,7 +274,7 @@ def numbered(program: Program, word: str) -> None:
     """Call everything that has a name by this word and a number."""
     numbers = count()
     _number_structs(program, word, numbers)
-    outside = {one.name: f"{word}_{next(numbers)}" for one in [*program.constants, *program.functions]}
+    outside = {definition.name: f"{word}_{next(numbers)}" for definition in [*program.constants, *program.functions]}
     for function in program.functions:
         for call in (node for node in inside(function.body) if isinstance(node, Call) and node.is_own):
             call.name = outside[call.name]
@@ -289,8 +289,8 @@ def numbered(program: Program, word: str) -> None:
             name: f"{word}_{next(numbers)}" for name in [*_parameter_names(function), *(node.name for node in declared)]
         }
         _replace_in(function.body, own)
-        for one in (*function.parameters, *declared):
-            one.name = own[one.name]
+        for variable in (*function.parameters, *declared):
+            variable.name = own[variable.name]
 
 
 def _number_structs(program: Program, word: str, numbers: Iterator[int]) -> None:

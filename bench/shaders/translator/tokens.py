@@ -64,39 +64,39 @@ def tokens(text: str, first: int = 1) -> list[Token]:
     Raises:
         TranslationError: a character that no token begins with, or too many tokens.
     """
-    found: list[Token] = []
+    stream: list[Token] = []
     above: list[str] = []
-    at, line, begin = 0, first, 0
+    position, line, begin = 0, first, 0
     newlines = 0
-    while at < len(text):
-        if text[at] == "\n":
-            at, line, begin, newlines = at + 1, line + 1, at + 1, newlines + 1
+    while position < len(text):
+        if text[position] == "\n":
+            position, line, begin, newlines = position + 1, line + 1, position + 1, newlines + 1
             if newlines > 1:
                 above = []
             continue
-        if blank := BLANK.match(text, at):
-            at = blank.end()
+        if blank := BLANK.match(text, position):
+            position = blank.end()
             continue
-        match = TOKEN.match(text, at)
-        place = Place(line, at - begin + 1)
+        match = TOKEN.match(text, position)
+        place = Place(line, position - begin + 1)
         if not match:
-            raise TranslationError(f"{line}:{place.column}: {text[at]!r} begins nothing known here")
+            raise TranslationError(f"{line}:{place.column}: {text[position]!r} begins nothing known here")
         piece, kind = match[0], str(match.lastgroup)
         if kind == "comment":
-            is_behind = newlines == 0 and found and not piece.startswith("/*")
+            is_behind = newlines == 0 and stream and not piece.startswith("/*")
             if is_behind:
-                found[-1] = replace(found[-1], behind=said(piece)[0])
+                stream[-1] = replace(stream[-1], behind=said(piece)[0])
             else:
                 above += said(piece)
                 newlines = 0
             line += piece.count("\n")
         else:
-            found.append(Token(kind, piece, place, tuple(above)))
+            stream.append(Token(kind, piece, place, tuple(above)))
             above, newlines = [], 0
-        at = match.end()
-        if len(found) > MOST_TOKENS:
+        position = match.end()
+        if len(stream) > MOST_TOKENS:
             raise TranslationError(TOO_LONG)
-    return found
+    return stream
 
 
 class Preprocessor:
@@ -132,10 +132,10 @@ class Preprocessor:
         if including:
             raise TranslationError("an #if without its #endif")
         every = (each for token in tokens("\n".join(kept)) for each in self._expanded_tokens(token))
-        found = list(islice(every, MOST_TOKENS + 1))
-        if len(found) > MOST_TOKENS:
+        expanded = list(islice(every, MOST_TOKENS + 1))
+        if len(expanded) > MOST_TOKENS:
             raise TranslationError(TOO_LONG)
-        return found
+        return expanded
 
     def _obey(self, word: str, rest: str, line: int, including: list[tuple[bool, bool]], counts: bool) -> None:
         if word in ("if", "ifdef", "ifndef"):
@@ -166,10 +166,10 @@ class Preprocessor:
         if word != "if":
             name = rest.split()[0] if rest.split() else ""
             return (name in self._macros or name in self.constants) == (word == "ifdef")
-        found = [self._whole_number(token, line) for token in tokens(rest.split("//")[0], line)]
-        if len(found) != 1:
+        numbers = [self._whole_number(token, line) for token in tokens(rest.split("//")[0], line)]
+        if len(numbers) != 1:
             raise TranslationError(f"{line}:1: only `#if NAME` is translated, not {rest[:60]}")
-        return found[0] != 0
+        return numbers[0] != 0
 
     def _whole_number(self, token: Token, line: int) -> int:
         stands = self.constants.get(token.text, [token])
@@ -183,8 +183,8 @@ class Preprocessor:
             yield token
             return
         above = token.above
-        for made in self._words(token, 0):
-            yield replace(made, place=token.place, above=above)
+        for replacement in self._words(token, 0):
+            yield replace(replacement, place=token.place, above=above)
             above = ()
 
     def _words(self, token: Token, depth: int) -> Iterator[Token]:

@@ -293,8 +293,8 @@ class Program:
 
     def function(self, name: str) -> Function:
         """The function of a name that only one has."""
-        (found,) = (f for f in self.functions if f.name == name)
-        return found
+        (function,) = (f for f in self.functions if f.name == name)
+        return function
 
 
 def plain_name(function: Function) -> str:

@@ -99,15 +99,15 @@ def read_wgsl(text: str) -> Program:
 
 def _with_flat_comments(text: str) -> str:
     """A text whose comments hold no others, which WGSL's may: the marks inside become blanks."""
-    depth = at = 0
-    made = ""
-    while match := (INSIDE if depth else OUTSIDE).search(text, at):
+    depth = position = 0
+    flat_text = ""
+    while match := (INSIDE if depth else OUTSIDE).search(text, position):
         is_mark = match[0] in ("/*", "*/")
         depth += is_mark * (1 if match[0] == "/*" else -1)
         is_inner = is_mark and depth + (match[0] == "*/") > 1
-        made += text[at : match.start()] + ("  " if is_inner else match[0])
-        at = match.end()
-    return made + text[at:]
+        flat_text += text[position : match.start()] + ("  " if is_inner else match[0])
+        position = match.end()
+    return flat_text + text[position:]
 
 
 @cache
@@ -148,13 +148,13 @@ class WgslParser(Parser):
     def _declarations(self) -> Iterator[range]:
         """The tokens of each declaration of the module."""
         depth = begin = 0
-        for at, token in enumerate(self._tokens):
+        for index, token in enumerate(self._tokens):
             depth += (token.text in OPENS) - (token.text in CLOSES)
             if depth or token.text not in DECLARATION_ENDS:
                 continue
-            if at > begin or token.text != ";":
-                yield range(begin, at + 1)
-            begin = at + 1
+            if index > begin or token.text != ";":
+                yield range(begin, index + 1)
+            begin = index + 1
         if begin < len(self._tokens):
             yield range(begin, len(self._tokens))
 
@@ -165,7 +165,7 @@ class WgslParser(Parser):
             self._at += 2
             self._skip_group()
         word = self._next_token
-        behind = (at for at in range(self._at, declared.stop) if self._tokens[at].text in NAME_ENDS)
+        behind = (i for i in range(self._at, declared.stop) if self._tokens[i].text in NAME_ENDS)
         return word, self._tokens[max(next(behind, declared.stop) - 1, self._at)].text
 
     def _skip_group(self) -> None:
@@ -188,7 +188,7 @@ class WgslParser(Parser):
             if word.text == "const":
                 self._known_by(declared)
                 self._constants[name] = self._at
-        self._know_types({name: at for at, (word, name) in known.items() if word.text in ("alias", "struct")})
+        self._know_types({name: span for span, (word, name) in known.items() if word.text in ("alias", "struct")})
         for declared, (word, _) in known.items():
             if word.text == "fn" and not self._has_attributes(declared):
                 self._know_function(declared)
@@ -204,7 +204,7 @@ class WgslParser(Parser):
         try:
             self._add(self._signature())
         except TranslationError as error:
-            signature = (self._tokens[at].text for at in range(begin, declared.stop))
+            signature = (self._tokens[i].text for i in range(begin, declared.stop))
             if not any(self._is_of_a_pipeline(text) for text in takewhile("{".__ne__, signature)):
                 raise
             self._unread[name] = error
@@ -214,8 +214,8 @@ class WgslParser(Parser):
 
     def _know_types(self, declared: Mapping[str, range]) -> None:
         """Aliases and structures, each after those that it is made of."""
-        for name, at in declared.items():
-            self._known_by(at)
+        for name, span in declared.items():
+            self._known_by(span)
             self._types[name] = self._at
         for name in declared:
             with suppress(TranslationError):
@@ -257,14 +257,14 @@ class WgslParser(Parser):
 
     def _fields(self) -> dict[str, str]:
         self._take("{")
-        found: dict[str, str] = {}
+        fields: dict[str, str] = {}
         while not self._skip("}"):
             name = self._word_token().text
             self._take(":")
-            found[name] = self._kind()
+            fields[name] = self._kind()
             if self._next_token.text != "}":
                 self._take(",")
-        return found
+        return fields
 
     def _global(self) -> None:
         first = self._next_token
@@ -382,11 +382,11 @@ class WgslParser(Parser):
             self._expression()
             self._take(";")
             return []
-        made = self._one_statement(first)
-        made.above = [*first.above, *made.above]
-        if not isinstance(made, If | For | While | Block):
-            made.behind = self._tokens[self._at - 1].behind
-        return [made]
+        statement = self._one_statement(first)
+        statement.above = [*first.above, *statement.above]
+        if not isinstance(statement, If | For | While | Block):
+            statement.behind = self._tokens[self._at - 1].behind
+        return [statement]
 
     def _one_statement(self, first: Token) -> Statement:
         if self._skip("if"):
@@ -399,9 +399,9 @@ class WgslParser(Parser):
             return self._loop()
         if self._skip("switch"):
             return self._switch()
-        made = self._simple(first)
+        statement = self._simple(first)
         self._take(";")
-        return made
+        return statement
 
     def _simple(self, first: Token) -> Statement:
         """A statement of one line, without what ends it."""
@@ -438,16 +438,16 @@ class WgslParser(Parser):
     def _continuing_statements(self) -> list[Statement]:
         self._take("{")
         self._scopes.append({})
-        found: list[Statement] = []
+        statements: list[Statement] = []
         while not self._skip("}"):
             if self._next_token.text == "break" and self._text_ahead(1) == "if":
                 self._at += 2
-                found.append(If(self._expression(), [Leave("break")], []))
+                statements.append(If(self._expression(), [Leave("break")], []))
                 self._take(";")
             else:
-                found += self._deeper(self._statement)
+                statements += self._deeper(self._statement)
         self._scopes.pop()
-        return found
+        return statements
 
     def _switch(self) -> Statement:
         """switch, as a choice between blocks."""
@@ -459,7 +459,7 @@ class WgslParser(Parser):
         while not self._skip("}"):
             cases.append(self._case(chosen_by))
         other: list[Statement] = next((body for condition, body in cases if condition is None), [])
-        for condition, body in reversed([one for one in cases if one[0] is not None]):
+        for condition, body in reversed([branch for branch in cases if branch[0] is not None]):
             assert condition
             other = [If(condition, body, other)]
         return Block([Declare(value.kind, name, value), *other])
@@ -522,12 +522,12 @@ class WgslParser(Parser):
 
     def _arguments(self) -> list[Expression]:
         """As in GLSL; a comma may stand behind the last."""
-        found: list[Expression] = []
+        arguments: list[Expression] = []
         while not self._skip(")"):
-            found.append(self._expression())
+            arguments.append(self._expression())
             if self._next_token.text != ")":
                 self._take(",")
-        return found
+        return arguments
 
     def _primary(self) -> Expression:
         token = self._take()
@@ -595,8 +595,8 @@ class WgslParser(Parser):
             values = self._all_alike(values)
         kinds = sorted({value.kind for value in values})
         if len(kinds) != 1:
-            said = f"an array of {', '.join(kinds) or 'nothing'}; its elements have one type"
-            raise self._error(said, token.place)
+            message = f"an array of {', '.join(kinds) or 'nothing'}; its elements have one type"
+            raise self._error(message, token.place)
         return Elements(self._array_kind(kinds[0], Literal("int", str(len(values)))), values)
 
     def _array_kind(self, kind: str, length: Expression) -> str:
@@ -608,7 +608,7 @@ class WgslParser(Parser):
     def _field_values(self, kind: str, values: list[Expression]) -> list[Expression]:
         kinds = self._structs[kind].kinds.values()
         if not values:
-            return [self._zero_value(one) for one in kinds]
+            return [self._zero_value(field_kind) for field_kind in kinds]
         return [v if v.kind == k else self._converted(v, scalar_of(k)) for v, k in zip(values, kinds, strict=True)]
 
     def _zero_elements(self, kind: str) -> list[Expression]:
@@ -625,18 +625,21 @@ class WgslParser(Parser):
     def _constructed(self, kind: str, arguments: list[Expression]) -> Expression:
         """As in GLSL, but for floats out of an integer's range: they become its nearest."""
         scalar, names = scalar_of(kind), CONVERSIONS
-        if scalar in names and any(scalar_of(one.kind) == "float" for one in arguments):
+        if scalar in names and any(scalar_of(argument.kind) == "float" for argument in arguments):
             arguments = [
-                one if scalar_of(one.kind) != "float" else self._defined(names[scalar], scalar, [one])
-                for one in arguments
+                argument if scalar_of(argument.kind) != "float" else self._defined(names[scalar], scalar, [argument])
+                for argument in arguments
             ]
         return super()._constructed(kind, arguments)
 
     def _defined(self, name: str, scalar: str, given: list[Expression]) -> Expression:
         """A function of `wgsl_defined.glsl`."""
-        size = max(size_of(one.kind) for one in given)
-        given = [one if size_of(one.kind) == size else Construct(vector(one.kind, size), [one]) for one in given]
-        called = f"{name}({','.join(one.kind for one in given)})"
+        size = max(size_of(argument.kind) for argument in given)
+        given = [
+            argument if size_of(argument.kind) == size else Construct(vector(argument.kind, size), [argument])
+            for argument in given
+        ]
+        called = f"{name}({','.join(argument.kind for argument in given)})"
         return Call(vector(scalar, size), called, given, is_own=True)
 
     def _member(self, value: Expression, word: Token) -> Expression:
@@ -715,8 +718,8 @@ def _divides(value: Expression) -> bool:
 
 def _leaves(body: list[Statement], word: str) -> bool:
     """Whether statements break or continue the loop around them."""
-    for one in body:
-        match one:
+    for statement in body:
+        match statement:
             case Leave(said) if said == word:
                 return True
             case If(_, chosen, other) if _leaves(chosen, word) or _leaves(other, word):
@@ -739,7 +742,7 @@ def _number(text: str) -> Literal:
 
 def _callees_first(functions: list[Function]) -> list[Function]:
     """Functions in an order in which each calls only those before it."""
-    by_name, found, begun = {f.name: f for f in functions}, [], set()
+    by_name, ordered, begun = {f.name: f for f in functions}, [], set()
 
     def add(function: Function) -> None:
         if function.name in begun:
@@ -748,8 +751,8 @@ def _callees_first(functions: list[Function]) -> list[Function]:
         for node in inside(function.body):
             if isinstance(node, Call) and node.is_own and node.name in by_name:
                 add(by_name[node.name])
-        found.append(function)
+        ordered.append(function)
 
     for function in functions:
         add(function)
-    return found
+    return ordered

@@ -106,11 +106,11 @@ class WgslWriter(Writer):
 
     def _declaration_text(self, declared: Declare) -> str:
         value = f" = {self._text(declared.value)}" if declared.value is not None else ""
-        said = "" if value else f": {self._kind(declared.kind)}"
+        annotation = "" if value else f": {self._kind(declared.kind)}"
         # What is not a variable is indexed by constants alone.
         is_variable = declared.name in self._assigned or not value or declared.kind.endswith("]")
         word = "var" if is_variable else "let"
-        return f"{word} {self._name(declared.name)}{said}{value}"
+        return f"{word} {self._name(declared.name)}{annotation}{value}"
 
     def _local_text(self, declared: Declare) -> str:
         return self._declaration_text(declared)

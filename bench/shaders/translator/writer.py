@@ -110,9 +110,9 @@ class Writer:
     def program(self, program: Program) -> str:
         """The text of the whole program. Raises TranslationError."""
         everything = [*program.constants, *program.tables, *program.functions]
-        self._taken = {one.name for one in everything} | self.reserved | BUILTINS
-        self._taken |= {*self.kinds.values(), *self.functions.values(), *(one.name for one in program.structs)}
-        self._structs = {one.name: one for one in program.structs}
+        self._taken = {definition.name for definition in everything} | self.reserved | BUILTINS
+        self._taken |= {*self.kinds.values(), *self.functions.values(), *(struct.name for struct in program.structs)}
+        self._structs = {struct.name: struct for struct in program.structs}
         with one_error_type():
             return self._program(program)
 
@@ -186,18 +186,18 @@ class Writer:
 
     def _global_name(self, name: str) -> str:
         """A name for something of the writer's own, which nothing else of the program has."""
-        found = f"{self._prefix}_{name}"
-        while found in self._taken:
-            found += "_"
-        self._taken.add(found)
-        return found
+        own_name = f"{self._prefix}_{name}"
+        while own_name in self._taken:
+            own_name += "_"
+        self._taken.add(own_name)
+        return own_name
 
     def _unused(self, name: str) -> str:
         """A name that begins like this one and that the function does not have yet."""
         ways = (name, *(f"{name.rstrip('_')}_{number}" for number in range(2, len(self._used) + 3)))
-        found = next(one for one in ways if one not in self._used)
-        self._used.add(found)
-        return found
+        unused_name = next(way for way in ways if way not in self._used)
+        self._used.add(unused_name)
+        return unused_name
 
     def _check_parameters(self, function: Function) -> None:
         """Raises TranslationError for what not every language has."""
@@ -231,9 +231,9 @@ class Writer:
         """n.xy = VALUE, by way of a variable: the value may have the components that change."""
         name, scalar = self._unused("parts"), scalar_of(target.kind)
         parts: list[Statement] = [Declare(target.kind, name, value)]
-        for to, at in zip(target.fields, FIELDS, strict=False):
-            made = Swizzle(scalar, Name(target.kind, name), at)
-            parts.append(Assign(Swizzle(scalar, target.value, to), "=", made))
+        for to, field in zip(target.fields, FIELDS, strict=False):
+            component = Swizzle(scalar, Name(target.kind, name), field)
+            parts.append(Assign(Swizzle(scalar, target.value, to), "=", component))
         return Block(parts, above=statement.above, behind=statement.behind)
 
     def _loop_without_head(self, loop: For) -> Statement:
@@ -255,7 +255,7 @@ class Writer:
             case If():
                 return above + self._if(statement, indent)
             case For(start, condition, step, body):
-                ends = [self._simple_text(one) if one else "" for one in (start, step)]
+                ends = [self._simple_text(end) if end else "" for end in (start, step)]
                 return above + self._block(f"for ({ends[0]}; {self._text(condition)}; {ends[1]})", body, indent)
             case Block(body):
                 return above + self._block("", body, indent)
@@ -392,7 +392,7 @@ class Writer:
     def _rows_text(self, texts: list[str]) -> str:
         if len(texts) <= ELEMENTS:
             return ", ".join(texts)
-        rows = (", ".join(texts[at : at + ELEMENTS]) for at in range(0, len(texts), ELEMENTS))
+        rows = (", ".join(texts[start : start + ELEMENTS]) for start in range(0, len(texts), ELEMENTS))
         return "\n" + ",\n".join(INDENT + row for row in rows)
 
 

@@ -79,18 +79,18 @@ def first_look(file: UserFile, domain: str = "") -> dict[str, Any]:
     Args:
         domain: what its author says that it is made for, or ANY, to look closely.
     """
-    found = _first_look(file, domain, "")
-    if "error" not in found or file.is_translated:
-        return found
+    look = _first_look(file, domain, "")
+    if "error" not in look or file.is_translated:
+        return look
     if _is_hlsl(file):
         again = _first_look(file.with_language("hlsl"), domain, "")
-        return found if {"error", "missing"} & again.keys() else again | {"language": "hlsl"}
+        return look if {"error", "missing"} & again.keys() else again | {"language": "hlsl"}
     # What the device does not compile as it lies may have more in it than the two functions.
     again = _first_look(file, domain, GLSL_NAME)
     # Those that the device refuses for their form alone are read here.
-    is_of_form = found["error"].endswith((OWN_MAIN, OWN_VERSION))
-    is_nearer = (is_of_form or NO_FUNCTION in found["error"]) and NO_PAIR not in again.get("error", "")
-    return again if is_nearer or not {"error", "missing"} & again.keys() else found
+    is_of_form = look["error"].endswith((OWN_MAIN, OWN_VERSION))
+    is_nearer = (is_of_form or NO_FUNCTION in look["error"]) and NO_PAIR not in again.get("error", "")
+    return again if is_nearer or not {"error", "missing"} & again.keys() else look
 
 
 def _is_hlsl(file: UserFile) -> bool:
@@ -107,17 +107,17 @@ def _first_look(file: UserFile, domain: str, by: str) -> dict[str, Any]:
         try:
             kept, failing = _that_undo_themselves(file, error.pairs, by)
         except NoDeviceError as missing:
-            named = ", ".join(dict.fromkeys(str(file.with_pair(one)) for one in error.pairs[:MOST_PAIRS]))
+            named = ", ".join(dict.fromkeys(str(file.with_pair(pair)) for pair in error.pairs[:MOST_PAIRS]))
             return {"error": f"{file}: name one of its pairs, which none is tried of here ({missing}): {named}"}
         if len(kept) == 1:
-            found = _look_at_one(file.with_pair(kept[0]), domain, by)
-            return found | {"pair": kept[0], "failing": _alike(failing)}
+            look = _look_at_one(file.with_pair(kept[0]), domain, by)
+            return look | {"pair": kept[0], "failing": _alike(failing)}
         if not kept and error.alone:
             of_one = _of_one(file, error.alone)
             return of_one | {"error": f"{file}: {of_one['error']}"}
         if not kept:
             return {"error": f"{file}: {_why_none(failing)}"}
-        named = ", ".join(str(file.with_pair(one)) for one in kept)
+        named = ", ".join(str(file.with_pair(pair)) for pair in kept)
         how = f"{len(kept)} of its pairs undo themselves; name one: {named}"
         return {"error": f"{file}: {how}{_untried(failing)}", "pairs": kept, "failing": _alike(failing)}
 
@@ -153,29 +153,29 @@ def _wirings_of(file: UserFile) -> list[Wiring]:
 
 def _functions_of(file: UserFile) -> tuple[str, ...]:
     """The names of these functions."""
-    return tuple(one.function for one in _wirings_of(file))
+    return tuple(wiring.function for wiring in _wirings_of(file))
 
 
 def _that_undo_themselves(file: UserFile, pairs: Sequence[str], by: str) -> tuple[list[str], dict[str, str]]:
     """Those of some pairs that undo themselves, of two functions as they are called where that holds most normals; and
     by the functions of the others why these do not, empty for those that were not tried."""
-    found: dict[tuple[str, ...], tuple[bool, str]] = {}
+    kept: dict[tuple[str, ...], tuple[bool, str]] = {}
     failing: dict[tuple[str, ...], str] = {}
     tries = Counter()
     for pair in pairs:
         word = file.with_pair(pair)
         functions = _functions_of(word)
-        is_whole, _ = found.get(functions, (False, ""))
+        is_whole, _ = kept.get(functions, (False, ""))
         tries[functions] += 1
         if len(tries) > MOST_PAIRS or tries[functions] > MOST_WIRINGS:
             failing.setdefault(functions, "")
         elif not is_whole:
             domain, why = _undone(word, by)
             failing.setdefault(functions, why)
-            if domain == SPHERE.name or (domain and functions not in found):
-                found[functions] = (domain == SPHERE.name, pair)
-    others = {":".join(functions): why for functions, why in failing.items() if functions not in found}
-    return [pair for _, pair in found.values()], others
+            if domain == SPHERE.name or (domain and functions not in kept):
+                kept[functions] = (domain == SPHERE.name, pair)
+    others = {":".join(functions): why for functions, why in failing.items() if functions not in kept}
+    return [pair for _, pair in kept.values()], others
 
 
 def _undone(file: UserFile, by: str) -> tuple[str, str]:
@@ -184,7 +184,7 @@ def _undone(file: UserFile, by: str) -> tuple[str, str]:
         encoding, gl = read_encoding(file, NOT_ASKED, by=by), device()
         with np.errstate(invalid="ignore"):
             # What lacks a part of its code comes back nearly.
-            within = OF_A_WIRING_DEG if any(one.made for one in _wirings_of(file)) else OF_A_PAIR_DEG
+            within = OF_A_WIRING_DEG if any(wiring.made for wiring in _wirings_of(file)) else OF_A_PAIR_DEG
             trip = trip_of(probe_of(gl, encoding), directions())
             if domain := guessed(trip, within).name:
                 return domain, ""
@@ -224,15 +224,17 @@ def _look_at_one(file: UserFile, domain: str, by: str) -> dict[str, Any]:
 def _of_one(file: UserFile, made: Translated) -> dict[str, Any]:
     """What an encoder or a decoder is that has no partner, in words; and as `alone` its side, its name, and the
     encodings of the catalogue that it is of."""
-    side, (name, _) = next((side, one) for side, one in zip(SIDES, made.functions, strict=True) if one[0])
+    side, (name, _) = next(
+        (side, function) for side, function in zip(SIDES, made.functions, strict=True) if function[0]
+    )
     try:
         gl = device()
         like = names_alone(gl, probe_of(gl, encoding_alone(file, made)), side == SIDES[0])
     except (NoDeviceError, ShaderError) as error:
-        like, said = [], f"it is not compared with the catalogue: {' '.join(str(error).split())[:300]}"
+        like, sentence = [], f"it is not compared with the catalogue: {' '.join(str(error).split())[:300]}"
     else:
-        said = f"{name} is the {side} of {like[0] if like else 'no encoding of the catalogue'}"
-    return {"error": said, "alone": [side, name, *like]}
+        sentence = f"{name} is the {side} of {like[0] if like else 'no encoding of the catalogue'}"
+    return {"error": sentence, "alone": [side, name, *like]}
 
 
 def _is_unit(probe: Probe) -> bool:
@@ -271,34 +273,36 @@ def _endless(gl: Device, encoding: Encoding) -> dict[str, Any]:
     view = np.tile(np.array([*VIEW, 0.0], np.float32), (len(n), 1))
     for what, flags in zip(("encode", "decode"), loops_ended(gl, encoding, n, view), strict=True):
         if flags.any():
-            said = f"after {loop_limit(gl) or 'too many'} turns in all this device ends a shader's loops without a word"
-            return {"broken": f"the loops of {what} for {n[np.argmax(flags), :3].tolist()} do not end here: {said}"}
+            reason = (
+                f"after {loop_limit(gl) or 'too many'} turns in all this device ends a shader's loops without a word"
+            )
+            return {"broken": f"the loops of {what} for {n[np.argmax(flags), :3].tolist()} do not end here: {reason}"}
     return {}
 
 
 def _judged(probe: Probe, gl: Device, domain: str) -> dict[str, Any]:
-    found = diagnosed(probe, gl, domain.replace(ANY, ""))
-    if found.broken:
-        return {"broken": found.broken, "wrong": found.wrong}
-    hole = {"hole": found.hole} if found.hole else {}
+    diagnosis = diagnosed(probe, gl, domain.replace(ANY, ""))
+    if diagnosis.broken:
+        return {"broken": diagnosis.broken, "wrong": diagnosis.wrong}
+    hole = {"hole": diagnosis.hole} if diagnosis.hole else {}
     packed = {"packed_bits": bits_used(_finite_trip(probe).codes)} if probe.is_packed else {}
-    half = {"half": [found.domain.axis, found.domain.side]} if found.domain.is_turned else {}
-    closely = _closely(probe, gl, found.domain) if domain else {}
-    return {"domain": found.domain.name, "wrong": found.wrong} | packed | half | hole | closely
+    half = {"half": [diagnosis.domain.axis, diagnosis.domain.side]} if diagnosis.domain.is_turned else {}
+    closely = _closely(probe, gl, diagnosis.domain) if domain else {}
+    return {"domain": diagnosis.domain.name, "wrong": diagnosis.wrong} | packed | half | hole | closely
 
 
 def _finite_trip(probe: Probe) -> Trip:
-    found = trip_of(probe, directions())
-    return found.of(found.is_finite)
+    trip = trip_of(probe, directions())
+    return trip.of(trip.is_finite)
 
 
 def _closely(probe: Probe, gl: Device, domain: Domain) -> dict[str, Any]:
-    found = _finite_trip(probe)
-    lattice = lattice_of(found.codes)
+    trip = _finite_trip(probe)
+    lattice = lattice_of(trip.codes)
     return {
         "like": likeness(gl, probe, domain).shared(domain.name),
         "bad": bad(probe, domain)[:MOST_BAD].tolist(),
-        "spared": list(spared(found, probe)),
+        "spared": list(spared(trip, probe)),
         **({"lattice": list(astuple(lattice))} if lattice else {}),
     }
 
@@ -320,18 +324,20 @@ def twin_look(file: UserFile, found: Mapping[str, Any]) -> dict[str, Any]:
         return {}
     except BaseException as error:  # whatever a user's own file raises
         where = file.twin
-        said = (
+        message = (
             str(error) if isinstance(error, UsageError | NoTwinError) else f"{where}: {type(error).__name__}: {error}"
         )
-        return {"error": " ".join(said.split())[:300]}
+        return {"error": " ".join(message.split())[:300]}
     return _apart(encoding, n, view, codes, decoded)
 
 
 def _by_twin(function: Callable[..., Any], given: np.ndarray, view: np.ndarray) -> np.ndarray:
     """What a twin's function makes of arrays of shape (count, 2 or 3), which it sees as it does when it is measured."""
     kind = {2: Vec2, 3: Vec3}[given.shape[1]]
-    made = jax.jit(function)(kind(*map(jnp.asarray, given.T)), Vec3(*map(jnp.asarray, view.T[:3])))
-    return np.stack([np.broadcast_to(np.asarray(one, np.float32), len(given)) for one in made], axis=1)
+    components = jax.jit(function)(kind(*map(jnp.asarray, given.T)), Vec3(*map(jnp.asarray, view.T[:3])))
+    return np.stack(
+        [np.broadcast_to(np.asarray(component, np.float32), len(given)) for component in components], axis=1
+    )
 
 
 def _apart(
@@ -342,12 +348,12 @@ def _apart(
     except NoDeviceError:
         return {}
     by_gl, by_gl_decoded = exact_values(gl, encoding, _widened(n), view, _widened(codes))
-    for what, given, one, other in (("encode", n, codes, by_gl), ("decode", codes, decoded, by_gl_decoded)):
-        far = ~(np.abs(one - other[:, : one.shape[1]]) <= APART).all(axis=1)
+    for what, given, by_twin, other in (("encode", n, codes, by_gl), ("decode", codes, decoded, by_gl_decoded)):
+        far = ~(np.abs(by_twin - other[:, : by_twin.shape[1]]) <= APART).all(axis=1)
         if far.mean() > APART_SHARE:
-            at = int(np.argmax(far))
-            values = [row[at, : one.shape[1]].round(4).tolist() for row in (one, other)]
-            share = f"{100 * far.mean():.0f} % of directions, of {given[at].round(4).tolist()}"
+            index = int(np.argmax(far))
+            values = [row[index, : by_twin.shape[1]].round(4).tolist() for row in (by_twin, other)]
+            share = f"{100 * far.mean():.0f} % of directions, of {given[index].round(4).tolist()}"
             return {"apart": f"{what} is another than the GLSL's for {share}: {values[0]}, by GLSL {values[1]}"}
     return {}
 
@@ -358,16 +364,16 @@ def _widened(array: np.ndarray) -> np.ndarray:
 
 def _alone() -> int:
     """A file for what is to be said; whatever users' code prints goes to stderr."""
-    said = os.dup(1)
+    descriptor = os.dup(1)
     os.dup2(2, 1)
-    return said
+    return descriptor
 
 
 def _looks(file: UserFile, domain: str = "") -> Iterator[dict[str, Any]]:
-    found = first_look(file, domain)
-    yield found
-    if twin_is_looked_at(file, found):
-        yield twin_look(file, found)
+    look = first_look(file, domain)
+    yield look
+    if twin_is_looked_at(file, look):
+        yield twin_look(file, look)
 
 
 def main(words: Sequence[str]) -> None:

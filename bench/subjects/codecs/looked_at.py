@@ -61,12 +61,12 @@ def choose_or_look(
         if isinstance(looked, Exception):
             complaints.append(looked)
             continue
-        code, said = looked
-        taken = TAKEN if code.name in known else TWICE if code.name in [one.name for one in files.values()] else ""
+        code, remarks = looked
+        taken = TAKEN if code.name in known else TWICE if code.name in [other.name for other in files.values()] else ""
         if taken:
             complaints.append(UsageError(f"{word}: {taken.format(code.name, what_names(code))}"))
             continue
-        files[word], notes = code, notes + said
+        files[word], notes = code, notes + remarks
     failed = {pair for several in looks.values() for pair, _ in several} - {*files}
     pairs = {word: [pair for pair, _ in several] for word, several in looks.items()}
     meant = [pairs.get(word, [word]) if isinstance(word, str) else [word] for word in names]

@@ -43,14 +43,14 @@ def codecs_named(
     named = _with_chains(encodings)
     has_no_half = arithmetics == (DECLARED,) and not _computes_halves(named)
     chosen = with_arithmetics(named, (FLOAT,) if has_no_half else arithmetics)
-    made = (
+    codecs = (
         Codec(encoding, storage, rounding)
         for storage in storages_named(storages)
         for rounding in roundings_named(roundings, known_roundings)
         for encoding in chosen
     )
     # One with a storage of its own is one codec, however many storages are named.
-    return list(dict.fromkeys(made))
+    return list(dict.fromkeys(codecs))
 
 
 def _with_chains(words: Names) -> list[Encoding]:
@@ -71,7 +71,7 @@ def _chained_encoding(word: str, own: Sequence[Given]) -> Encoding:
     name, is_codec, storage = before.rpartition("/")
     if not (is_codec and name and then):
         raise UsageError(f"{word}: a chain is ENCODING/STORAGE+ENCODING, such as octahedral/rgb8_12_12+xyz")
-    first, second = (next((one for one in own if one.name == part), part) for part in (name, then))
+    first, second = (next((given for given in own if given.name == part), part) for part in (name, then))
     codecs, encodings = codecs_named((first,), (storage,), (NEAREST,)), encodings_named((second,))
     if len(codecs) != 1 or len(encodings) != 1:
         raise UsageError(f"{word}: one codec and one encoding at a time")
@@ -88,12 +88,15 @@ def with_arithmetics(encodings: Sequence[Encoding], names: Iterable[Word]) -> li
     chosen = choose("arithmetic", names, {word: word for word in (*ARITHMETICS, DECLARED)})
     named = [encoding for encoding in encodings if encoding.is_half or {FLOAT, DECLARED} & set(chosen)]
     others = [encoding for encoding in encodings if not encoding.is_half]
-    return [*named, *(in_half(one) for one in others if HALF in chosen or (DECLARED in chosen and one.is_also_half))]
+    return [
+        *named,
+        *(in_half(encoding) for encoding in others if HALF in chosen or (DECLARED in chosen and encoding.is_also_half)),
+    ]
 
 
 def _computes_halves(encodings: Iterable[Encoding]) -> bool:
     """Whether this machine computes in 16 bits what declares them; a line says so where it does not."""
-    if any(one.is_also_half and not has_twin(one) for one in encodings):
+    if any(encoding.is_also_half and not has_twin(encoding) for encoding in encodings):
         from .half.compute import half_device
 
         try:
@@ -108,7 +111,9 @@ def as_declared(codecs: Sequence[Codec]) -> list[Codec]:
     """Codecs in the arithmetic that their files declare, where this machine computes in it."""
     if not _computes_halves([codec.encoding for codec in codecs]):
         return list(codecs)
-    return [replace(one, encoding=in_half(one.encoding)) if one.encoding.is_also_half else one for one in codecs]
+    return [
+        replace(codec, encoding=in_half(codec.encoding)) if codec.encoding.is_also_half else codec for codec in codecs
+    ]
 
 
 def fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:

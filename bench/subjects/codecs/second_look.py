@@ -58,17 +58,17 @@ def second_look(
     source, language = Source(file), language_of(file)
     stamps = [tools.stamp_or_empty(tool) for tool in (tools.SLANG, *language.tools, *language.others)]
     key = kept.key_of("second", source.text, file.word, *stamps, own(), gl.renderer, gl.version)
-    if (found := kept.read(key)) is None:
+    if (finding := kept.read(key)) is None:
         try:
-            found = _disagreement(file, source.text, gl, encoding, hard, read)
+            finding = _disagreement(file, source.text, gl, encoding, hard, read)
         except UndefinedError as error:
-            found = {"error": f"{file}: {error}; its language does not define that"}
+            finding = {"error": f"{file}: {error}; its language does not define that"}
         except NoSecondWayError as error:
-            found = _unchecked_finding(file, str(error))
+            finding = _unchecked_finding(file, str(error))
             if not error.is_of_the_file:
-                return found
-        kept.write(key, found)
-    return found
+                return finding
+        kept.write(key, finding)
+    return finding
 
 
 def _unchecked_finding(file: UserFile, why: str) -> dict[str, Any]:
@@ -93,15 +93,15 @@ def _disagreement(
         return _difference(file, gl, encoding, way, n, tolerance, names)
 
     try:
-        said, why = _by_second_way(file, difference), None
+        disagreement, why = _by_second_way(file, difference), None
     except NoSecondWayError as error:
-        said, why = "", error
+        disagreement, why = "", error
     by_glslang = _by_glslang(file, gl, read, difference)
     if why and by_glslang is None:
         raise why
-    if said or (why and by_glslang):
+    if disagreement or (why and by_glslang):
         advice = "write it without what is read in two ways, such as % of negative whole numbers"
-        return {"error": f"{file}: two compilers disagree: {said or by_glslang}; {advice}"}
+        return {"error": f"{file}: two compilers disagree: {disagreement or by_glslang}; {advice}"}
     return {"notes": [f"{by_glslang}; the former is measured, as the language defines it"]} if by_glslang else {}
 
 
@@ -150,9 +150,9 @@ def _difference(
         (names[0], encode, n, codes, second_codes[:, :size], 3),
         (names[1], decode, given, decode(given), second_normals, size),
     ):
-        at = _first_apart(function, values, mine, theirs, tolerance)
-        if at is not None:
-            shown = [np.asarray(row[at], np.float64).round(5).tolist() for row in (values[:, :count], mine, theirs)]
+        index = _first_apart(function, values, mine, theirs, tolerance)
+        if index is not None:
+            shown = [np.asarray(row[index], np.float64).round(5).tolist() for row in (values[:, :count], mine, theirs)]
             return f"{name} of {shown[0]} is {shown[1]} by {ways[0]} and {shown[2]} by {ways[1]}"
     return ""
 
@@ -164,22 +164,22 @@ def _first_apart(
     with np.errstate(all="ignore"):
         bound = tolerance * np.maximum(1, np.abs(theirs))
         is_near = (np.abs(mine - theirs) <= bound) | (mine == theirs) | (np.isnan(mine) & np.isnan(theirs))
-    at = np.flatnonzero(~is_near.all(axis=1))
-    if len(at) > MANY * len(given):
-        return int(at[-1])
-    at = at[:LOOKED_AT]
-    left = at[~_is_beside(function, given[at], theirs[at], bound[at])] if len(at) else at
+    indices = np.flatnonzero(~is_near.all(axis=1))
+    if len(indices) > MANY * len(given):
+        return int(indices[-1])
+    indices = indices[:LOOKED_AT]
+    left = indices[~_is_beside(function, given[indices], theirs[indices], bound[indices])] if len(indices) else indices
     return int(left[-1]) if len(left) > MOST * len(given) else None
 
 
 def _is_beside(function: Function, given: np.ndarray, theirs: np.ndarray, bound: np.ndarray) -> np.ndarray:
     """Whether results lie among those that a function gives next to the values."""
     steps = np.array(list(itertools.product((-1, 0, 1), repeat=3)), np.float32) * np.float32(BESIDE)
-    found = function((given[:, None, :] + steps).reshape(-1, 3)).reshape(len(given), len(steps), -1)
+    neighbours = function((given[:, None, :] + steps).reshape(-1, 3)).reshape(len(given), len(steps), -1)
     with np.errstate(all="ignore"):
-        least = np.nanmin(np.where(np.isnan(found), np.inf, found), axis=1) - bound
-        most = np.nanmax(np.where(np.isnan(found), -np.inf, found), axis=1) + bound
-        inside = (theirs >= least) & (theirs <= most) | np.isnan(theirs) & np.isnan(found).any(axis=1)
+        least = np.nanmin(np.where(np.isnan(neighbours), np.inf, neighbours), axis=1) - bound
+        most = np.nanmax(np.where(np.isnan(neighbours), -np.inf, neighbours), axis=1) + bound
+        inside = (theirs >= least) & (theirs <= most) | np.isnan(theirs) & np.isnan(neighbours).any(axis=1)
     return inside.all(axis=1)
 
 

@@ -53,10 +53,10 @@ def encode_of(file: UserFile, text: str) -> Encode:
         raise UsageError(f"{file}: {OWN_MAIN}")
     if VERSION.search(code):
         raise UsageError(f"{file}: {OWN_VERSION}")
-    found = [match.groups() for match in ENCODE.finditer(code)]
-    right = list(dict.fromkeys(one[:2] for one in found if _is_encode(one)))
+    signatures = [match.groups() for match in ENCODE.finditer(code)]
+    right = list(dict.fromkeys(signature[:2] for signature in signatures if _is_encode(signature)))
     if not right:
-        raise UsageError(f"{file}: {_no_encode(found)}")
+        raise UsageError(f"{file}: {_no_encode(signatures)}")
     (kind, name), *others = [(kind, name.removesuffix("_encode")) for kind, name in right]
     _check_decode(file, code, name, kind)
     return Encode(name, int(kind[-1]), tuple(other for _, other in others if f"{other}_decode" in code))
@@ -77,10 +77,10 @@ def _given_and_read(code: str) -> str:
     for declared, members, instance in (match.groups() for match in GIVEN.finditer(code)):
         # The members of a block with a name are read by that name. A uniform with a value has it here, too.
         is_named = members is not None and instance.strip()
-        said = instance if is_named else declared if members is None else members
+        declarations = instance if is_named else declared if members is None else members
         what = "the uniform {}" if members is None else "the block {}" if is_named else "{} of a block"
-        unvalued = takewhile(lambda one: "=" not in one, re.split("[;,]", said))
-        names = [words[-1] for one in unvalued if (words := re.findall(r"\w+", SIZE.sub(" ", one)))]
+        unvalued = takewhile(lambda one: "=" not in one, re.split("[;,]", declarations))
+        names = [words[-1] for declaration in unvalued if (words := re.findall(r"\w+", SIZE.sub(" ", declaration)))]
         if read := next((name for name in names if _is_read(name, rest)), ""):
             return what.format(read)
     return ""
@@ -113,22 +113,24 @@ def _no_encode(found: list[tuple[str, ...]]) -> str:
 
 def _check_decode(file: UserFile, code: str, name: str, kind: str) -> None:
     """Raises UsageError where there is a decode, but not one of the right types."""
-    found = [match.groups() for match in re.finditer(FUNCTION.format(name=f"{name}_decode"), code)]
-    if found and not any(one[0] == "vec3" and _types(one[2]) in ([kind], [kind, "vec3"]) for one in found):
+    signatures = [match.groups() for match in re.finditer(FUNCTION.format(name=f"{name}_decode"), code)]
+    if signatures and not any(
+        signature[0] == "vec3" and _types(signature[2]) in ([kind], [kind, "vec3"]) for signature in signatures
+    ):
         wanted = f"vec3 {name}_decode({kind} e, vec3 view)"
-        raise UsageError(f"{file}: {_should_be(found[0], wanted)}")
+        raise UsageError(f"{file}: {_should_be(signatures[0], wanted)}")
 
 
 def _should_be(function: tuple[str, ...], wanted: str) -> str:
     """A function as it stands, as it must be, and what is wrong with it."""
     kind, name, parameters = function
-    said = f"{kind} {name}({' '.join(parameters.split())})"
-    said = "".join(letter if letter.isprintable() else "?" for letter in said)
-    why = of_hlsl(said) or ("a code has two or three numbers" if "vec4" in said else "")
-    return f"{said} must be {wanted}" + (f"; {why}" if why else "")
+    signature = f"{kind} {name}({' '.join(parameters.split())})"
+    signature = "".join(letter if letter.isprintable() else "?" for letter in signature)
+    why = of_hlsl(signature) or ("a code has two or three numbers" if "vec4" in signature else "")
+    return f"{signature} must be {wanted}" + (f"; {why}" if why else "")
 
 
 def of_hlsl(text: str) -> str:
     """What to do with GLSL that has types of HLSL; empty where it has none."""
-    found = HLSL.search(COMMENT.sub(" ", text))
-    return f"{found[0]} is HLSL: {FROM_HLSL}" if found else ""
+    match = HLSL.search(COMMENT.sub(" ", text))
+    return f"{match[0]} is HLSL: {FROM_HLSL}" if match else ""

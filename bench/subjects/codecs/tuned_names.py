@@ -22,10 +22,10 @@ def tuned(word: str) -> Encoding:
     Raises:
         UsageError: an unknown encoding or parameter, a value that is none or out of range, a file that is not a table.
     """
-    said = word.partition(MARK)[0]
-    name = spelled("encoding", said, ENCODINGS)
+    typed_name = word.partition(MARK)[0]
+    name = spelled("encoding", typed_name, ENCODINGS)
     if name is None:
-        raise UsageError(f"{word}: {unknown_name('encoding', [said], ENCODINGS)}")
+        raise UsageError(f"{word}: {unknown_name('encoding', [typed_name], ENCODINGS)}")
     encoding = ENCODINGS[name]
     try:
         _, values = settings_in(word)

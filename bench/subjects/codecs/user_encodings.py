@@ -57,16 +57,16 @@ def looked_at(file: UserFile) -> Looked[Encoding]:
         UsageError, MissingError: there is none.
         SeveralEncodersError: it has several pairs that undo themselves.
     """
-    found = _look(file)
-    if pairs := found.glsl.get("pairs"):
-        raise SeveralEncodersError(found.glsl["error"], pairs)
-    _check(file, found.glsl)
-    encoding = found.encoding()
+    looks = _look(file)
+    if pairs := looks.glsl.get("pairs"):
+        raise SeveralEncodersError(looks.glsl["error"], pairs)
+    _check(file, looks.glsl)
+    encoding = looks.encoding()
     # That codes are in [0, 1] is said by doctor, and in rows by a column.
     of = file.plain
-    said = [f"{of}: {line}" for line in (*found.wrong, *found.notes) if line != found.unit_note]
-    said += [f"{of}: {DECLARES_HALF if encoding.is_also_half else IN_32_BITS}"] if encoding.declares_half else []
-    return encoding, said + ([f"{file.twin}: {found.twin['apart']}"] if "apart" in found.twin else [])
+    remarks = [f"{of}: {line}" for line in (*looks.wrong, *looks.notes) if line != looks.unit_note]
+    remarks += [f"{of}: {DECLARES_HALF if encoding.is_also_half else IN_32_BITS}"] if encoding.declares_half else []
+    return encoding, remarks + ([f"{file.twin}: {looks.twin['apart']}"] if "apart" in looks.twin else [])
 
 
 class OneFunctionError(UsageError):
@@ -128,26 +128,26 @@ def examined(file: UserFile, domain: str = ANY) -> Examined:
         raise UsageError(f"{file} is in the catalogue; doctor examines a file of yours. `{command}` measures it")
     if file.path.is_file() and not names_an_encoder(str(file)):
         raise UsageError(f"{file}: its name does not end in {', '.join(ENDINGS[:-1])} or {ENDINGS[-1]}")
-    found = _look(file, domain)
-    if "missing" in found.glsl:
-        raise MissingError(found.glsl["missing"])
-    if pairs := found.glsl.get("pairs"):
-        raise SeveralEncodersError(found.glsl["error"], pairs, failing=[*found.glsl["failing"]])
-    if alone := found.glsl.get("alone"):
-        raise OneFunctionError(found.glsl["error"], *alone)
-    if "error" in found.glsl:
-        raise UsageError(found.glsl["error"])
-    broken = [found.glsl["broken"]] if "broken" in found.glsl else []
-    of_twin = [f"its Python twin: {found.twin['apart']}"] if "apart" in found.twin else []
-    of_twin += [found.fault] if found.fault else []
-    encoding = found.encoding()
+    looks = _look(file, domain)
+    if "missing" in looks.glsl:
+        raise MissingError(looks.glsl["missing"])
+    if pairs := looks.glsl.get("pairs"):
+        raise SeveralEncodersError(looks.glsl["error"], pairs, failing=[*looks.glsl["failing"]])
+    if alone := looks.glsl.get("alone"):
+        raise OneFunctionError(looks.glsl["error"], *alone)
+    if "error" in looks.glsl:
+        raise UsageError(looks.glsl["error"])
+    broken = [looks.glsl["broken"]] if "broken" in looks.glsl else []
+    of_twin = [f"its Python twin: {looks.twin['apart']}"] if "apart" in looks.twin else []
+    of_twin += [looks.fault] if looks.fault else []
+    encoding = looks.encoding()
     taken = [TAKEN.format(encoding.name, what_names(encoding))] if encoding.name in ENCODINGS else []
-    notes = [*found.notes, *found.glsl.get("spared", []), *taken]
-    wrong = [*broken, *found.wrong, *of_twin]
-    lattice = Lattice(*found.glsl["lattice"]) if "lattice" in found.glsl else None
-    functions = _functions_in(found.file, found.glsl.get("by", ""))
-    close = found.glsl.get("like", ""), found.glsl.get("bad", []), lattice, functions, found.glsl.get("failing", {})
-    return Examined(encoding, found.domain, wrong, notes, not broken, *close)
+    notes = [*looks.notes, *looks.glsl.get("spared", []), *taken]
+    wrong = [*broken, *looks.wrong, *of_twin]
+    lattice = Lattice(*looks.glsl["lattice"]) if "lattice" in looks.glsl else None
+    functions = _functions_in(looks.file, looks.glsl.get("by", ""))
+    close = looks.glsl.get("like", ""), looks.glsl.get("bad", []), lattice, functions, looks.glsl.get("failing", {})
+    return Examined(encoding, looks.domain, wrong, notes, not broken, *close)
 
 
 def _functions_in(file: UserFile, by: str) -> str:
@@ -179,9 +179,9 @@ def read_encoding(file: UserFile, fault: str = "", is_unit: bool = False, by: st
     text = _text(file, is_unit, by)
     encode, decode = _lacking_functions(fault) if fault else _twin_functions(file.twin)
     twin = _of_unit(encode, decode) if is_unit else (encode, decode)
-    made = _encoding(file, text, *twin)
+    encoding = _encoding(file, text, *twin)
     source = file.path.absolute() if is_unit or by or file.is_translated else None
-    return replace(made, source=source, is_unit=is_unit and not text.is_packed)
+    return replace(encoding, source=source, is_unit=is_unit and not text.is_packed)
 
 
 def encoding_alone(file: UserFile, made: Translated) -> Encoding:
@@ -226,11 +226,11 @@ class _Text(NamedTuple):
 
 def _text(file: UserFile, is_unit: bool, by: str) -> _Text:
     if by or file.is_translated:
-        made = translated(file, by)
+        shader = translated(file, by)
         # Rows of the catalogue's have that name; two functions of another language need not be renamed for it.
-        name = called(file.path.name) if made.name in ENCODINGS else made.name
-        declares_half = has_halves(made.text)
-        return _Text(name, made.components, made.glsl(is_unit), made.prefix, bool(made.packed), declares_half)
+        name = called(file.path.name) if shader.name in ENCODINGS else shader.name
+        declares_half = has_halves(shader.text)
+        return _Text(name, shader.components, shader.glsl(is_unit), shader.prefix, bool(shader.packed), declares_half)
     try:
         name, components, _ = encode_of(file, read_shader(file.path))
     except ShaderError as error:
@@ -239,16 +239,16 @@ def _text(file: UserFile, is_unit: bool, by: str) -> _Text:
     check_given(file, whole)
     # Not resolved: the twin lies next to the file that was given.
     place = file.path.absolute()
-    made = _of_unit_text(place, name, components) if is_unit else _Text(name, components, place)
-    return made._replace(declares_half=has_halves(whole))
+    shader = _of_unit_text(place, name, components) if is_unit else _Text(name, components, place)
+    return shader._replace(declares_half=has_halves(whole))
 
 
 def _of_unit_text(file: Path, name: str, components: int) -> _Text:
     """A file that includes one of GLSL whose codes lie in [0, 1], and has functions of codes in [-1, 1]."""
     sizes = {"encode": (components, NORMAL), "decode": (NORMAL, components)}
     encoder, decoder = (
-        Function(f"{name}_{side}", made, (given, NORMAL) if takes_view(file, f"{name}_{side}") else (given,))
-        for side, (made, given) in sizes.items()
+        Function(f"{name}_{side}", output_size, (given, NORMAL) if takes_view(file, f"{name}_{side}") else (given,))
+        for side, (output_size, given) in sizes.items()
     )
     # Into a text of this program goes no name that could end the line or the quotes.
     if '"' in str(file) or not str(file).isprintable():
@@ -294,17 +294,17 @@ def _guarded(path: Path, function: Callable[..., Any], kinds: tuple[type, ...]) 
 
     def guarded(*given: Any) -> Any:
         try:
-            made = function(*given)
+            output = function(*given)
         except Exception as error:
             lines = [
                 frame.lineno for frame in extract_tb(error.__traceback__) if Path(frame.filename).name == path.name
             ]
             where = f" in line {lines[-1]}" if lines else ""
             raise NoTwinError(f"{path}: {type(error).__name__}{where}: {error}") from error
-        if not isinstance(made, kinds):
-            kind = "an array" if hasattr(made, "shape") else type(made).__name__
+        if not isinstance(output, kinds):
+            kind = "an array" if hasattr(output, "shape") else type(output).__name__
             raise NoTwinError(f"{path}: {function.__name__} returns {kind}, not {wanted}")
-        return made
+        return output
 
     return guarded
 
@@ -381,10 +381,10 @@ def _look(file: UserFile, domain: str = "") -> Looks:
     """
     try:
         done = forks.finished(FIRST_LOOK, [str(file), *([domain] if domain else [])], TIME_LIMIT)
-        said, ended = done.stdout, children.how_it_ended(done)
+        output, ended = done.stdout, children.how_it_ended(done)
     except subprocess.TimeoutExpired as error:
-        said, ended = str(error.output), f"did not end within {TIME_LIMIT:g} s"
-    lines = list(_answers(said))
+        output, ended = str(error.output), f"did not end within {TIME_LIMIT:g} s"
+    lines = list(_answers(output))
     if not lines:
         raise UsageError(f"{file}: its shader {ended}")
     file = file_with(file, lines[0])

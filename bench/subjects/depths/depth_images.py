@@ -78,8 +78,12 @@ class DepthImage:
         """Depths where there is surface, 0 elsewhere: float32 of shape (height, width). The far plane is none."""
         depths = self.depths(camera)
         with np.errstate(over="ignore"):
-            found = depths.astype(np.float32)
-        return np.where((found >= np.float32(camera.near)) & (found < np.float32(camera.far)), found, np.float32(0))
+            float_depths = depths.astype(np.float32)
+        return np.where(
+            (float_depths >= np.float32(camera.near)) & (float_depths < np.float32(camera.far)),
+            float_depths,
+            np.float32(0),
+        )
 
     @property
     def not_finite(self) -> int:
@@ -107,9 +111,9 @@ def depth_image(path: Path, pixels: Pixels, reading: DepthReading) -> DepthImage
 
 def _check_code(path: Path, numbers: np.ndarray, code: str) -> None:
     """Raises UsageError where numbers are not those of a code, which are in [0, 1]."""
-    found = numbers[~np.isnan(numbers)]
-    if len(found) and not 0 <= found.min() <= found.max() <= 1:
-        what = f"its numbers are {found.min():.3g} to {found.max():.3g}, and those of {code} 0 to 1"
+    valid_numbers = numbers[~np.isnan(numbers)]
+    if len(valid_numbers) and not 0 <= valid_numbers.min() <= valid_numbers.max() <= 1:
+        what = f"its numbers are {valid_numbers.min():.3g} to {valid_numbers.max():.3g}, and those of {code} 0 to 1"
         raise refused(path, what, "--depths-are view takes distances")
 
 
@@ -134,15 +138,15 @@ def _is_called_like_depths(name: str, names: Sequence[str]) -> bool:
 
 
 def _notes(numbers: np.ndarray, pixels: Pixels, reading: DepthReading) -> list[str]:
-    found = numbers[np.isfinite(numbers)]
+    finite = numbers[np.isfinite(numbers)]
     notes = []
     if pixels.full is not None:
         bits = pixels.full.bit_length()
         notes.append(f"whole numbers of {bits} bits: codes of the same steps look better than they are")
-    elif len(found) and np.array_equal(found, _half_floats(found)):
+    elif len(finite) and np.array_equal(finite, _half_floats(finite)):
         notes.append("all its numbers are those of half floats: r16f looks better than it is")
     is_as_stored = reading.depths_are == VIEW and pixels.full is None and reading.depth_unit == 1
-    if is_as_stored and len(found) and 0 <= found.min() <= found.max() <= 1:
+    if is_as_stored and len(finite) and 0 <= finite.min() <= finite.max() <= 1:
         codes = "window, reversed_window or linear"
         notes.append(f"all its numbers are in [0, 1]: --depths-are {codes} reads a depth buffer's")
     if reading.fov is None:

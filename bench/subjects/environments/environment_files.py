@@ -44,12 +44,12 @@ def environment_of(path: Path) -> Environment:
 
 def _colours(path: Path, names: Sequence[str]) -> Sequence[str]:
     """Red, green and blue; alpha and what else is there are not read. Raises UsageError."""
-    found = {name.upper(): name for name in reversed(names)}
-    if not set(COLOURS) <= set(found):
+    channels = {name.upper(): name for name in reversed(names)}
+    if not set(COLOURS) <= set(channels):
         raise refused(
             path, f"it has {', '.join(names[:40])}", "an environment has channels R, G and B: save it in colour"
         )
-    return [found[colour] for colour in COLOURS]
+    return [channels[colour] for colour in COLOURS]
 
 
 def _check(path: Path, sides: tuple[int, int], channels: int) -> None:

@@ -20,13 +20,13 @@ def backends_named(names: Names, has: Collection[str]) -> list[str]:
     if "all" in names:
         return list(has)
     picked = choose("back end", names, dict(zip(BACKENDS, BACKENDS, strict=True)))
-    found, lacking = [name for name in picked if name in has], [name for name in picked if name not in has]
-    said = f"{', '.join(lacking)}: this table measures by {' and '.join(has)}"
-    if not found:
-        raise UsageError(said)
+    available, lacking = [name for name in picked if name in has], [name for name in picked if name not in has]
+    message = f"{', '.join(lacking)}: this table measures by {' and '.join(has)}"
+    if not available:
+        raise UsageError(message)
     if lacking:
-        leave_out(said)
-    return found
+        leave_out(message)
+    return available
 
 
 def backends_here(names: Names, has: Collection[str]) -> list[str]:

@@ -36,9 +36,9 @@ def name_of(effects: Iterable[ChosenEffect]) -> str | None:
 
 def pipeline_with(pipeline: Pipeline, effects: Iterable[ChosenEffect], complaints: list[str]) -> Pipeline | None:
     """A pipeline with effects in it; None, and a line among the complaints, where they do not fit."""
-    made: dict[str, str] = {}
+    makers: dict[str, str] = {}
     for effect in effects:
-        twin = made.setdefault(effect.effect.result.name, effect.name)
+        twin = makers.setdefault(effect.effect.result.name, effect.name)
         if twin != effect.name:
             complaints.append(f"{twin} and {effect.name} both make {effect.effect.result.name}; name one of them")
             return None
@@ -61,8 +61,8 @@ def _fits(pipeline: Pipeline, effect: ChosenEffect) -> bool:
 
 def lacking(effects: Iterable[ChosenEffect], name: str, scene: Scene) -> str | None:
     """Why a scene has nothing for one of the effects; None where it has for all."""
-    found = ((effect.name, effect.effect.lacks(scene)) for effect in effects)
-    return next((f"{effect} on {name}: {why}" for effect, why in found if why), None)
+    reasons = ((effect.name, effect.effect.lacks(scene)) for effect in effects)
+    return next((f"{effect} on {name}: {why}" for effect, why in reasons if why), None)
 
 
 def _chosen(name: str, word: str, settings: list[str]) -> ChosenEffect:

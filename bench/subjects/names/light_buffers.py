@@ -27,8 +27,8 @@ def light_buffers_named(names: Iterable[Word]) -> list[LightCodec]:
             hold the code.
     """
     words = list(names)
-    said = {word: _said_codec(word) for word in words if isinstance(word, str) and (":" in word or "/" in word)}
-    chosen = choose("light buffer", words, {**LIGHT_BUFFERS, **said})
+    typed_codecs = {word: _said_codec(word) for word in words if isinstance(word, str) and (":" in word or "/" in word)}
+    chosen = choose("light buffer", words, {**LIGHT_BUFFERS, **typed_codecs})
     return list({codec.name: codec for codec in chosen}.values())
 
 
@@ -41,10 +41,10 @@ def _said_codec(word: str) -> LightCodec:
     chosen = storages_named((storage,), FORMATS, "light storage")
     if len(chosen) > 1:
         raise UsageError(f"light buffer {word}: one storage, not {len(chosen)}")
-    made = replace(codec, storage=chosen[0])
-    if made.misfit:
-        raise UsageError(f"light buffer {word}: {made.misfit}")
-    return made
+    stored_codec = replace(codec, storage=chosen[0])
+    if stored_codec.misfit:
+        raise UsageError(f"light buffer {word}: {stored_codec.misfit}")
+    return stored_codec
 
 
 def _plain_codec(name: str, word: str) -> LightCodec:

@@ -66,8 +66,8 @@ def _encodings() -> list[Row]:
 
 def _settings_of(encoding: Encoding) -> str | None:
     """What may be said of an encoding by name, after a colon."""
-    found = ", ".join(known_settings(encoding))
-    return f"settings: {found}" if found else None
+    settings = ", ".join(known_settings(encoding))
+    return f"settings: {settings}" if settings else None
 
 
 # Storages by their bits, and what each holds; B are bits of a number, E and M of exponent and mantissa.
@@ -176,7 +176,7 @@ def _effects() -> list[Row]:
 
 
 def _environments() -> list[Row]:
-    return [_row("environment", one.name, one.title) for one in ENVIRONMENTS.values()]
+    return [_row("environment", environment.name, environment.title) for environment in ENVIRONMENTS.values()]
 
 
 def _scenes() -> list[Row]:

@@ -33,11 +33,15 @@ def storages_named(
         UsageError: an unknown name, or bits that cannot be; one line.
     """
     own = [word for word in names if isinstance(word, Given)]
-    said = storages_said(word for word in names if isinstance(word, str))
-    unknown = [word for word, storage in said.items() if not (storage or word == "all" or spelled(what, word, known))]
+    storages = storages_said(word for word in names if isinstance(word, str))
+    unknown = [
+        word for word, storage in storages.items() if not (storage or word == "all" or spelled(what, word, known))
+    ]
     if unknown:
         raise unknown_name(what, unknown, known, f"all, {', '.join(known)}; or bits, such as unorm:9:7")
-    chosen = choose(what, [*said, *own], {**known, **{word: storage for word, storage in said.items() if storage}})
+    chosen = choose(
+        what, [*storages, *own], {**known, **{word: storage for word, storage in storages.items() if storage}}
+    )
     return list(dict.fromkeys(chosen))
 
 
@@ -90,17 +94,17 @@ def _in_range(word: str) -> list[str]:
     Raises UsageError.
     """
     word = word.lower() if RULE.match(word) else word
-    found = RANGE.fullmatch(word)
-    if not found and RULE.match(word) and not BY_RULE.fullmatch(word):
+    match = RANGE.fullmatch(word)
+    if not match and RULE.match(word) and not BY_RULE.fullmatch(word):
         raise UsageError(
             f"--storage {word}: bits are said as unorm:9:7, snorm:12:12, centred:8:8, float:5:10, unorm:4:4..16:16"
         )
-    if not found:
+    if not match:
         return [word]
-    first, last = ([int(bits) for bits in found[end].split(":")] for end in ("first", "last"))
+    first, last = ([int(bits) for bits in match[end].split(":")] for end in ("first", "last"))
     steps = {high - low for low, high in zip(first, last, strict=False)} - {0}
     if len(first) != len(last) or len(steps) > 1 or min(steps, default=0) < 0:
         raise UsageError(f"--storage {word}: in a range numbers grow by as many bits, or stay, as in unorm:4:4..16:16")
     grows = [high > low for low, high in zip(first, last, strict=True)]
     every = ([b + step * g for b, g in zip(first, grows, strict=True)] for step in range(max(steps, default=0) + 1))
-    return [":".join((found["kind"], *map(str, bits))) for bits in every]
+    return [":".join((match["kind"], *map(str, bits))) for bits in every]

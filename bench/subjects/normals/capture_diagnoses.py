@@ -79,12 +79,12 @@ def some_pixels(n: np.ndarray, covered: np.ndarray) -> Pixels:
     """
     index = np.flatnonzero(covered)
     index = index[:: max(1, -(-len(index) // MOST))]
-    found = n.reshape(-1, 3)[index].astype(np.float64)
+    normals = n.reshape(-1, 3)[index].astype(np.float64)
     if covered.ndim != 2:
-        return Pixels(found, np.zeros(len(index)), np.zeros(len(index)), False)
+        return Pixels(normals, np.zeros(len(index)), np.zeros(len(index)), False)
     height, width = covered.shape
     row, column = np.divmod(index, width)
-    return Pixels(found, (2 * column + 1 - width) / height, 1 - (2 * row + 1) / height, True)
+    return Pixels(normals, (2 * column + 1 - width) / height, 1 - (2 * row + 1) / height, True)
 
 
 class Finding(NamedTuple):
@@ -110,17 +110,17 @@ def which_way(pixels: Pixels, to_view: np.ndarray, fov: float | None, is_world: 
     share, _ = pixels.least_away(to_view, fov)
     if share <= (AWAY if pixels.has_places else AWAY_OF_A_LIST):
         return None
-    said = f"{share:.0%} of the normals face away from the viewer"
+    message = f"{share:.0%} of the normals face away from the viewer"
     readings = _of_a_matrix(to_view) if is_world else IN_VIEW_SPACE
     for what, matrix in readings.items():
         other, _ = pixels.least_away(matrix, fov)
         if other < LESS * share and other < AWAY:
-            return Finding(f"{said}, {other:.0%} if {what}", matrix)
+            return Finding(f"{message}, {other:.0%} if {what}", matrix)
     if fov is not None and pixels.has_places:
         other, field = pixels.least_away(to_view, None)
         if other < LESS * share and other < AWAY:
-            return Finding(f"{said} at --fov {fov:g}, {other:.0%} at about {field:g}", field)
-    return Finding(said, None)
+            return Finding(f"{message} at --fov {fov:g}, {other:.0%} at about {field:g}", field)
+    return Finding(message, None)
 
 
 def _of_a_matrix(to_view: np.ndarray) -> dict[str, np.ndarray]:

@@ -77,14 +77,14 @@ class Captured:
 
 def capture(path: Path, reading: Reading) -> tuple[NormalSet, list[str]]:
     """The normals of an image file as a set, and what is to be said of them. Raises as `captured` does."""
-    found = captured(path, reading)
-    shape = found.covered.shape if found.covered.ndim == 2 else None
-    n = np.moveaxis(found.normals, 0, -1).astype(np.float32)
+    image = captured(path, reading)
+    shape = image.covered.shape if image.covered.ndim == 2 else None
+    n = np.moveaxis(image.normals, 0, -1).astype(np.float32)
     name = called(path.name)
-    rays = (_rays(n, reading.fov) @ found.turns.of_rays.T).astype(np.float32)
-    made = from_arrays(name, f"normals of {name}", n, rays, found.covered, shape, found.not_finite)
+    rays = (_rays(n, reading.fov) @ image.turns.of_rays.T).astype(np.float32)
+    normal_set = from_arrays(name, f"normals of {name}", n, rays, image.covered, shape, image.not_finite)
     space = OBJECT if is_in_object_space(path, reading) else checked(reading).code_space
-    return replace(made, code_space=space, own_error_deg=found.own_error_deg), found.notes
+    return replace(normal_set, code_space=space, own_error_deg=image.own_error_deg), image.notes
 
 
 def captured(path: Path, reading: Reading, within: np.ndarray | None = None) -> Captured:
@@ -126,15 +126,15 @@ def captured(path: Path, reading: Reading, within: np.ndarray | None = None) -> 
 def check_size(path: Path, shape: tuple[int, ...], wanted: tuple[int, ...]) -> None:
     """Raises UsageError where an image has not the (height, width) of another."""
     if shape != wanted:
-        sides, others = (" x ".join(map(str, one[::-1])) for one in (shape, wanted))
+        sides, others = (" x ".join(map(str, size[::-1])) for size in (shape, wanted))
         raise refused(path, f"it is {sides}, and the depth is {others}", "save all of a frame in one size")
 
 
 def is_in_object_space(path: Path, reading: Reading) -> bool:
     """Whether a file is a cloud of points of which nothing says that a camera saw them."""
     usual = Reading()
-    said = (reading.space, reading.code_space, reading.view_matrix, reading.fov)
-    return path.suffix.lower() in CLOUDS and said == (usual.space, usual.code_space, usual.view_matrix, usual.fov)
+    options = (reading.space, reading.code_space, reading.view_matrix, reading.fov)
+    return path.suffix.lower() in CLOUDS and options == (usual.space, usual.code_space, usual.view_matrix, usual.fov)
 
 
 def _roundings(pixels: Pixels, reading: Reading) -> Sequence[Rounding]:
@@ -219,14 +219,14 @@ def _mask(path: Path, reading: Reading, shape: tuple[int, ...]) -> np.ndarray:
         return np.ones(shape, bool)
     named = Path(asked)
     if named.suffix.lower() in READERS:
-        where, found = f"--mask {named}", _mask_of_file(named)
-        found = found.reshape(-1) if len(shape) == 1 else found
+        where, mask = f"--mask {named}", _mask_of_file(named)
+        mask = mask.reshape(-1) if len(shape) == 1 else mask
     else:
-        where, found = f"channel {asked}", read_pixels(path, lambda names: _one_channel(path, names, asked)).planes[0]
-    if found.shape != shape:
-        sides = " x ".join(map(str, found.shape))
+        where, mask = f"channel {asked}", read_pixels(path, lambda names: _one_channel(path, names, asked)).planes[0]
+    if mask.shape != shape:
+        sides = " x ".join(map(str, mask.shape))
         raise refused(path, f"{where} is {sides}, the normals are {' x '.join(map(str, shape))}", "one of one size")
-    return np.isfinite(found) & (found != 0)
+    return np.isfinite(mask) & (mask != 0)
 
 
 def _mask_of_file(path: Path) -> np.ndarray:
@@ -273,7 +273,9 @@ def _check_finite(path: Path, surface: np.ndarray, finite: np.ndarray, share: fl
     bad = surface & ~finite
     count, most = int(bad.sum()), max(int(surface.sum()), 1)
     if count > share * most:
-        first = ", ".join(f"{word} {at}" for word, at in zip(("row", "column"), np.argwhere(bad)[0], strict=False))
+        first = ", ".join(
+            f"{word} {index}" for word, index in zip(("row", "column"), np.argwhere(bad)[0], strict=False)
+        )
         needed = math.ceil(1e6 * count / most) / 1e6
         raise refused(
             path,
@@ -288,20 +290,20 @@ def _checked_unit(
     """What is to be said where a few normals are not unit. Raises UsageError where more are, with the option that would
     read them."""
     off = float(np.mean(abs(length[covered] - 1) > UNIT_WITHIN))
-    said = f"{off:.1%} of the normals are not unit"
+    complaint = f"{off:.1%} of the normals are not unit"
     if off <= OFF_UNIT_SHARE:
         return [] if off == 0 or reading.normalise else [f"{off:.3%} of the normals are not unit: normalised"]
-    found = stored[:, covered]
-    low, high = (float(f(found)) for f in (np.min, np.max))
-    remedy = next(_readings_that_fit(found, reading.curve, unpacked), None)
+    components = stored[:, covered]
+    low, high = (float(f(components)) for f in (np.min, np.max))
+    remedy = next(_readings_that_fit(components, reading.curve, unpacked), None)
     if reading.normalise:
-        return [f"{said}, normalised; {remedy} would read them as unit"] if remedy else []
+        return [f"{complaint}, normalised; {remedy} would read them as unit"] if remedy else []
     if remedy:
-        raise refused(path, f"{said}, all components are in [{low:.3g}, {high:.3g}]", f"{remedy} reads them")
+        raise refused(path, f"{complaint}, all components are in [{low:.3g}, {high:.3g}]", f"{remedy} reads them")
     median = float(np.median(length[covered]))
     raise refused(
         path,
-        f"{said}: lengths {length[covered].min():.3g} to {length[covered].max():.3g}, median {median:.3g}, "
+        f"{complaint}: lengths {length[covered].min():.3g} to {length[covered].max():.3g}, median {median:.3g}, "
         f"components in [{low:.3g}, {high:.3g}]",
         "--normalise takes them all the same; --channels names others",
     )
@@ -381,15 +383,15 @@ def _matrix_error(reading: Reading) -> UsageError:
 
 
 def _rotation_and_remarks(text: str) -> tuple[np.ndarray, list[str]]:
-    said = f"--view-matrix {text}"
-    matrix = _numbers_of(text, said)
+    option = f"--view-matrix {text}"
+    matrix = _numbers_of(text, option)
     linear = matrix[:3, :3]
     if matrix.shape == (4, 4):
-        _check_affine(matrix, said)
+        _check_affine(matrix, option)
     square = linear @ linear.T
     scale = np.trace(square) / 3
     if not scale > 0 or not np.allclose(square / scale, np.eye(3), atol=ROTATION_WITHIN):
-        raise UsageError(f"{said}: not a rotation: its rows are not at right angles, or of different lengths")
+        raise UsageError(f"{option}: not a rotation: its rows are not at right angles, or of different lengths")
     size = math.sqrt(scale)
     is_scaled = abs(size - 1) > ROTATION_WITHIN
     return linear / size, [f"the rows of --view-matrix are {size:.4g} long: the scale is left out"] * is_scaled
@@ -437,8 +439,8 @@ def _which_way(
         return []
     is_world = SPACES[reading.space] is None
     pixels = some_pixels(np.moveaxis(n, 0, -1), covered)
-    found = which_way(pixels, to_view, reading.fov, is_world)
-    return [f"{found.said}: {_remedy_text(found.remedy, is_world, chosen)}"] if found else []
+    finding = which_way(pixels, to_view, reading.fov, is_world)
+    return [f"{finding.said}: {_remedy_text(finding.remedy, is_world, chosen)}"] if finding else []
 
 
 def _remedy_text(found: np.ndarray | float | None, is_world: bool, chosen: Sequence[str]) -> str:

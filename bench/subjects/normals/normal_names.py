@@ -51,38 +51,42 @@ def normal_sets_named(
         _check_kind(word)
     is_read_so = any(has_normals_alone(Path(word)) for word in typed)
     if reading != Reading(size=reading.size) and not is_read_so:
-        said = f"--normals {text_of(names)} names none ({', '.join(IMAGES)})"
-        raise UsageError(f"options of captures are given, but {said}")
+        reason = f"--normals {text_of(names)} names none ({', '.join(IMAGES)})"
+        raise UsageError(f"options of captures are given, but {reason}")
 
     notes: dict[Path, list[str]] = {}
 
     def read(path: Path) -> Callable[[int, int], NormalSet]:
         if path.suffix.lower() in vertices.ENDINGS:
-            made, notes[path] = vertices.vertex_set(path)
+            normal_set, notes[path] = vertices.vertex_set(path)
         elif has_normals_alone(path):
-            made, notes[path] = capture(path, reading)
+            normal_set, notes[path] = capture(path, reading)
             if needs_rays and reading.code_space == WORLD and reading.view_matrix is None:
                 raise UsageError("codes that need the view ray need --view-matrix where they are in world space")
-            if needs_rays and reading.fov is None and made.has_rays:
+            if needs_rays and reading.fov is None and normal_set.has_rays:
                 notes[path].append("without --fov, rays are parallel for codes that need them")
         else:
-            made, notes[path] = mesh_set(path, reading.size)
-        return given(made)
+            normal_set, notes[path] = mesh_set(path, reading.size)
+        return given(normal_set)
 
     words = [Given(word.name, given(word.value)) if isinstance(word, Given) else word for word in names]
-    made = [make(count, seed) for make in choose_or_read("normal set", words, NORMAL_SETS, ENDINGS, read)]
+    sets = [make(count, seed) for make in choose_or_read("normal set", words, NORMAL_SETS, ENDINGS, read)]
     say_notes(notes)
-    return made
+    return sets
 
 
 def lacking_rays(pairs: Iterable[tuple[Encoding, NormalSet]]) -> list[str]:
     """Of encodings and sets a line on each that cannot be measured, as the set has no rays."""
-    return [f"{encoding.name} of {made.name}: {LACKS_RAYS}" for encoding, made in pairs if not made.serves(encoding)]
+    return [
+        f"{encoding.name} of {normal_set.name}: {LACKS_RAYS}"
+        for encoding, normal_set in pairs
+        if not normal_set.serves(encoding)
+    ]
 
 
 def check_rays(sets: Iterable[NormalSet], needs_rays: bool) -> None:
     """Raises UsageError where something to be measured needs rays that a set has not."""
-    if needs_rays and (lacking := next((made for made in sets if not made.has_rays), None)):
+    if needs_rays and (lacking := next((normal_set for normal_set in sets if not normal_set.has_rays), None)):
         raise UsageError(f"--normals {lacking.name}: a code cannot be measured of it: {LACKS_RAYS}")
 
 
@@ -132,8 +136,8 @@ def mesh_set(path: Path, size: str) -> tuple[NormalSet, list[str]]:
     notes = [*file.notes, *([] if file.view else ["no camera in it: seen from aside, all of it in the picture"])]
     if (own := seen.map_error_deg) is not None:
         notes.append(own_error_note("its normal maps have 8 bits a channel and", own))
-    of_vertices, said = vertices.drawn_error(path)
+    of_vertices, vertex_notes = vertices.drawn_error(path)
     name = called(path.name)
-    made = from_arrays(name, f"the meshes of {name}", seen.normals, seen.positions, seen.covered, sides[::-1])
+    normal_set = from_arrays(name, f"the meshes of {name}", seen.normals, seen.positions, seen.covered, sides[::-1])
     own = math.hypot(seen.map_error_deg or 0.0, of_vertices)
-    return replace(made, own_error_deg=own or None), notes + said
+    return replace(normal_set, own_error_deg=own or None), notes + vertex_notes

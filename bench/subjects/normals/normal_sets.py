@@ -100,7 +100,7 @@ class NormalSet:
         if self.of or self.count <= PART:
             return ()
         chunks = PART // CHUNK
-        return [replace(self, of=range(at, at + chunks)) for at in range(0, len(self.starts), chunks)]
+        return [replace(self, of=range(start, start + chunks)) for start in range(0, len(self.starts), chunks)]
 
     def facing(self) -> NormalSet:
         """Return its part that faces the viewer."""
@@ -219,7 +219,7 @@ def _chunks(n: np.ndarray, view: np.ndarray, covered: np.ndarray) -> list[Chunk]
     planes = Chunk(
         Vec3(*map(np.array, from_array(n))), Vec3(*np.ascontiguousarray(view.T)), np.pad(covered[:, 0], (0, missing))
     )
-    return [jax.tree.map(lambda a, at=at: a[at : at + CHUNK], planes) for at in range(0, count, CHUNK)]
+    return [jax.tree.map(lambda a, at=start: a[at : at + CHUNK], planes) for start in range(0, count, CHUNK)]
 
 
 def axes(count: int = 0, seed: int = 0) -> NormalSet:

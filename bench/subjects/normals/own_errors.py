@@ -39,7 +39,7 @@ def own_error_deg(n: np.ndarray, roundings: Sequence[Rounding]) -> float | None:
     some = _some(n)
     if not roundings or not len(some):
         return None
-    return math.degrees(math.sqrt(sum(_mean_angle(some, one) ** 2 for one in roundings)))
+    return math.degrees(math.sqrt(sum(_mean_angle(some, rounding) ** 2 for rounding in roundings)))
 
 
 def _some(n: np.ndarray) -> np.ndarray:
@@ -48,7 +48,7 @@ def _some(n: np.ndarray) -> np.ndarray:
 
 def all_roundings(n: np.ndarray, roundings: Sequence[Rounding]) -> tuple[Rounding, ...]:
     """Those that a file says, and the octahedral map that unit normals, (count, 3), show to have been packed by."""
-    if any(one.is_octahedral for one in roundings):
+    if any(rounding.is_octahedral for rounding in roundings):
         return tuple(roundings)
     return (*octahedral_grid(_some(n), roundings), *roundings)
 
@@ -62,10 +62,10 @@ def octahedral_grid(n: np.ndarray, roundings: Sequence[Rounding] = ()) -> list[R
     on = n / np.sum(np.abs(n), axis=1, keepdims=True)
     if len(np.unique(np.round(on, 6), axis=0)) < DIFFERENT:
         return []
-    found = [Rounding(2 ** (bits - 1) - 1, is_octahedral=True) for bits in BITS]
+    grids = [Rounding(2 ** (bits - 1) - 1, is_octahedral=True) for bits in BITS]
     # A grid as fine as what x, y and z were rounded to themselves has nothing off it.
-    coarse = [one for one in found if all(COARSER * one.most <= other.most for other in roundings)]
-    return [one for one in coarse if np.abs(on * one.most - np.round(on * one.most)).max() < NEAR][:1]
+    coarse = [grid for grid in grids if all(COARSER * grid.most <= other.most for other in roundings)]
+    return [grid for grid in coarse if np.abs(on * grid.most - np.round(on * grid.most)).max() < NEAR][:1]
 
 
 def _mean_angle(n: np.ndarray, rounding: Rounding) -> float:
@@ -92,5 +92,5 @@ def own_error_note(what: str, own: float) -> str:
 
 def bits_text(roundings: Iterable[Rounding]) -> str:
     """8 bits; 10 bits of an octahedral map."""
-    found = {(one.is_octahedral, int(2 * one.most).bit_length()) for one in roundings}
-    return " and ".join(f"{bits} bits{' of an octahedral map' * packed}" for packed, bits in sorted(found))
+    kinds = {(rounding.is_octahedral, int(2 * rounding.most).bit_length()) for rounding in roundings}
+    return " and ".join(f"{bits} bits{' of an octahedral map' * packed}" for packed, bits in sorted(kinds))

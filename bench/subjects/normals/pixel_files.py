@@ -104,10 +104,10 @@ def read_pixels(path: Path, choose: Choice) -> Pixels:
 def _are_shares(planes: np.ndarray, full: int) -> bool:
     """Whether all numbers are whole ones over `full`."""
     flat = planes.reshape(-1)[:: max(1, planes.size // LOOKED_AT)]
-    found = np.unique(flat[np.isfinite(flat)]).astype(np.float64) * full
+    numbers = np.unique(flat[np.isfinite(flat)]).astype(np.float64) * full
     # A float32 is that close to what it stands for.
-    is_near = np.abs(found - np.rint(found)) < full * 1e-7
-    return bool(len(found) >= DIFFERENT and found[0] >= 0 and found[-1] <= full and is_near.all())
+    is_near = np.abs(numbers - np.rint(numbers)) < full * 1e-7
+    return bool(len(numbers) >= DIFFERENT and numbers[0] >= 0 and numbers[-1] <= full and is_near.all())
 
 
 def has_normals_alone(path: Path) -> bool:
@@ -167,12 +167,12 @@ def read_image(path: Path, choose: Choice, check: Check = check_sides) -> Pixels
         chosen = list(choose(_checked_parts(path, kind, parts, check)))
         _check_alike(path, kind, parts, chosen)
         _in_a_process(path, kind, out, "pixels", *chosen)
-        found = np.load(out, allow_pickle=False)
+        planes = np.load(out, allow_pickle=False)
     if kind == "png" and png.has_surplus(data):
         raise refused(path, "it holds more rows than its header says: it is damaged")
     # Whole numbers of an EXR file are identities and counts.
-    full = np.iinfo(found.dtype).max if found.dtype.kind == "u" and kind != EXR else None
-    return Pixels(_planes(np.moveaxis(found, 0, -1), range(len(found))), full)
+    full = np.iinfo(planes.dtype).max if planes.dtype.kind == "u" and kind != EXR else None
+    return Pixels(_planes(np.moveaxis(planes, 0, -1), range(len(planes))), full)
 
 
 def _in_a_process(path: Path, kind: str, out: Path, mode: str, *names: str) -> None:
@@ -209,8 +209,8 @@ def _checked_parts(path: Path, kind: str, parts: list[dict[str, Any]], check: Ch
 def _check_alike(path: Path, kind: str, parts: list[dict[str, Any]], chosen: Sequence[str]) -> None:
     """Raises UsageError where channels are of parts that do not lie over each other, or whose 1 is another."""
     used = [part for part in parts if set(chosen) & set(part["names"])]
-    found = [(part["place"], part["sides"], kind == EXR or part["types"]) for part in used]
-    if any(one != found[0] for one in found):
+    layouts = [(part["place"], part["sides"], kind == EXR or part["types"]) for part in used]
+    if any(layout != layouts[0] for layout in layouts):
         raise refused(path, f"{', '.join(chosen)} lie in parts of different sizes or types")
 
 
@@ -226,24 +226,24 @@ def _planes(found: np.ndarray, chosen: Sequence[int]) -> np.ndarray:
 
 def _read_cloud(path: Path, choose: Choice) -> Pixels:
     try:
-        found = ply.read_cloud(path)
+        cloud = ply.read_cloud(path)
     except SceneFileError as error:
         raise UsageError(str(error)) from error
-    assert found.normals is not None
-    check_pixels(path, *found.normals.shape)
+    assert cloud.normals is not None
+    check_pixels(path, *cloud.normals.shape)
     chosen = [ply.NORMAL.index(name) for name in choose(ply.NORMAL)]
-    return Pixels(_planes(found.normals, chosen), None, found.roundings)
+    return Pixels(_planes(cloud.normals, chosen), None, cloud.roundings)
 
 
 # NPY
 
 
 def _read_npy(path: Path, choose: Choice) -> Pixels:
-    found = _npy_array(path)
-    shape = found.shape
+    array = _npy_array(path)
+    shape = array.shape
     if len(shape) == 3 and shape[0] in (3, 4) < (shape[-1],):
         raise refused(path, f"an array of shape {shape}", "channels come last: save np.moveaxis(array, 0, -1)")
-    return _npy_pixels(path, found, choose)
+    return _npy_pixels(path, array, choose)
 
 
 def read_plane(path: Path, choose: Choice) -> Pixels:
@@ -254,8 +254,8 @@ def read_plane(path: Path, choose: Choice) -> Pixels:
     """
     if path.suffix.lower() != ".npy":
         return read_pixels(path, choose)
-    found = _npy_array(path)
-    return _npy_pixels(path, found if found.ndim == 3 else found[..., None], choose)
+    array = _npy_array(path)
+    return _npy_pixels(path, array if array.ndim == 3 else array[..., None], choose)
 
 
 def _npy_pixels(path: Path, found: np.ndarray, choose: Choice) -> Pixels:

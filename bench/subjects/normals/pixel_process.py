@@ -51,20 +51,20 @@ def opened(kind: str, path: str) -> oiio.ImageInput:
 
 def parts_of(file: oiio.ImageInput) -> list[dict[str, Any]]:
     """What the header says of each part, layer or page: its name, sides, place, channels and their types."""
-    found: list[dict[str, Any]] = []
-    while file.seek_subimage(len(found), 0):
+    parts: list[dict[str, Any]] = []
+    while file.seek_subimage(len(parts), 0):
         spec = file.spec()
         kinds = [str(kind) for kind in spec.channelformats] or [str(spec.format)] * spec.nchannels
         channels = [(name, channel) for channel, name in enumerate(spec.channelnames)]
         if file.format_name() == "openexr":
             channels.sort()  # as the file has them; the library brings R, G, B and A to the front
-        found.append({"name": spec.get_string_attribute("oiio:subimagename"), "deep": spec.deep, "types": kinds})
-        found[-1] |= {
+        parts.append({"name": spec.get_string_attribute("oiio:subimagename"), "deep": spec.deep, "types": kinds})
+        parts[-1] |= {
             "place": [spec.x, spec.y],
             "sides": [spec.width, spec.height, spec.depth],
             "channels": dict(channels),
         }
-    return found
+    return parts
 
 
 def full_names(parts: list[dict[str, Any]]) -> list[list[str]]:
@@ -104,8 +104,8 @@ def answer(mode: str, kind: str, path: str, out: Path, names: list[str]) -> None
     """Write to `out` the parts of a file as JSON, for the mode "header", or else the named channels as NPY."""
     if mode == "header":
         parts = parts_of(opened(kind, path))
-        found = [part | {"names": full} for part, full in zip(parts, full_names(parts), strict=True)]
-        out.write_text(json.dumps(found), encoding="utf-8", newline="\n")
+        named_parts = [part | {"names": full} for part, full in zip(parts, full_names(parts), strict=True)]
+        out.write_text(json.dumps(named_parts), encoding="utf-8", newline="\n")
     else:
         with out.open("wb") as file:
             np.save(file, read_pixels(kind, path, names))

@@ -45,12 +45,12 @@ def _rows_size(data: bytes) -> int:
 
 
 def _compressed_bytes(data: bytes) -> bytes:
-    found, at = [], 8
-    while at + 12 <= len(data):
-        length, kind = struct.unpack_from(">I4s", data, at)
+    chunks, offset = [], 8
+    while offset + 12 <= len(data):
+        length, kind = struct.unpack_from(">I4s", data, offset)
         if kind == b"IEND":
             break
         if kind == b"IDAT":
-            found.append(data[at + 8 : at + 8 + length])
-        at += 12 + length
-    return b"".join(found)
+            chunks.append(data[offset + 8 : offset + 8 + length])
+        offset += 12 + length
+    return b"".join(chunks)

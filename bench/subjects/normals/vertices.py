@@ -75,17 +75,20 @@ def check_part(word: str) -> None:
 def vertex_set(path: Path) -> tuple[NormalSet, list[str]]:
     """The vertex normals of a mesh file, and what is to be said of them. Raises UsageError."""
     file = Path(whole_file_of(str(path)))
-    found = vertices_of(file)
-    lost = found.zero + found.not_finite
+    vertices = vertices_of(file)
+    lost = vertices.zero + vertices.not_finite
     name = f"{called(file.name)}{PART}{VERTICES}"
     # What does not count stands at the end: it is counted as pixels of a frame are.
-    n = np.concatenate([found.normals, np.zeros((lost, 3))]).astype(np.float32)
-    covered = np.arange(len(n)) < len(found.normals)
+    n = np.concatenate([vertices.normals, np.zeros((lost, 3))]).astype(np.float32)
+    covered = np.arange(len(n)) < len(vertices.normals)
     ahead = np.broadcast_to(np.array([0, 0, -1], np.float32), n.shape)
-    made = from_arrays(
-        name, f"vertex normals of {called(file.name)}", n, ahead, covered, None, found.not_finite or None
+    normal_set = from_arrays(
+        name, f"vertex normals of {called(file.name)}", n, ahead, covered, None, vertices.not_finite or None
     )
-    return replace(made, code_space=OBJECT, own_error_deg=found.own.error_deg), [*found.notes, *found.own.notes]
+    return replace(normal_set, code_space=OBJECT, own_error_deg=vertices.own.error_deg), [
+        *vertices.notes,
+        *vertices.own.notes,
+    ]
 
 
 def drawn_error(path: Path) -> tuple[float, list[str]]:
@@ -94,16 +97,16 @@ def drawn_error(path: Path) -> tuple[float, list[str]]:
 
     Raises UsageError.
     """
-    said = _said(path) if path.suffix.lower() in MAY_BE_ROUNDED else []
-    meshes = [one for one in said if one.normals is not None]
+    all_meshes = _said(path) if path.suffix.lower() in MAY_BE_ROUNDED else []
+    meshes = [mesh for mesh in all_meshes if mesh.normals is not None]
     own = _own_rounding(_all_used(path, meshes), meshes)
     return own.error_deg or 0.0, own.notes
 
 
 def vertices_of(path: Path) -> Vertices:
     """The vertices that triangles or points of a mesh file use. Raises UsageError."""
-    said = _said(path)
-    meshes = [one for one in said if one.normals is not None]
+    all_meshes = _said(path)
+    meshes = [mesh for mesh in all_meshes if mesh.normals is not None]
     if not meshes:
         raise UsageError(f"{path}: no vertex normals in it; export it with normals")
     used = _all_used(path, meshes)
@@ -112,11 +115,11 @@ def vertices_of(path: Path) -> Vertices:
     _, first = np.unique(rows.view(np.dtype((np.void, rows.itemsize * rows.shape[1])))[:, 0], return_index=True)
     normals = rows[np.sort(first), 3:]
     finite, length = _lengths(normals)
-    points = finite & (length >= min(_least(one.roundings) for one in meshes))
+    points = finite & (length >= min(_least(mesh.roundings) for mesh in meshes))
     if not points.any():
         raise UsageError(f"{path}: none of its {len(normals)} vertex normals has a direction; export it with normals")
     zero, not_finite = int((finite & ~points).sum()), int((~finite).sum())
-    notes = tuple(_left_out(zero, not_finite, len(said) - len(meshes)))
+    notes = tuple(_left_out(zero, not_finite, len(all_meshes) - len(meshes)))
     own = _own_rounding(used, meshes)
     return Vertices(normals[points] / length[points, None], zero, not_finite, own, notes)
 
@@ -126,7 +129,7 @@ def _said(path: Path) -> list[Stored]:
 
 
 def _all_used(path: Path, meshes: Sequence[Stored]) -> list[np.ndarray]:
-    return read_or_refused(lambda: [_used(path, one) for one in meshes])
+    return read_or_refused(lambda: [_used(path, mesh) for mesh in meshes])
 
 
 def _used(path: Path, stored: Stored) -> np.ndarray:
@@ -147,12 +150,12 @@ def _lengths(normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def _least(roundings: Sequence[Rounding]) -> float:
     """What is shorter has no direction. Whole numbers without a sign have no 0: the nearest is half a step away."""
-    return max([NOTHING, *(1 / one.most for one in roundings if not one.is_octahedral)])
+    return max([NOTHING, *(1 / rounding.most for rounding in roundings if not rounding.is_octahedral)])
 
 
 def _own_rounding(used: Sequence[np.ndarray], meshes: Sequence[Stored]) -> OwnRounding:
     """What all meshes' normals were rounded to; in the mean over all vertices, of which some may be exact."""
-    found: dict[Rounding, None] = {}
+    known_roundings: dict[Rounding, None] = {}
     turned, known = 0.0, False
     for rows, mesh in zip(used, meshes, strict=True):
         finite, length = _lengths(rows[:, 3:])
@@ -160,13 +163,13 @@ def _own_rounding(used: Sequence[np.ndarray], meshes: Sequence[Stored]) -> OwnRo
         unit = rows[points, 3:] / length[points, None]
         roundings = all_roundings(unit, mesh.roundings)
         own = own_error_deg(unit, roundings)
-        found |= dict.fromkeys(roundings)
+        known_roundings |= dict.fromkeys(roundings)
         turned, known = turned + len(rows) * (own or 0.0), known or own is not None
-    return OwnRounding(tuple(found), turned / sum(map(len, used)) if known else None)
+    return OwnRounding(tuple(known_roundings), turned / sum(map(len, used)) if known else None)
 
 
 def _left_out(zero: int, not_finite: int, without: int) -> list[str]:
-    said = [f"{zero} vertex normals of no length"] * bool(zero)
-    said += [f"{not_finite} that are NaN or infinite"] * bool(not_finite)
-    notes = [f"{' and '.join(said)} are left out"] if said else []
+    parts = [f"{zero} vertex normals of no length"] * bool(zero)
+    parts += [f"{not_finite} that are NaN or infinite"] * bool(not_finite)
+    notes = [f"{' and '.join(parts)} are left out"] if parts else []
     return notes + [f"{without} of its meshes have no normals and are left out"] * bool(without)

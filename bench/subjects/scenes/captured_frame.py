@@ -48,14 +48,14 @@ class CapturedFrame:
 
 def captured_frame(frame: FrameFile) -> CapturedFrame:
     """What a description stands for. Raises UsageError, in one line, for images that are not what it says."""
-    found = _Reader(frame)
-    pixels = found.pixels()
+    reader = _Reader(frame)
+    pixels = reader.pixels()
     pixels, every, fov = _fewer(pixels, frame.fov)
     height, width = pixels.depth.shape
-    notes = [*found.notes]
+    notes = [*reader.notes]
     if every > 1:
         notes.append(f"one row and one column in {every} is drawn, {width} x {height} pixels; none is averaged")
-    scene = pixel_scene(pixels, _view(frame, fov, found.to_world))
+    scene = pixel_scene(pixels, _view(frame, fov, reader.to_world))
     return CapturedFrame(scene, (width, height), notes)
 
 
@@ -71,10 +71,10 @@ def _fewer(pixels: PixelSurfaces, fov: float) -> tuple[PixelSurfaces, int, float
     every = math.isqrt(max(height * width - 1, 0) // MOST_PIXELS) + 1
     rows, columns = height // every, width // every
     first = [(whole - kept * every + every) // 2 for whole, kept in ((height, rows), (width, columns))]
-    some = tuple(slice(at, at + kept * every, every) for at, kept in zip(first, (rows, columns), strict=True))
-    made = PixelSurfaces(**{field.name: getattr(pixels, field.name)[some] for field in fields(pixels)})
+    some = tuple(slice(start, start + kept * every, every) for start, kept in zip(first, (rows, columns), strict=True))
+    sampled_pixels = PixelSurfaces(**{field.name: getattr(pixels, field.name)[some] for field in fields(pixels)})
     up = math.tan(math.radians(fov) / 2) * rows * every / height
-    return made, every, 2 * math.degrees(math.atan(up))
+    return sampled_pixels, every, 2 * math.degrees(math.atan(up))
 
 
 class _Reader:
@@ -101,14 +101,14 @@ class _Reader:
         if not covered.any():
             raise self._frame.error("depth", "no pixel is surface by both its depth and its normal")
         depth = np.where(covered, depth, np.float32(0))
-        said = {name: self._quantity(name, covered) for name in ENTRIES if name not in ("depth", "normal")}
-        smooth, roughness = said.pop("smoothness"), said.pop("roughness")
+        quantities = {name: self._quantity(name, covered) for name in ENTRIES if name not in ("depth", "normal")}
+        smooth, roughness = quantities.pop("smoothness"), quantities.pop("roughness")
         if smooth is not None:
             roughness = 1 - smooth
         assert roughness is not None
-        said = {name: self._stood_in(name, found, depth.shape) for name, found in said.items()}
+        quantities = {name: self._stood_in(name, quantity, depth.shape) for name, quantity in quantities.items()}
         self._say_what_stands_in()
-        return PixelSurfaces(depth=depth, normal=normal, roughness=roughness, **said)
+        return PixelSurfaces(depth=depth, normal=normal, roughness=roughness, **quantities)
 
     def _asked(self, name: str, read: Callable[[], Any]) -> Any:
         """What is read of an entry. Raises UsageError that names it."""
@@ -121,40 +121,40 @@ class _Reader:
         self.notes += [f"{name}: {as_keys(line)}" for line in lines]
 
     def _depth(self) -> np.ndarray:
-        said = dict(self._frame.entries["depth"])
-        path = Path(said.pop("file"))
-        image = self._asked("depth", lambda: _depth_image(path, DepthReading(fov=self._frame.fov, **said)))
+        options = dict(self._frame.entries["depth"])
+        path = Path(options.pop("file"))
+        image = self._asked("depth", lambda: _depth_image(path, DepthReading(fov=self._frame.fov, **options)))
         camera = Camera(self._frame.near, self._frame.far, self._frame.fov, image.aspect)
-        found = image.surface(camera)
-        if not found.any():
+        surface = image.surface(camera)
+        if not surface.any():
             raise self._frame.error("depth", _out_of_reach(path, image, camera))
         missing = image.not_finite
         self._note("depth", [*image.notes, *[f"{missing} numbers are NaN, which is background"] * bool(missing)])
-        return found
+        return surface
 
     def _normals(self, within: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        said = dict(self._frame.entries["normal"])
-        path = Path(said.pop("file"))
-        reading = Reading(fov=self._frame.fov, **said)
+        options = dict(self._frame.entries["normal"])
+        path = Path(options.pop("file"))
+        reading = Reading(fov=self._frame.fov, **options)
         if reading.space == "world":
             if self._frame.view_matrix is None:
                 raise self._frame.error("normal", "--space world needs --view-matrix, next to --fov")
             reading = replace(reading, view_matrix=self._frame.view_matrix)
-        found = self._asked("normal", lambda: captured(path, reading, within))
-        self._note("normal", found.notes)
-        return np.moveaxis(found.normals, 0, -1).astype(np.float32), found.covered
+        image = self._asked("normal", lambda: captured(path, reading, within))
+        self._note("normal", image.notes)
+        return np.moveaxis(image.normals, 0, -1).astype(np.float32), image.covered
 
     def _quantity(self, name: str, covered: np.ndarray) -> np.ndarray | None:
         """A quantity of all pixels, 0 on the background; None where the frame has none."""
-        said = self._frame.entries.get(name)
-        if said is None:
+        entry = self._frame.entries.get(name)
+        if entry is None:
             return None
-        if isinstance(said, dict):
-            found = self._asked(name, lambda: self._image(name, said, covered))
+        if isinstance(entry, dict):
+            quantity = self._asked(name, lambda: self._image(name, entry, covered))
         else:
-            found = np.multiply.outer(covered, np.asarray(said)).astype(np.float32)
-        self._asked(name, lambda: _check_range(name, found[covered]))
-        return found if name == "emissive" else np.clip(found, 0.0, 1.0)
+            quantity = np.multiply.outer(covered, np.asarray(entry)).astype(np.float32)
+        self._asked(name, lambda: _check_range(name, quantity[covered]))
+        return quantity if name == "emissive" else np.clip(quantity, 0.0, 1.0)
 
     def _image(self, name: str, said: dict[str, Any], covered: np.ndarray) -> np.ndarray:
         path = Path(said["file"])
@@ -168,9 +168,9 @@ class _Reader:
             self._note(
                 name, ['8 bits without "curve" are read as linear; "curve": "srgb" is what images for screens have']
             )
-        found = CURVES[curve](np.where(covered, pixels.planes, 0) / np.float32(pixels.full or 1))
-        found = np.moveaxis(found * np.float32(said.get("scale", 1.0)), 0, -1).astype(np.float32)
-        return found if ENTRIES[name] is COLOUR else found[..., 0]
+        image = CURVES[curve](np.where(covered, pixels.planes, 0) / np.float32(pixels.full or 1))
+        image = np.moveaxis(image * np.float32(said.get("scale", 1.0)), 0, -1).astype(np.float32)
+        return image if ENTRIES[name] is COLOUR else image[..., 0]
 
     def _stood_in(self, name: str, found: np.ndarray | None, shape: tuple[int, ...]) -> np.ndarray:
         if found is not None:
@@ -215,9 +215,9 @@ def _depth_image(path: Path, reading: DepthReading) -> DepthImage:
 
 
 def _out_of_reach(path: Path, image: DepthImage, camera: Camera) -> UsageError:
-    found = image.depths(camera)
-    found = found[np.isfinite(found)]
-    reach = f"{found.min():.4g} to {found.max():.4g}" if len(found) else "not finite"
+    depths = image.depths(camera)
+    depths = depths[np.isfinite(depths)]
+    reach = f"{depths.min():.4g} to {depths.max():.4g}" if len(depths) else "not finite"
     return refused(path, f"no depth lies within near and far; they are {reach}", "see --depths-are and --depth-unit")
 
 

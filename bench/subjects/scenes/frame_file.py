@@ -88,18 +88,22 @@ def as_keys(text: str) -> str:
 
 def read_frame_file(path: Path) -> FrameFile:
     """A description. Raises UsageError, in one line, for what is missing in it or not known."""
-    found = _document(path)
-    said = {spelled("attribute", name, KNOWN) or name: value for name, value in found.items() if value is not None}
-    _check_names(path, "", said, KNOWN)
-    if {"roughness", "smoothness"} <= set(said):
+    document = _document(path)
+    attributes = {
+        spelled("attribute", name, KNOWN) or name: value for name, value in document.items() if value is not None
+    }
+    _check_names(path, "", attributes, KNOWN)
+    if {"roughness", "smoothness"} <= set(attributes):
         raise UsageError(f"{path}: roughness and smoothness are one quantity; leave one out")
-    lacking = [name for name in NEEDED if name not in said and not (name == "roughness" and "smoothness" in said)]
+    lacking = [
+        name for name in NEEDED if name not in attributes and not (name == "roughness" and "smoothness" in attributes)
+    ]
     if lacking:
         raise UsageError(f"{path}: no {', '.join(lacking)}; {_how(lacking[0])}")
-    fov, near, far = (_number(path, name, said[name]) for name in CAMERA)
+    fov, near, far = (_number(path, name, attributes[name]) for name in CAMERA)
     _check_camera(path, fov, near, far)
-    entries = {name: _entry(path, name, said[name]) for name in ENTRIES if name in said}
-    return FrameFile(path, fov, near, far, _matrix(path, said.get("view_matrix")), entries)
+    entries = {name: _entry(path, name, attributes[name]) for name in ENTRIES if name in attributes}
+    return FrameFile(path, fov, near, far, _matrix(path, attributes.get("view_matrix")), entries)
 
 
 def files_of_frame(path: Path) -> list[Path]:
@@ -111,22 +115,22 @@ def files_of_frame(path: Path) -> list[Path]:
 
 
 def _named_files(frame: FrameFile) -> Iterator[Path]:
-    words = [one for one in frame.entries.values() if isinstance(one, dict)]
-    yield from (Path(one[key]) for one in words for key in ("file", "mask") if key in one)
+    words = [entry for entry in frame.entries.values() if isinstance(entry, dict)]
+    yield from (Path(entry[key]) for entry in words for key in ("file", "mask") if key in entry)
     if frame.view_matrix:
         yield Path(frame.view_matrix)
 
 
 def _document(path: Path) -> dict[str, Any]:
     try:
-        found = parsed_json(file_bytes(path, MOST_BYTES))
+        document = parsed_json(file_bytes(path, MOST_BYTES))
     except SceneFileError as error:
         raise UsageError(str(error)) from error
     except ValueError as error:
         raise UsageError(f"{path}: {error}") from error
-    if not isinstance(found, dict):
+    if not isinstance(document, dict):
         raise UsageError(f'{path}: it describes no frame; write {{"depth": {{"file": "depth.exr"}}, ...}}')
-    return found
+    return document
 
 
 def _check_names(path: Path, place: str, found: Mapping[str, Any], known: tuple[str, ...]) -> None:
@@ -165,8 +169,8 @@ def _matrix(path: Path, value: object) -> str | None:
     if value is None:
         return None
     if isinstance(value, list):
-        flat = [one for row in value for one in (row if isinstance(row, list) else [row])]
-        return ",".join(repr(_number(path, "view_matrix", one)) for one in flat)
+        flat = [number for row in value for number in (row if isinstance(row, list) else [row])]
+        return ",".join(repr(_number(path, "view_matrix", number)) for number in flat)
     if not isinstance(value, str):
         raise UsageError(f"{path}: view_matrix is {value!r}; it must be numbers, or a text file of them")
     is_file = re.search(r"[^-+0-9.eE,;\s]", value)
@@ -179,17 +183,17 @@ def _entry(path: Path, name: str, value: object) -> Any:
     if kinds is NUMBER and not isinstance(value, dict):
         return _number(path, name, value)
     if kinds is COLOUR and isinstance(value, list) and len(value) == 3:
-        return [_number(path, name, one) for one in value]
+        return [_number(path, name, number) for number in value]
     if not isinstance(value, dict):
         raise UsageError(f"{path}: {name} is {value!r}; {_how(name)}")
     _check_names(path, f"{name}: ", value, tuple(kinds))
     if value.get("file") is None:
         raise UsageError(f"{path}: {name}: no file; {_how(name)}")
-    said = {key: _word(path, f"{name}: {key}", one, kinds[key]) for key, one in value.items() if one is not None}
+    options = {key: _word(path, f"{name}: {key}", word, kinds[key]) for key, word in value.items() if word is not None}
     for key in ("file", "mask"):
-        if key == "file" or Path(said.get(key, "")).suffix.lower() in READERS:
-            said[key] = str(_beside(path, name, said[key]))
-    return said
+        if key == "file" or Path(options.get(key, "")).suffix.lower() in READERS:
+            options[key] = str(_beside(path, name, options[key]))
+    return options
 
 
 def _word(path: Path, place: str, value: object, kind: type) -> Any:
@@ -205,12 +209,12 @@ def _word(path: Path, place: str, value: object, kind: type) -> Any:
 def _beside(path: Path, name: str, address: str) -> Path:
     """A file next to a description or below it. Raises UsageError where it is elsewhere, or not there."""
     try:
-        found = checked_address(path, address, name)
-        is_there = found is not None and found.is_file()
+        file = checked_address(path, address, name)
+        is_there = file is not None and file.is_file()
     except SceneFileError as error:
         raise UsageError(str(error)) from error
     except OSError as error:
         raise UsageError(f"{path}: {name}: {address[:SHOWN]}...: {reason_of(error)}") from error
-    if found is None or not is_there:
+    if file is None or not is_there:
         raise UsageError(f"{path}: {name}: no file {address}; files are named from the folder of {path.name}")
-    return path.parent / os.path.relpath(found, path.parent.resolve())
+    return path.parent / os.path.relpath(file, path.parent.resolve())

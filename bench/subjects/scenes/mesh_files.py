@@ -31,6 +31,6 @@ def read_or_refused(read: Callable[[], T]) -> T:
 
 def say_notes(notes: Mapping[Path, Sequence[str]]) -> None:
     """What is to be said of files, a line each, on standard error; once all are read, as an error is one line alone."""
-    for path, said in notes.items():
-        if said:
-            tell(f"{path}: {'; '.join(said)}")
+    for path, lines in notes.items():
+        if lines:
+            tell(f"{path}: {'; '.join(lines)}")

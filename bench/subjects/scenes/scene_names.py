@@ -34,20 +34,20 @@ def scene_makers_named(names: Names) -> list[SceneMaker]:
         name = called(path.name)
         if path.suffix.lower() == ENDING:
             frame = read_frame_file(path)
-            found = captured_frame(frame)
-            lines.extend(lines_of(frame, found))
+            capture = captured_frame(frame)
+            lines.extend(lines_of(frame, capture))
             return SceneMaker(
-                name, f"the pixels of {name}", partial(_given, found.scene), FRAMES, None, True, found.sides
+                name, f"the pixels of {name}", partial(_given, capture.scene), FRAMES, None, True, capture.sides
             )
         file = mesh_file(path)
         notes[path] = file.notes
         return SceneMaker(name, f"the meshes of {name}", partial(file_scene, file), FRAMES, None, file.is_metal_rough)
 
-    made = choose_or_read("scene", names, SCENES, ENDINGS, scene_of)
+    makers = choose_or_read("scene", names, SCENES, ENDINGS, scene_of)
     say_notes(notes)
     for line in lines:
         tell(line)
-    return made
+    return makers
 
 
 def _given(scene: Scene, _: Setting) -> Scene:

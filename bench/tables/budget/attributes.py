@@ -116,8 +116,8 @@ def _curve_trip(attribute: str, codecs: tuple[CurveCodec, ...], surfaces: Surfac
 
 
 def _normal(encoding: str, bits: tuple[int, ...], storage: str = "", kind: str = UNORM, blends: bool = False) -> Code:
-    found = STORAGES[storage] if storage else by_rule("unorm", bits)
-    codec = Codec(ENCODINGS[encoding], found)
+    normal_storage = STORAGES[storage] if storage else by_rule("unorm", bits)
+    codec = Codec(ENCODINGS[encoding], normal_storage)
     words = tuple(f"normal.{axis}" for axis in "xyz"[: len(bits)])
     name = f"{encoding} {_sized(bits)}" + (" in halves" if kind == FLOAT else "")
     return Code(
@@ -258,8 +258,8 @@ def _short(limit: float) -> float:
 
 SEEN: Mapping[str, Attribute] = MappingProxyType(
     {
-        one.name: one
-        for one in (
+        attribute.name: attribute
+        for attribute in (
             Attribute("normal", tuple(_normals()), 20),
             Attribute("base_color", tuple(_base_colors()), 18),
             Attribute(

@@ -182,5 +182,5 @@ def webgpu_cost(formats: Sequence[str]) -> int | None:
 
 
 BINS: Mapping[str, Bin] = MappingProxyType(
-    {one.name: one for one in (*_PLAIN, *_WHOLE, *_FIELDS, *map(_blended, _PLAIN))}
+    {target.name: target for target in (*_PLAIN, *_WHOLE, *_FIELDS, *map(_blended, _PLAIN))}
 )

@@ -39,7 +39,7 @@ def alone(layout: Layout, attribute: str) -> Layout:
     Raises:
         LayoutError: the words cannot stand alone, as a roughness that carries a sign of the normal.
     """
-    kept = [_only(layout, at, target, COMPONENTS[attribute]) for at, target in enumerate(layout.targets)]
+    kept = [_only(layout, i, target, COMPONENTS[attribute]) for i, target in enumerate(layout.targets)]
     held = [target for target in kept if any(not word.startswith(FREE) for word in target.holds.split())]
     is_normal = attribute == "normal"
     if not is_normal:
@@ -78,7 +78,10 @@ def said(
         errors_of: the errors of an attribute's code, by both names.
         classes: those whose worst counts.
     """
-    theirs = {one.code.attribute: (one.code.name, errors_of(one.code.attribute, one.code.name)) for one in found.placed}
+    theirs = {
+        placed.code.attribute: (placed.code.name, errors_of(placed.code.attribute, placed.code.name))
+        for placed in found.placed
+    }
     now = dict(mine)
     start = _worst(now, classes)
     parts: list[str] = []
@@ -105,7 +108,7 @@ def _is_less(mine: Mapping[str, float], theirs: Mapping[str, float]) -> bool:
 
 
 def _worst(errors: Errors, classes: Sequence[str]) -> float:
-    return max(sum(found.get(name, 0.0) for found in errors.values()) for name in classes)
+    return max(sum(class_errors.get(name, 0.0) for class_errors in errors.values()) for name in classes)
 
 
 def _gain_db(before: Errors, after: Errors, classes: Sequence[str]) -> float:

@@ -83,15 +83,15 @@ def _judged(scenes: str) -> str:
 def _ticks(points: Sequence[Row]) -> tuple[tuple[float, str], ...]:
     """Every second whole number."""
     low, high = (bound(point["x"] for point in points) for bound in (min, max))
-    return tuple((float(at), str(at)) for at in range(2 * math.ceil(low / 2), math.floor(high) + 1, 2))
+    return tuple((float(tick), str(tick)) for tick in range(2 * math.ceil(low / 2), math.floor(high) + 1, 2))
 
 
 def _finding(ours: Sequence[Row], others: Sequence[Row]) -> str:
     """What the proposals gain on others of as many bytes or fewer."""
     gains = [
-        max(one["y"] for one in ours if one["x"] <= other["x"]) - other["y"]
+        max(point["y"] for point in ours if point["x"] <= other["x"]) - other["y"]
         for other in others
-        if any(one["x"] <= other["x"] for one in ours)
+        if any(point["x"] <= other["x"] for point in ours)
     ]
     if gains:
         return f"For the same bytes or fewer, {min(gains):.0f} to {max(gains):.0f} dB better"

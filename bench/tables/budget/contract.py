@@ -39,7 +39,9 @@ NAMES = dict.fromkeys(name for word in (*KNOWN, *EXACT, "depth", "all", "none") 
 def as_known(words: Iterable[Word]) -> Names:
     """Return words of attributes, joined by + or :, with each name as it is known here."""
     known = re.compile(r"[^+:]+")
-    return tuple(known.sub(lambda match: spelled("attribute", match[0], NAMES) or match[0], str(one)) for one in words)
+    return tuple(
+        known.sub(lambda match: spelled("attribute", match[0], NAMES) or match[0], str(word)) for word in words
+    )
 
 
 def attributes_held(words: Names, speed: float) -> list[Attribute]:
@@ -48,9 +50,9 @@ def attributes_held(words: Names, speed: float) -> list[Attribute]:
     Raises:
         UsageError: an unknown one, two of one name, or no normal.
     """
-    found = [_attribute(str(word), speed) for word in words]
-    held = [one for one in found if one]
-    names = [one.name for one in held]
+    attributes = [_attribute(str(word), speed) for word in words]
+    held = [attribute for attribute in attributes if attribute]
+    names = [attribute.name for attribute in held]
     if twice := next((name for name in names if names.count(name) > 1), None):
         raise UsageError(f"--hold: {twice} is named twice")
     if NORMAL not in names:
@@ -85,8 +87,8 @@ def held_in_stencil(words: Names) -> list[str]:
 
 def names_held(option: str, words: Names | None, held: Sequence[str]) -> list[str]:
     """Return the attributes that an option names, each of which is held. Raises UsageError."""
-    found = [str(word) for word in words or () if word != "depth"]
-    for word in found:
+    names = [str(word) for word in words or () if word != "depth"]
+    for word in names:
         if word not in held:
             raise UsageError(f"{option} {word}: not held; held: {', '.join(held)}")
-    return found
+    return names

@@ -69,12 +69,14 @@ class Slots:
 
     def count(self, layouts: Iterable[Layout]) -> None:
         """Counts layouts that are not known, all at once, which takes less time than one by one."""
-        new = {one.summary: one for one in layouts if one.summary not in self._known}
+        new = {layout.summary: layout for layout in layouts if layout.summary not in self._known}
         make = {PACK: pack_operation, UNPACK: unpack_operation}
-        cases = [CostCase(None, key, name, partial(do, one)) for key, one in new.items() for name, do in make.items()]
-        found = {family: counted(cases, family, STAGE) for family in self._families} if cases else {}
+        cases = [
+            CostCase(None, key, name, partial(do, layout)) for key, layout in new.items() for name, do in make.items()
+        ]
+        counts = {family: counted(cases, family, STAGE) for family in self._families} if cases else {}
         for key in new:
-            prices = (_price(family, rows.get((key, PACK)), rows.get((key, UNPACK))) for family, rows in found.items())
+            prices = (_price(family, rows.get((key, PACK)), rows.get((key, UNPACK))) for family, rows in counts.items())
             self._known[key] = tuple(filter(None, prices))
 
     def of(self, layout: Layout) -> tuple[Price, ...]:
@@ -90,9 +92,9 @@ class Slots:
     def count_codes(self, problem: Problem) -> None:
         """Counts every code of a problem in each way in which it may lie in a target."""
         for code in (code for attribute in problem.attributes for code in attribute.codes):
-            for one in problem.bins:
-                if one.need(code) is not None and _key(code, one) not in self._alone:
-                    self._alone[_key(code, one)] = alone(code, one)
+            for target in problem.bins:
+                if target.need(code) is not None and _key(code, target) not in self._alone:
+                    self._alone[_key(code, target)] = alone(code, target)
         self.count(self._alone.values())
 
     def of_code(self, code: Code, one: Bin) -> float:
@@ -143,12 +145,12 @@ def within(problem: Problem, most: float, slots: Slots, solve: Solve) -> list[So
     # Sums for which layouts kept to the limit, and did not.
     low, high, allowed = -math.inf, math.inf, most
     for _ in range(TRIES):
-        found = list(solve(replace(problem, cost=slots.of_code, most_cost=allowed)))
-        if not found:
+        solutions = list(solve(replace(problem, cost=slots.of_code, most_cost=allowed)))
+        if not solutions:
             break
-        kept = [one for one in found if whole(slots, one) <= most]
-        total = _total(slots, found[0])
-        wish = most + total - whole(slots, found[0])
+        kept = [solution for solution in solutions if whole(slots, solution) <= most]
+        total = _total(slots, solutions[0])
+        wish = most + total - whole(slots, solutions[0])
         if kept:
             low, best = allowed, kept
         else:
@@ -169,13 +171,13 @@ def least(problem: Problem, slots: Slots, solve: Solve) -> Solution | None:
     if first is None:
         return None
     sums = [_total(slots, first) + more for more in BEYOND]
-    others = [one for most in sums for one in solve(replace(problem, cost=slots.of_code, most_cost=most))]
+    others = [solution for most in sums for solution in solve(replace(problem, cost=slots.of_code, most_cost=most))]
     return min((first, *others), key=lambda one: whole(slots, one))
 
 
 def _total(slots: Slots, found: Solution) -> float:
     """What the codes of a layout take one by one."""
-    return sum(slots.of_code(one.code, one.bin) for one in found.placed)
+    return sum(slots.of_code(placed.code, placed.bin) for placed in found.placed)
 
 
 def whole(slots: Slots, found: Solution) -> float:

@@ -94,31 +94,36 @@ class Judged:
         if not self.classes:
             asked = ", ".join(question.judging)
             raise UsageError(f"--size: no class of surfaces ({asked}) has {LEAST_PIXELS} pixels in {question.scenes}")
-        self.unseen = [one.name for one in question.attributes if not (one.is_seen and self._shows(one))]
+        self.unseen = [
+            attribute.name for attribute in question.attributes if not (attribute.is_seen and self._shows(attribute))
+        ]
 
     def _take(self, attributes: Sequence[Attribute], tick: Tick) -> None:
         """Measures the codes of attributes that are not yet known."""
         for attribute in attributes:
             new = [code for code in attribute.codes if code.key not in self._errors]
             for judge in self._judges:
-                for code, found in rates(judge, new, tick).items():
+                for code, errors in rates(judge, new, tick).items():
                     mine = self._errors.setdefault((attribute.name, code), {})
-                    mine.update({_class_of(judge, n): e for n, e in found.items()})
+                    mine.update({_class_of(judge, n): e for n, e in errors.items()})
 
     def _shows(self, attribute: Attribute) -> bool:
         """Whether a scene shows what the codes of an attribute lose."""
-        mine = (found for (name, _), found in self._errors.items() if name == attribute.name)
-        return any(e > NOTHING for found in mine for e in found.values())
+        mine = (errors for (name, _), errors in self._errors.items() if name == attribute.name)
+        return any(e > NOTHING for errors in mine for e in errors.values())
 
     @property
     def classes(self) -> list[str]:
         """Those whose worst counts: of each scene its classes of surfaces, not its frame."""
-        names = dict.fromkeys(name for found in self._errors.values() for name in found)
+        names = dict.fromkeys(name for errors in self._errors.values() for name in errors)
         return [name for name in names if name.rpartition(" ")[2] in self._question.judging]
 
     def _usual(self, attributes: Sequence[Attribute]) -> list[Attribute]:
         """Those that no scene shows in their usual bits, and others without codes of needless words."""
-        return [usual(one) if one.is_seen and not self._shows(one) else self._in_one_word(one) for one in attributes]
+        return [
+            usual(attribute) if attribute.is_seen and not self._shows(attribute) else self._in_one_word(attribute)
+            for attribute in attributes
+        ]
 
     def _in_one_word(self, attribute: Attribute) -> Attribute:
         """An attribute without codes of more than 32 bits, where one of as many or fewer shows in no class: nobody
@@ -155,22 +160,22 @@ class Judged:
             inside = [name for name in self.classes if _scene_of(name) == scene]
             others = [name for name in self.classes if _scene_of(name) != scene]
             problems = self._problems(asked, others) if others else ()
-            found = next(filter(None, (self._kept(problem, 1) for problem in problems)), [])
-            errors += [solution.worst_of(inside) for solution in found]
+            solutions = next(filter(None, (self._kept(problem, 1) for problem in problems)), [])
+            errors += [solution.worst_of(inside) for solution in solutions]
         return psnr_db(float(np.mean(errors))) if len(errors) > 1 else None
 
     def _kept(self, problem: Problem, count: int) -> list[Solution]:
         """Up to so many of the best layouts: of whole numbers only where they gain much."""
         plain = _in_channels(problem)
-        found = self._in_slots(plain, count)
+        solutions = self._in_slots(plain, count)
         if len(plain.bins) == len(problem.bins):
-            return found
-        if not found:
+            return solutions
+        if not solutions:
             return self._in_slots(problem, count)
-        worst = found[0].worst_of(problem.classes)
+        worst = solutions[0].worst_of(problem.classes)
         others = self._in_slots(problem, count) if worst > UNSEEN else []
         if not others or psnr_db(others[0].worst_of(problem.classes)) - psnr_db(worst) < INTEGER_DB:
-            return found
+            return solutions
         return others
 
     def _in_slots(self, problem: Problem, count: int) -> list[Solution]:
@@ -189,12 +194,12 @@ class Judged:
     def _best_drawn(self, name: str, asked: Own, depth: DepthEncoding | None) -> tuple[Solution, Layout, Row] | None:
         """Of the layouts that count as equal the one whose FLIP is least; the plainest where that is as good."""
         best = None
-        for found in self._finalists(asked, FINALISTS):
-            layout = _with_depth(layout_of(name, found), depth)
+        for solution in self._finalists(asked, FINALISTS):
+            layout = _with_depth(layout_of(name, solution), depth)
             row = self.row_of(PROPOSAL, layout)
             flip_p99 = math.inf if row["flip_p99"] is None else row["flip_p99"]
             if best is None or flip_p99 < best[2]["flip_p99"] - EQUAL_FLIP:
-                best = found, layout, row
+                best = solution, layout, row
             # What nobody sees, or nobody can tell, is not compared.
             if flip_p99 <= INVISIBLE:
                 break
@@ -206,7 +211,7 @@ class Judged:
 
     def _measure_pairs(self, found: Solution) -> bool:
         """Measures what pairs of a layout's codes make together; whether there is one that is new and counts."""
-        codes, before = [one.code for one in found.placed if one.code.trip], len(self._together)
+        codes, before = [placed.code for placed in found.placed if placed.code.trip], len(self._together)
         for first, second in combinations(codes, 2):
             pair = frozenset((first.key, second.key))
             beyond: dict[str, float] = {}
@@ -227,17 +232,17 @@ class Judged:
             middle = (low + high) // 2
             low, high = (low, middle) if self._keeps(replace(first, bytes=middle)) else (middle + 1, high)
         if low == last and not self._keeps(replace(first, bytes=last)):
-            said = f"no layout of up to {last} bytes has FLIP of {q.threshold:g}"
-            yield self._empty(PROPOSAL, f"{last} bytes") | {"limit": last, "skipped": said}
+            reason = f"no layout of up to {last} bytes has FLIP of {q.threshold:g}"
+            yield self._empty(PROPOSAL, f"{last} bytes") | {"limit": last, "skipped": reason}
             return
         yield from self.proposals(replace(first, bytes=low))
 
     def _keeps(self, rules: Rules) -> bool:
         """Whether the layout of a limit keeps the threshold in every scene."""
-        found, threshold = self._solved(rules), self._question.threshold
-        if found is None or threshold is None:
+        solution, threshold = self._solved(rules), self._question.threshold
+        if solution is None or threshold is None:
             return False
-        flips = [judge.of_layout(layout_of(f"budget_{rules.bytes}", found)).flip for judge in self._judges]
+        flips = [judge.of_layout(layout_of(f"budget_{rules.bytes}", solution)).flip for judge in self._judges]
         return all(flip <= threshold for flip in flips)
 
     def proposals(self, rules: Rules) -> Iterator[Row]:
@@ -248,10 +253,10 @@ class Judged:
         if best is None:
             yield self._empty(PROPOSAL, f"{rules.bytes} bytes") | {"limit": rules.bytes, "skipped": self._why(rules)}
             return
-        found, layout, row = best
+        solution, layout, row = best
         held_back = self._held_back_db(replace(asked, rules=enough))
         row |= {"held_back_db": row["held_back_db"] if held_back is None else held_back}
-        yield row | self._predicted(found, row) | self._next(rules, found) | {"limit": rules.bytes}
+        yield row | self._predicted(solution, row) | self._next(rules, solution) | {"limit": rules.bytes}
         self._tick(layout.name)
 
     def _enough(self, asked: Own) -> int:
@@ -264,8 +269,8 @@ class Judged:
         """The row of somebody's layout, and that of a proposal that holds the same in targets of the same formats."""
         row = self.row_of(MINE, layout)
         if changes.holds_other_quantities(layout):
-            said = "it keeps no metallic: its materials are other quantities than these codes are for"
-            yield row | {"changes": said}
+            note = "it keeps no metallic: its materials are other quantities than these codes are for"
+            yield row | {"changes": note}
             return
         asked = own(layout, self._question.rules[0])
         # These codes are in no count of steps.
@@ -275,11 +280,13 @@ class Judged:
             within = " within WebGPU's bytes" if asked.rules.webgpu is not None else ""
             yield row | {"changes": f"no codes of the floors' bits hold its attributes in its targets{within}"}
             return
-        found, _, improved = best
-        yield row | {"changes": self._changes(layout, found)}
-        unseen = dict.fromkeys(one.name.split()[0] for one in asked.attributes if not one.is_seen)
-        said = {"by_contract": ", ".join(unseen) or None}
-        yield improved | self._predicted(found, improved) | said | {"kind": IMPROVED, "limit": layout.bytes_per_pixel}
+        solution, _, improved = best
+        yield row | {"changes": self._changes(layout, solution)}
+        unseen = dict.fromkeys(attribute.name.split()[0] for attribute in asked.attributes if not attribute.is_seen)
+        note = {"by_contract": ", ".join(unseen) or None}
+        yield (
+            improved | self._predicted(solution, improved) | note | {"kind": IMPROVED, "limit": layout.bytes_per_pixel}
+        )
 
     def _next(self, rules: Rules, found: Solution) -> Row:
         """How many bytes more bring something, and what; empty where a few bring nothing."""
@@ -301,14 +308,16 @@ class Judged:
             return self._why_never(rules)
         if least_bytes <= rules.bytes and q.most_instructions is not None:
             return self._why_too_dear(problem, q.most_instructions)
-        bits = sum(min(code.total_bits for code in one.codes) for one in q.attributes)
+        bits = sum(min(code.total_bits for code in attribute.codes) for attribute in q.attributes)
         few = f"{rules.bytes} bytes are too few"
         smallest = f"the attributes need {bits} bits, and by these rules the smallest layout has {least_bytes} bytes"
         return f"{few}: {smallest}{self._dropped(problem)}"
 
     def _dropped(self, problem: Problem) -> str:
         """Say without which attributes a layout fits, those that an image loses least by first."""
-        losses = {one.name: loss for one in problem.attributes if (loss := self._loss(one)) is not None}
+        losses = {
+            attribute.name: loss for attribute in problem.attributes if (loss := self._loss(attribute)) is not None
+        }
         order = sorted(losses, key=lambda name: (name != EMISSION.name, losses[name] > HALF_STEP, losses[name]))
         fits = partial(_fits_without, problem)
         count = next((count for count in range(1, len(order) + 1) if fits(order[:count])), 0)
@@ -317,8 +326,8 @@ class Judged:
             dropped = kept if fits(kept := [other for other in dropped if other != name]) else dropped
         # The light buffer holds what is given off for nothing.
         light = [f"with {EMISSION.name} in the light buffer ({IN_LIGHT})"] if EMISSION.name in dropped else []
-        said = [f"{name} ({_loss_text(losses[name])})" for name in dropped if name != EMISSION.name]
-        without = [f"without {' and '.join(said)}"] if said else []
+        parts = [f"{name} ({_loss_text(losses[name])})" for name in dropped if name != EMISSION.name]
+        without = [f"without {' and '.join(parts)}"] if parts else []
         return f". It fits {', and '.join([*light, *without])}" if dropped else ""
 
     def _loss(self, attribute: Attribute) -> float | None:
@@ -335,17 +344,17 @@ class Judged:
     def _why_never(self, rules: Rules) -> str:
         """What no target can hold, or that all of it together is too much."""
         q = self._question
-        for one in q.attributes:
-            is_blended = one.name in rules.blended
-            if not any(home.blends == is_blended and home.need(code) for home in q.bins for code in one.codes):
-                codes = ", ".join(code.name for code in one.codes)
+        for attribute in q.attributes:
+            is_blended = attribute.name in rules.blended
+            if not any(home.blends == is_blended and home.need(code) for home in q.bins for code in attribute.codes):
+                codes = ", ".join(code.name for code in attribute.codes)
                 into = " that decals blend into" if is_blended else ""
-                return f"no target{into} of these formats holds {one.name} ({codes}); --formats names others"
+                return f"no target{into} of these formats holds {attribute.name} ({codes}); --formats names others"
         return "no targets hold this by these rules, whatever their bytes; allow more --targets or --formats"
 
     def _why_too_dear(self, problem: Problem, most: int) -> str:
-        found = least(problem, self._slots, partial(finalists, count=1))
-        slots = f"takes {whole(self._slots, found):g} to pack and unpack" if found else "is not known"
+        solution = least(problem, self._slots, partial(finalists, count=1))
+        slots = f"takes {whole(self._slots, solution):g} to pack and unpack" if solution else "is not known"
         families = " and ".join(self._question.families)
         return (
             f"{most} issue slots are too few: the cheapest layout of {problem.rules.bytes} bytes {slots} on {families}"
@@ -355,19 +364,19 @@ class Judged:
         """What is predicted of a layout, and where the error of the class comes from that is worst in its image."""
         worst = row["worst_class"] or max(self.classes, key=lambda name: found.errors.get(name, 0.0))
         total = found.errors[worst]
-        shares = {one.code.attribute: self._errors.get(one.key, {}).get(worst, 0.0) for one in found.placed}
+        shares = {placed.code.attribute: self._errors.get(placed.key, {}).get(worst, 0.0) for placed in found.placed}
         for pair, beyond in self._together.items():
-            if pair <= {one.key for one in found.placed}:
+            if pair <= {placed.key for placed in found.placed}:
                 shares[" with ".join(sorted(name for name, _ in pair))] = beyond.get(worst, 0.0)
         largest = sorted(shares.items(), key=lambda pair: -pair[1])
-        said = [f"{name} {100 * e / total:.0f} %" for name, e in largest if total and abs(e) / total >= 0.01]
+        parts = [f"{name} {100 * e / total:.0f} %" for name, e in largest if total and abs(e) / total >= 0.01]
         frames = [e for name, e in found.errors.items() if name.endswith(f" {FRAME}")]
         return {
             "predicted_db": psnr_db(max(frames, default=0.0)),
             "predicted_worst_db": psnr_db(found.worst_of(self.classes)),
-            "error_from": ", ".join(said) or None,
-            "blends": ", ".join(one.code.attribute for one in found.placed if one.bin.blends) or None,
-            "codes": "; ".join(f"{one.code.attribute} {one.code.name}" for one in found.placed),
+            "error_from": ", ".join(parts) or None,
+            "blends": ", ".join(placed.code.attribute for placed in found.placed if placed.bin.blends) or None,
+            "codes": "; ".join(f"{placed.code.attribute} {placed.code.name}" for placed in found.placed),
             "by_contract": ", ".join(self.unseen) or None,
         }
 
@@ -387,10 +396,12 @@ class Judged:
         try:
             # What a layout lacks is no rounding: it is drawn exact, and its bytes are added.
             whole = changes.completed(layout)
-            found = [(judge, judge.of_layout(whole)) for judge in self._judges]
+            measurements = [(judge, judge.of_layout(whole)) for judge in self._judges]
         except UNMEASURABLE as error:
             return row | {"skipped": str(error)}
-        errors = {_class_of(judge, n): e for judge, one in found for n, e in one.errors.items()}
+        errors = {
+            _class_of(judge, n): e for judge, errors_of_scene in measurements for n, e in errors_of_scene.errors.items()
+        }
         worst = max((n for n in errors if n.rpartition(" ")[2] in self._question.judging), key=lambda n: errors[n])
         frame = max(e for n, e in errors.items() if n.endswith(f" {FRAME}"))
         return row | {
@@ -398,7 +409,7 @@ class Judged:
             "worst_db": psnr_db(errors[worst]),
             "worst_class": worst,
             "held_back_db": self._by_scene_db(errors),
-            "flip_p99": max(errors_of_scene.flip for _, errors_of_scene in found),
+            "flip_p99": max(errors_of_scene.flip for _, errors_of_scene in measurements),
         }
 
     def _by_scene_db(self, errors: Mapping[str, float]) -> float:
@@ -411,7 +422,9 @@ class Judged:
     def _beside(self, layout: Layout) -> float:
         """Bytes that a layout lacks of what is held, less those of emission that is not."""
         kept = {word.component for word in layout.words}
-        held = {one.name: min(code.total_bits for code in one.codes) for one in self._question.attributes}
+        held = {
+            attribute.name: min(code.total_bits for code in attribute.codes) for attribute in self._question.attributes
+        }
         lacks = [held[name] for name, word in LACKS.items() if name in held and word not in kept]
         storages = [(word, layout.targets[word.target].storage) for word in layout.words]
         more = [word.bits or storage.bits[word.first] for word, storage in storages if "emissive" in word.component]
@@ -431,8 +444,8 @@ class Judged:
 
     def _errors_alone(self, layout: Layout, attribute: str) -> dict[str, float]:
         only = changes.alone(layout, attribute)
-        found = [(judge, judge.of_layout(only).errors) for judge in self._judges]
-        return {_class_of(judge, n): e for judge, errors in found for n, e in errors.items()}
+        measurements = [(judge, judge.of_layout(only).errors) for judge in self._judges]
+        return {_class_of(judge, n): e for judge, errors in measurements for n, e in errors.items()}
 
     def _in_tile(self, layout: Layout) -> Row:
         q, taken = self._question, layout.bytes_per_pixel + self._question.light_bytes
@@ -444,21 +457,21 @@ class Judged:
         return {"mb_1080p": HD * moved, "mb_4k": UHD * moved}
 
     def _empty(self, kind: str, name: str) -> Row:
-        q, one = self._question, self._judges[0]
+        q, judge = self._question, self._judges[0]
         return TABLE.empty() | {
             "kind": kind,
             "layout": name,
             "scene": q.scenes,
-            "size": "x".join(map(str, one.stage.size)),
+            "size": "x".join(map(str, judge.stage.size)),
             "overdraw": q.overdraw,
             "readers": q.readers.said,
         }
 
     def others(self, device: Device) -> list[Layout]:
         """The layouts that are compared: a user's, and engines' that the pipeline draws."""
-        found = [*self._question.against, *self._engines(device)]
-        self._slots.count(found)
-        return found
+        layouts = [*self._question.against, *self._engines(device)]
+        self._slots.count(layouts)
+        return layouts
 
     def _engines(self, device: Device) -> Iterator[Layout]:
         plan = self._judges[0].stage.plan
@@ -501,7 +514,7 @@ def _loss_text(loss: float) -> str:
 
 def _in_channels(problem: Problem) -> Problem:
     """A problem without targets of whole numbers."""
-    return replace(problem, bins=[one for one in problem.bins if not one.fields])
+    return replace(problem, bins=[home for home in problem.bins if not home.fields])
 
 
 def _with_depth(layout: Layout, depth: DepthEncoding | None) -> Layout:

@@ -43,13 +43,13 @@ def own(layout: Layout, asked: Rules) -> Own:
         asked,
         bytes=layout.bytes_per_pixel,
         targets=len(layout.targets),
-        blended=asked.blended & {one.name for one in attributes},
+        blended=asked.blended & {attribute.name for attribute in attributes},
         together=tuple(together),
         read=asked.read if _reads_little(layout, asked.read) else frozenset(),
         apart=frozenset(),
         formats=formats,
     )
-    return Own(attributes, [one for name, count in formats.items() for one in _bins(name, count)], rules)
+    return Own(attributes, [target_bin for name, count in formats.items() for target_bin in _bins(name, count)], rules)
 
 
 def _reads_little(layout: Layout, read: frozenset[str]) -> bool:
@@ -59,7 +59,7 @@ def _reads_little(layout: Layout, read: frozenset[str]) -> bool:
     beside = [word for word in layout.words if word.target in homes and word.component not in mine]
     sizes = [word.bits or layout.targets[word.target].storage.bits[word.first] for word in beside]
     is_large = any("." in word.component for word in beside) or max(sizes, default=0) >= LARGE_BITS
-    return not is_large and sum(layout.targets[at].storage.texel_bytes for at in homes) <= READ_BYTES * len(read)
+    return not is_large and sum(layout.targets[index].storage.texel_bytes for index in homes) <= READ_BYTES * len(read)
 
 
 def _is_one(homes: Sequence[set[int]]) -> bool:
@@ -72,12 +72,12 @@ def _format(target: Target) -> str:
 
 def _bins(name: str, count: int) -> Iterator[Bin]:
     """Bins of a format, as many as the layout has targets of it."""
-    known = [replace(one, copies=count) for one in BINS.values() if one.format == name]
+    known = [replace(target_bin, copies=count) for target_bin in BINS.values() if target_bin.format == name]
     if known:
         yield from known
         return
     storage = Target(name, FREE).storage
-    channels = Counter((_kind(storage, at), bits) for at, bits in enumerate(storage.bits))
+    channels = Counter((_kind(storage, channel), bits) for channel, bits in enumerate(storage.bits))
     yield Bin(name, name, storage.texel_bytes, channels, copies=count)
 
 
@@ -94,7 +94,7 @@ def _attributes(layout: Layout) -> Iterator[Attribute]:
         if layout.components & {*COMPONENTS[name]}:
             more = in_halves(name) if has_halves else ()
             yield replace(attribute, codes=(*attribute.codes, *more))
-    placed = [(text, word) for at, target in enumerate(layout.targets) for text, word in _texts(layout, at, target)]
+    placed = [(text, word) for i, target in enumerate(layout.targets) for text, word in _texts(layout, i, target)]
     seen = {component for names in COMPONENTS.values() for component in names}
     others = [(text, word) for text, word in placed if word.component not in seen]
     if any(word.component.startswith(LIGHT) for _, word in others):
@@ -103,9 +103,9 @@ def _attributes(layout: Layout) -> Iterator[Attribute]:
     if motion:
         yield _as_it_is("motion", layout, motion)
     rest = [pair for pair in others if not pair[1].component.startswith(("motion.", LIGHT))]
-    for at, pair in enumerate(rest):
+    for number, pair in enumerate(rest):
         component = pair[1].label or pair[1].component
-        yield _as_it_is(MODEL if component == "shading_model" else f"{component} {at}", layout, [pair])
+        yield _as_it_is(MODEL if component == "shading_model" else f"{component} {number}", layout, [pair])
 
 
 def _texts(layout: Layout, at: int, target: Target) -> Iterator[tuple[str, Word]]:

@@ -93,7 +93,7 @@ def question(options: BudgetOptions) -> Question:
     readers = read_readers(options.readers)
     in_range("--speed", options.speed, 0.0, max(UP_TO_PIXELS.values()))
     held = attributes_held(options.hold, options.speed)
-    names = [one.name for one in held]
+    names = [attribute.name for attribute in held]
     check_held(readers, names, held_in_stencil(options.hold))
     blended = frozenset(names_held("--blend", options.blend, names))
     together = ONE_BYTE & {*names}
@@ -164,40 +164,42 @@ def _limits(options: BudgetOptions) -> tuple[bool, int | None]:
     """Whether WebGPU's limit holds, and the bytes of a tile's pixel. Raises UsageError for a limit that is none."""
     webgpu, tile = False, None
     for word in map(str, options.limit or ()):
-        said, _, size = word.partition(":")
-        name = spelled("limit", said, (WEB, TILE))
+        prefix, _, size = word.partition(":")
+        name = spelled("limit", prefix, (WEB, TILE))
         if name == WEB and not size:
             webgpu = True
         elif name == TILE and size.isdigit() and int(size) in TILES:
             tile = int(size)
         else:
-            raise UsageError(f"--limit {word}: {WEB}, {', '.join(f'{TILE}:{one}' for one in TILES)}")
+            raise UsageError(f"--limit {word}: {WEB}, {', '.join(f'{TILE}:{tile_size}' for tile_size in TILES)}")
     return webgpu, tile
 
 
 def _stages(options: BudgetOptions, size: tuple[int, int]) -> list[Stage]:
-    made = [
+    stages = [
         Stage(maker, Setting(), maker.within(size))
         for maker in scenes_under(options.environment, scene_makers_named(options.scene))
     ]
-    for stage in made:
+    for stage in stages:
         if not stage.maker.is_metal_rough:
             raise UsageError(f"{stage.maker.name} has no metal/rough materials, which a budget is of; studio has")
-    return made
+    return stages
 
 
 def _bins(options: BudgetOptions, webgpu: bool) -> list[Bin]:
-    known = {one.format: one.format for one in BINS.values()}
+    known = {target_bin.format: target_bin.format for target_bin in BINS.values()}
     chosen = set(choose("format", options.formats, known))
     is_said = "all" not in options.formats
-    found = [one for one in BINS.values() if one.format in chosen and (one.is_usual or is_said)]
-    found = [one for one in found if not webgpu or one.format in WEBGPU]
+    bins = [
+        target_bin for target_bin in BINS.values() if target_bin.format in chosen and (target_bin.is_usual or is_said)
+    ]
+    bins = [target_bin for target_bin in bins if not webgpu or target_bin.format in WEBGPU]
     if not options.fields or not options.integers:
-        found = [one for one in found if not one.fields]
+        bins = [target_bin for target_bin in bins if not target_bin.fields]
     if not options.fields:
-        found = [replace(one, shares=False) for one in found]
-    if not found:
+        bins = [replace(target_bin, shares=False) for target_bin in bins]
+    if not bins:
         raise UsageError(
             f"--formats {text_of(options.formats)}: no target is left of what --limit and --no-integers allow"
         )
-    return found
+    return bins

@@ -90,20 +90,20 @@ class Exact:
 
     def _masks(self, gives_light: np.ndarray) -> dict[str, np.ndarray]:
         """Where each class is, those of too few pixels left out; and the frame, which is all that is covered."""
-        roughness, found, low = self.surfaces.roughness, {FRAME: self.covered}, -np.inf
+        roughness, masks, low = self.surfaces.roughness, {FRAME: self.covered}, -np.inf
         for name, high in UP_TO.items():
-            found[name] = self.covered & ~gives_light & (roughness > low) & (roughness <= high)
+            masks[name] = self.covered & ~gives_light & (roughness > low) & (roughness <= high)
             low = high
-        found[EMISSIVE] = self.covered & gives_light
-        return {name: mask for name, mask in found.items() if mask.sum() >= LEAST_PIXELS}
+        masks[EMISSIVE] = self.covered & gives_light
+        return {name: mask for name, mask in masks.items() if mask.sum() >= LEAST_PIXELS}
 
     @cached_property
     def key(self) -> str:
         """What tells it from every other exact image: what computes it and from what, and what it shows."""
-        made = hashlib.sha256(f"{sources()} {jax.__version__} {self._device.renderer}".encode())
-        for one in (*self._textures, self.shown):
-            made.update(np.ascontiguousarray(one).tobytes())
-        return made.hexdigest()
+        digest = hashlib.sha256(f"{sources()} {jax.__version__} {self._device.renderer}".encode())
+        for array in (*self._textures, self.shown):
+            digest.update(np.ascontiguousarray(array).tobytes())
+        return digest.hexdigest()
 
     def errors(self, shown: np.ndarray) -> dict[str, float]:
         """The mean squared error of each class of a displayed image, (height, width, 3) in [0, 1]; what is no number
@@ -119,26 +119,26 @@ class Exact:
         """What a layout makes of the image, drawn by it. Raises ShaderError, FormatError and LayoutError."""
         is_known = is_in_catalogue(layout.encoding)
         key = cache.key_of("budget layout", self.key, layout.summary) if is_known else ""
-        found = cache.figures(key, lambda: self._drawn(layout))
-        return ImageErrors(found["errors"], found["flip"])
+        figures = cache.figures(key, lambda: self._drawn(layout))
+        return ImageErrors(figures["errors"], figures["flip"])
 
     def _drawn(self, layout: Layout) -> dict[str, object]:
         stage = self.stage
-        with rendering(self._device, PIPELINES[PIPELINE], stage.scene, stage.plan(layout)) as made:
-            made.draw()
-            shown = self.display.image(made.image())
+        with rendering(self._device, PIPELINES[PIPELINE], stage.scene, stage.plan(layout)) as drawing:
+            drawing.draw()
+            shown = self.display.image(drawing.image())
         return {"errors": self.errors(shown), "flip": self._flip_p99(shown)}
 
     def _flip_p99(self, shown: np.ndarray) -> float:
         return float(np.percentile(self._flip.of(shown)[self.covered], PERCENTILE))
 
     def _texels(self, given: Surfaces) -> Sequence[np.ndarray]:
-        normal, colour, material, light = (one.copy() for one in self._textures)
+        normal, colour, material, light = (texture.copy() for texture in self._textures)
         where = self.covered
         normal[where, :3], colour[where, :3] = given.normal[where], given.base_color[where]
         light[where, :3] = given.emissive[where]
         numbers = (given.metallic, given.f0, given.roughness, given.ao)
-        material[where] = np.stack([one[where] for one in numbers], axis=-1)
+        material[where] = np.stack([channel[where] for channel in numbers], axis=-1)
         return normal, colour, material, light
 
 
@@ -164,10 +164,10 @@ Rates = Mapping[str, Mapping[str, float]]
 def rates(exact: Exact, codes: Sequence[Code], tick: Callable[[str], None]) -> Rates:
     """By the name of each code of an attribute that an image shows, the error of each class. Kept in the cache
     by what the image is made of."""
-    key, found = exact.key, {}
+    key, errors = exact.key, {}
     for code in codes:
         if code.trip is not None:
             name, trip = f"{code.attribute} {code.name}", code.trip
-            found[code.name] = cache.figures(cache.key_of("budget", key, name), lambda trip=trip: exact.of(trip))
+            errors[code.name] = cache.figures(cache.key_of("budget", key, name), lambda trip=trip: exact.of(trip))
             tick(name)
-    return found
+    return errors

@@ -110,5 +110,5 @@ def _bytes_of(layout: Layout, part: Collection[str]) -> int:
         # A quantity that carries a sign of the normal is read with it.
         names |= {layout.carrier.component} if layout.carrier else set()
         names |= {"depth"} if layout.has_signed_depth else set()
-    found = {word.target for word in layout.words if quantity_of(word.component) in names}
-    return sum(sum(layout.targets[at].storage.bits) // 8 for at in found)
+    indices = {word.target for word in layout.words if quantity_of(word.component) in names}
+    return sum(sum(layout.targets[index].storage.bits) // 8 for index in indices)

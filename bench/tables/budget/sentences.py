@@ -114,14 +114,14 @@ def _names(names: str) -> str:
 
 
 def _errors(row: Row) -> str:
-    said = []
+    sentences = []
     if "," in row["scene"] and row["held_back_db"] is not None:
-        said.append(f"Scenes that did not choose it have {row['held_back_db']:.1f} dB in their worst class.")
-    said.append(f"FLIP (99th percentile) is {row['flip_p99']:.3f}; up to {INVISIBLE:g} counts as invisible.")
+        sentences.append(f"Scenes that did not choose it have {row['held_back_db']:.1f} dB in their worst class.")
+    sentences.append(f"FLIP (99th percentile) is {row['flip_p99']:.3f}; up to {INVISIBLE:g} counts as invisible.")
     if row["error_from"]:
         parts = [_code(part) for part in row["error_from"].split(", ")[:NAMED]]
-        said.append(f"The error of the worst class comes from {', '.join(parts)}.")
-    return " ".join([*said, *filter(None, [_next(row)])])
+        sentences.append(f"The error of the worst class comes from {', '.join(parts)}.")
+    return " ".join([*sentences, *filter(None, [_next(row)])])
 
 
 def _next(row: Row) -> str:
@@ -133,24 +133,24 @@ def _next(row: Row) -> str:
 
 def _rules(row: Row) -> str:
     into = f"Decals blend into {_names(row['blends'] or '')}; the alpha of a target there is the blend factor."
-    said = [into if row["blends"] else "Not checked for hardware decal blending; use --blend to require it."]
+    sentences = [into if row["blends"] else "Not checked for hardware decal blending; use --blend to require it."]
     if "_uint: " in row["targets"]:
-        said.append("Integer targets gain 3 dB or more here, and are not blended, filtered or resolved.")
-    said.append(
+        sentences.append("Integer targets gain 3 dB or more here, and are not blended, filtered or resolved.")
+    sentences.append(
         f"The G-buffer moves {row['mb_1080p']:.0f} MB at 1080p and {row['mb_4k']:.0f} MB at 4K, without compression, "
         f"written {times(row['overdraw'])}, read {row['readers']}."
     )
     if row["webgpu_bytes"] is None:
-        said.append("WebGPU does not render to all of its formats.")
+        sentences.append("WebGPU does not render to all of its formats.")
     elif row["webgpu_bytes"] > WEBGPU_BYTES:
         over = row["webgpu_bytes"] - WEBGPU_BYTES
-        said.append(f"It exceeds WebGPU's limit of {WEBGPU_BYTES} bytes per sample by {over}.")
+        sentences.append(f"It exceeds WebGPU's limit of {WEBGPU_BYTES} bytes per sample by {over}.")
     else:
-        said.append(f"It uses {row['webgpu_bytes']} of WebGPU's {WEBGPU_BYTES} bytes per sample.")
+        sentences.append(f"It uses {row['webgpu_bytes']} of WebGPU's {WEBGPU_BYTES} bytes per sample.")
     if row["in_tile"] is not None:
         fits = ", which fit the tile" if row["in_tile"] else ": it takes tiles of half the size"
-        said.append(f"With the light buffer it takes {row['tile_bytes']} bytes in a tile{fits}.")
-    return " ".join([*said, *unmeasured(row)])
+        sentences.append(f"With the light buffer it takes {row['tile_bytes']} bytes in a tile{fits}.")
+    return " ".join([*sentences, *unmeasured(row)])
 
 
 def unmeasured(row: Row) -> tuple[str, ...]:

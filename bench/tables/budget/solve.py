@@ -128,8 +128,8 @@ class Problem:
     most_cost: float = math.inf
 
     def error(self, code: Code, name: str) -> float:
-        found = self.errors.get((code.attribute, code.name), {}).get(name, 0.0)
-        return 0.0 if found < NOTHING else found
+        error = self.errors.get((code.attribute, code.name), {}).get(name, 0.0)
+        return 0.0 if error < NOTHING else error
 
 
 class _Program:
@@ -138,13 +138,14 @@ class _Program:
 
     def __init__(self, problem: Problem):
         self.problem = problem
-        self.slots = [(one, copy) for one in problem.bins for copy in range(one.copies)]
+        self.slots = [(target_bin, copy) for target_bin in problem.bins for copy in range(target_bin.copies)]
         self.choices = [
-            (code, at, need)
+            (code, slot, need)
             for attribute in problem.attributes
             for code in attribute.codes
-            for at, (one, _) in enumerate(self.slots)
-            if one.blends == (attribute.name in problem.rules.blended) and (need := one.need(code)) is not None
+            for slot, (target_bin, _) in enumerate(self.slots)
+            if target_bin.blends == (attribute.name in problem.rules.blended)
+            and (need := target_bin.need(code)) is not None
         ]
         keys = {code.key for code, *_ in self.choices}
         self.pairs = [pair for pair in problem.together if pair <= keys]
@@ -175,9 +176,9 @@ class _Program:
         for attribute in self.problem.attributes:
             self.row({i: 1 for i, (code, *_) in enumerate(self.choices) if code.attribute == attribute.name}, 1, 1)
         for slot in range(len(self.slots)):
-            here = {code.attribute: [] for code, at, _ in self.choices if at == slot}
-            for i, (code, at, _) in enumerate(self.choices):
-                if at == slot:
+            here = {code.attribute: [] for code, place, _ in self.choices if place == slot}
+            for i, (code, home, _) in enumerate(self.choices):
+                if home == slot:
                     here[code.attribute].append(i)
             for name in sorted(self.problem.rules.apart & here.keys()):
                 # y of what lies by itself, and of each other one: at most one of the two.
@@ -190,24 +191,24 @@ class _Program:
                     signs = {first: 1.0, other: -1.0}
                     terms = {
                         i: signs[code.attribute]
-                        for i, (code, at, _) in enumerate(self.choices)
-                        if at == slot and code.attribute in signs
+                        for i, (code, place, _) in enumerate(self.choices)
+                        if place == slot and code.attribute in signs
                     }
                     self.row(terms, 0, 0)
 
     def _fit(self) -> None:
         rules = self.problem.rules
-        for slot, (one, copy) in enumerate(self.slots):
-            here = [(i, need) for i, (_, at, need) in enumerate(self.choices) if at == slot]
-            for channel, room in one.channels.items():
+        for slot, (target_bin, copy) in enumerate(self.slots):
+            here = [(i, need) for i, (_, place, need) in enumerate(self.choices) if place == slot]
+            for channel, room in target_bin.channels.items():
                 terms = {i: float(need[channel]) for i, need in here if channel in need}
-                if channel == (UNORM, one.part):
+                if channel == (UNORM, target_bin.part):
                     terms[self.shared(slot)] = 1.0
                 self.row({**terms, self.used(slot): -float(room)}, -np.inf, 0)
             self.row({**{i: need[SHARED] for i, need in here if SHARED in need}, self.shared(slot): -1.0}, -np.inf, 0)
-            if one.fields:
+            if target_bin.fields:
                 terms = {i: float(sum(need.values())) for i, need in here}
-                self.row({**terms, self.used(slot): -float(one.fields)}, -np.inf, 0)
+                self.row({**terms, self.used(slot): -float(target_bin.fields)}, -np.inf, 0)
             if copy:
                 # Of equal targets the first ones are used.
                 self.row({self.used(slot): 1.0, self.used(slot - 1): -1.0}, -np.inf, 0)
@@ -229,30 +230,30 @@ class _Program:
         if not read:
             return
         large = [
-            one.name
-            for one in self.problem.attributes
-            if one.name not in read and min(code.total_bits for code in one.codes) >= LARGE_BITS
+            attribute.name
+            for attribute in self.problem.attributes
+            if attribute.name not in read and min(code.total_bits for code in attribute.codes) >= LARGE_BITS
         ]
         for slot in range(len(self.slots)):
             here: dict[str, dict[int, float]] = {}
-            for i, (code, at, _) in enumerate(self.choices):
-                if at == slot:
+            for i, (code, place, _) in enumerate(self.choices):
+                if place == slot:
                     here.setdefault(code.attribute, {})[i] = 1.0
             # The order of rows decides between equal layouts: no set's order may.
             for name in sorted(here.keys() & read):
                 self.row({**here[name], self.fetched(slot): -1.0}, -np.inf, 0)
             for name in sorted(here.keys() & {*large}):
                 self.row({**here[name], self.fetched(slot): 1.0}, -np.inf, 1)
-        sizes = {self.fetched(slot): float(one.bytes) for slot, (one, _) in enumerate(self.slots)}
+        sizes = {self.fetched(slot): float(target_bin.bytes) for slot, (target_bin, _) in enumerate(self.slots)}
         self.row(sizes, 0, READ_BYTES * len(read))
 
     def _pair(self) -> None:
         """Constrain the variable of each pair of codes to 1 where both are taken, else to 0."""
-        for at, pair in enumerate(self.pairs):
+        for index, pair in enumerate(self.pairs):
             taken = [{i: 1.0 for i, (code, *_) in enumerate(self.choices) if code.key == key} for key in sorted(pair)]
-            self.row({**taken[0], **taken[1], self.both(at): -1.0}, -np.inf, 1)
-            for one in taken:
-                self.row({**one, self.both(at): -1.0}, 0, np.inf)
+            self.row({**taken[0], **taken[1], self.both(index): -1.0}, -np.inf, 1)
+            for terms in taken:
+                self.row({**terms, self.both(index): -1.0}, 0, np.inf)
 
     def forbid(self, codes: Set[Key]) -> None:
         """Not all of these codes together."""
@@ -261,11 +262,11 @@ class _Program:
 
     def bytes(self) -> Terms:
         """The bytes of the targets that are used."""
-        return {self.used(slot): float(one.bytes) for slot, (one, _) in enumerate(self.slots)}
+        return {self.used(slot): float(target_bin.bytes) for slot, (target_bin, _) in enumerate(self.slots)}
 
     def bytes_of(self, values: np.ndarray) -> int:
         """The bytes of a solution's targets."""
-        return sum(one.bytes for slot, (one, _) in enumerate(self.slots) if values[self.used(slot)] > 0.5)
+        return sum(target_bin.bytes for slot, (target_bin, _) in enumerate(self.slots) if values[self.used(slot)] > 0.5)
 
     def others(self, best: Solution) -> Terms:
         """The sum of the errors of all classes, each in units of what the best has, or of what is seen."""
@@ -279,12 +280,14 @@ class _Program:
     def costs(self) -> Terms:
         """What the codes cost by themselves; 0 where nobody asks."""
         cost = self.problem.cost
-        return {i: cost(code, self.slots[at][0]) if cost else 0.0 for i, (code, at, _) in enumerate(self.choices)}
+        return {i: cost(code, self.slots[slot][0]) if cost else 0.0 for i, (code, slot, _) in enumerate(self.choices)}
 
     def fusses(self) -> Terms:
         """What an engineer would rather do without."""
-        codes = {i: fuss(code, self.slots[at][0]) for i, (code, at, _) in enumerate(self.choices)}
-        return codes | {self.used(slot): one.fuss + TARGET_FUSS for slot, (one, _) in enumerate(self.slots)}
+        codes = {i: fuss(code, self.slots[place][0]) for i, (code, place, _) in enumerate(self.choices)}
+        return codes | {
+            self.used(slot): target_bin.fuss + TARGET_FUSS for slot, (target_bin, _) in enumerate(self.slots)
+        }
 
     def solved(self, unit: float, most: float | None = None, least: Terms | None = None) -> np.ndarray | None:
         """The variables where a sum is least; None where there are none.
@@ -301,7 +304,8 @@ class _Program:
         for name in self.problem.classes:
             terms = {i: self.problem.error(code, name) / unit for i, (code, *_) in enumerate(self.choices)}
             terms |= {
-                self.both(at): self.problem.together[pair].get(name, 0.0) / unit for at, pair in enumerate(self.pairs)
+                self.both(index): self.problem.together[pair].get(name, 0.0) / unit
+                for index, pair in enumerate(self.pairs)
             }
             rows.append(({**{i: d for i, d in terms.items() if d}, last: -1.0}, -np.inf, 0.0))
         cost = np.zeros(self.count)
@@ -317,19 +321,20 @@ class _Program:
             upper[i] = 0 if worst > min(limit, WORST) * (1 + SMALL) else 1
         integral = np.ones(self.count)
         integral[last] = 0
-        at = [(r, i, v) for r, (terms, *_) in enumerate(rows) for i, v in terms.items()]
+        entries = [(r, i, v) for r, (terms, *_) in enumerate(rows) for i, v in terms.items()]
         matrix = csr_array(
-            ([v for *_, v in at], ([r for r, *_ in at], [i for _, i, _ in at])), shape=(len(rows), self.count)
+            ([v for *_, v in entries], ([r for r, *_ in entries], [i for _, i, _ in entries])),
+            shape=(len(rows), self.count),
         )
         lows, highs = np.array([low for _, low, _ in rows]), np.array([high for *_, high in rows])
         return _least(cost, matrix, lows, highs, upper, integral)
 
     def solution(self, values: np.ndarray) -> Solution:
         chosen = [self.choices[i] for i in range(len(self.choices)) if values[i] > 0.5]
-        placed = tuple(Placed(code, *self.slots[at]) for code, at, _ in chosen)
-        names = {name for found in self.problem.errors.values() for name in found}
-        errors = {name: sum(self.problem.error(one.code, name) for one in placed) for name in sorted(names)}
-        keys = {one.code.key for one in placed}
+        placed = tuple(Placed(code, *self.slots[slot]) for code, slot, _ in chosen)
+        names = {name for by_class in self.problem.errors.values() for name in by_class}
+        errors = {name: sum(self.problem.error(placement.code, name) for placement in placed) for name in sorted(names)}
+        keys = {placement.code.key for placement in placed}
         for pair in self.pairs:
             if pair <= keys:
                 errors = {name: e + self.problem.together[pair].get(name, 0.0) for name, e in errors.items()}
@@ -346,7 +351,7 @@ def _least(
         UsageError: none was found in time.
     """
     arrays = cost, matrix.data, matrix.indices, matrix.indptr, lows, highs, upper, integral
-    key = cache.key_of(f"milp {scipy.__version__} {GAP}", *(np.ascontiguousarray(one).tobytes() for one in arrays))
+    key = cache.key_of(f"milp {scipy.__version__} {GAP}", *(np.ascontiguousarray(array).tobytes() for array in arrays))
 
     if known := cache.read(key):
         return np.array(known["values"]) if known["values"] else None
@@ -357,7 +362,7 @@ def _least(
     high: Any = highs
     # HiGHS prints lines that are for its authors.
     with without_their_output():
-        found = milp(
+        solution = milp(
             cost,
             integrality=integral,
             bounds=Bounds(none, most),
@@ -365,11 +370,11 @@ def _least(
             options={"time_limit": MOST_SECONDS, "mip_rel_gap": GAP},
         )
     # What was found in haste is not the answer of another day.
-    if found.status != TIMED_OUT:
-        cache.write(key, {"values": [] if found.x is None else found.x.tolist()})
-    elif found.x is None:
+    if solution.status != TIMED_OUT:
+        cache.write(key, {"values": [] if solution.x is None else solution.x.tolist()})
+    elif solution.x is None:
         raise UsageError(f"no layout was found within {MOST_SECONDS:g} s; name fewer --formats or fewer --targets")
-    return found.x
+    return solution.x
 
 
 # One target more is worth half a target of shared bits; a number of bits that is no byte's a tenth, and one that is
@@ -407,14 +412,14 @@ def finalists(problem: Problem, count: int) -> list[Solution]:
     values = program.solved(allowed, most=1.0, least=others) if allowed > UNSEEN else None
     if values is not None:
         program.row(others, -np.inf, sum(values[i] * value for i, value in others.items()) * 10 ** (EQUAL_DB / 10))
-    found: list[Solution] = []
-    while len(found) < count:
+    solutions: list[Solution] = []
+    while len(solutions) < count:
         plain = program.solved(allowed, most=1.0, least=program.fusses())
         if plain is None:
             break
-        found.append(program.solution(plain))
-        program.forbid({one.code.key for one in found[-1].placed})
-    return found or [best]
+        solutions.append(program.solution(plain))
+        program.forbid({placement.code.key for placement in solutions[-1].placed})
+    return solutions or [best]
 
 
 def _best(program: _Program) -> Solution | None:

@@ -36,7 +36,7 @@ def _steps(options: BudgetOptions, outputs: BudgetOutputs) -> list[Step]:
     asked = question(options)
     if outputs.layouts:
         check_folder(outputs.layouts)
-    count = sum(code.trip is not None for one in asked.attributes for code in one.codes) * len(asked.stages)
+    count = sum(code.trip is not None for attribute in asked.attributes for code in attribute.codes) * len(asked.stages)
     return [Step(_key(options), asked, asked.scenes, count + len(asked.rules) + len(asked.against))]
 
 

@@ -15,24 +15,24 @@ from .solve import Placed, Solution
 
 def layout_of(name: str, solution: Solution) -> Layout:
     """The layout of a solution."""
-    normal = next((one.code for one in solution.placed if one.code.attribute == NORMAL), None)
+    normal = next((placement.code for placement in solution.placed if placement.code.attribute == NORMAL), None)
     if normal is None:
         raise ValueError("a layout holds a normal")
-    targets = tuple(target_of(one, placed) for one, placed in _by_target(solution))
+    targets = tuple(target_of(target_bin, placed) for target_bin, placed in _by_target(solution))
     encoding = ENCODINGS[normal.name.partition(" ")[0]]
     return Layout(name, "proposed by budget", targets, encoding, "this project", space="world")
 
 
 def _by_target(solution: Solution) -> Iterator[tuple[Bin, list[Placed]]]:
     """The targets, wide ones first, so that WebGPU loses no bytes to their alignment; of equals the normal's."""
-    found: dict[tuple[str, int], list[Placed]] = {}
-    for one in solution.placed:
-        found.setdefault((one.bin.name, one.copy), []).append(one)
+    groups: dict[tuple[str, int], list[Placed]] = {}
+    for placement in solution.placed:
+        groups.setdefault((placement.bin.name, placement.copy), []).append(placement)
 
     def place(placed: list[Placed]) -> tuple[int, bool]:
         return -placed[0].bin.bytes, all(p.code.attribute != NORMAL for p in placed)
 
-    order = sorted(found.values(), key=place)
+    order = sorted(groups.values(), key=place)
     for placed in order:
         yield placed[0].bin, placed
 
@@ -56,12 +56,12 @@ def _in_fields(one: Bin, placed: Sequence[Placed]) -> list[str]:
         home.append(p.code)
     used = [sum(code.total_bits for code in codes) for codes in channels]
     is_apart = len(channels) * one.part <= one.fields and max(used) <= one.part
-    said = []
-    for at, codes in enumerate(channels):
-        said += [f"{word}:{bits}" for code in codes for word, bits in zip(code.words, code.bits, strict=True)]
-        if is_apart and used[at] < one.part and at + 1 < len(channels):
-            said.append(f"{FREE}:{one.part - used[at]}")
-    return said
+    words = []
+    for index, codes in enumerate(channels):
+        words += [f"{word}:{bits}" for code in codes for word, bits in zip(code.words, code.bits, strict=True)]
+        if is_apart and used[index] < one.part and index + 1 < len(channels):
+            words.append(f"{FREE}:{one.part - used[index]}")
+    return words
 
 
 def _in_channels(one: Bin, placed: Sequence[Placed]) -> Iterator[str]:
@@ -82,13 +82,13 @@ def _in_channels(one: Bin, placed: Sequence[Placed]) -> Iterator[str]:
         for word, channel in zip(p.code.words, channels, strict=True):
             waiting.setdefault(channel, []).append(word)
     order = list(one.channels)
-    for at, channel in enumerate(order):
+    for index, channel in enumerate(order):
         words = waiting.pop(channel, [])
         yield from words
         is_shared = channel == (UNORM, one.part)
         bits = sum(int(word.rpartition(":")[2]) for word in shared) if is_shared else 0
         yield from shared if is_shared else ()
-        if channel[0] != SRGB and waiting and at + 1 < len(order):
+        if channel[0] != SRGB and waiting and index + 1 < len(order):
             if bits % one.part:
                 yield f"{FREE}:{one.part - bits % one.part}"
             yield from [FREE] * (one.channels[channel] - len(words) - -(-bits // one.part))

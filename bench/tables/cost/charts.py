@@ -75,9 +75,9 @@ def _switch(panels: Sequence[Panel]) -> Switch | None:
 
 def _finding_sentence(panels: Sequence[Panel]) -> str:
     """How many codecs of each panel are beaten by no other, on the machine that is shown first."""
-    said = []
+    parts = []
     for panel in (panel for panel in panels if panel.is_usual):
         front = pareto_front(panel.points)
-        said.append(f"{len(front)} of {len(panel.points)} codecs to {panel.kind}")
+        parts.append(f"{len(front)} of {len(panel.points)} codecs to {panel.kind}")
     machine = next((panel.machine for panel in panels if panel.is_usual and panel.machine), "")
-    return f"No other beats {', '.join(said)}{f', on {machine}' if machine else ''}"
+    return f"No other beats {', '.join(parts)}{f', on {machine}' if machine else ''}"

@@ -144,21 +144,21 @@ def time_rows(
         "driver": device.version,
     }
     with ExitStack() as stack:
-        field, made = Field(device, stack, size), dict[CostCase, Pair | str]()
+        field, pairs = Field(device, stack, size), dict[CostCase, Pair | str]()
         for case in chosen:
             try:
-                made[case] = Pair(Passes(field, case.make()).milliseconds, math.prod(size))
+                pairs[case] = Pair(Passes(field, case.make()).milliseconds, math.prod(size))
             except ShaderError as error:
-                made[case] = f"{case.name}: {error}"
+                pairs[case] = f"{case.name}: {error}"
             tick(case.name)
         taken: dict[CostCase, list[float]] = {case: [] for case in chosen}
         for number in range(repeats):
-            for case, pair in made.items():
+            for case, pair in pairs.items():
                 if isinstance(pair, Pair):
                     taken[case].append(pair.difference())
             tick(f"repetition {number + 1}")
         device.idle.use()
-    for case, pair in made.items():
+    for case, pair in pairs.items():
         if isinstance(pair, str):
             yield case.row("time", **facts, skipped=pair)
         else:

@@ -58,7 +58,7 @@ class Costs:
         name = codec.encoding.name
         parts = [(1, (*kind, operation, name, None)), (1, (*kind, packed, None, packing_of(codec).name))]
         if codec.encoding.sign_bits:
-            parts += [(sign, (*kind, packed, None, one.name)) for sign, one in zip((1, -1), SIGN, strict=True)]
+            parts += [(sign, (*kind, packed, None, packing.name)) for sign, packing in zip((1, -1), SIGN, strict=True)]
         return parts
 
     def _known_row(self, key: tuple[Any, ...], column: str) -> Row:

@@ -45,10 +45,10 @@ def _loop_turns(device: Device, encoding: Encoding) -> dict[str, list[list[float
     if encoding.domain != "sphere":
         n[:, 2] = np.abs(n[:, 2])
     try:
-        made = turns_made(device, encoding, n, np.tile(np.array(VIEW, np.float32), (COUNT, 1)))
+        loop_turns = turns_made(device, encoding, n, np.tile(np.array(VIEW, np.float32), (COUNT, 1)))
     except ShaderError:
         return None
-    return {name: _mean_turns(turns) for name, turns in zip(("encode", "decode"), made, strict=True)}
+    return {name: _mean_turns(turns) for name, turns in zip(("encode", "decode"), loop_turns, strict=True)}
 
 
 def _mean_turns(turns: np.ndarray) -> list[list[float]]:
@@ -73,7 +73,7 @@ def executed_slots(
         return None
     # A compiler unrolls what runs a known and small number of times; the others stay, in their order.
     rank = sorted(range(len(turns)), key=lambda at: (turns[at][1] > 0, turns[at][0]), reverse=True)
-    left = [turns[at][0] for at in sorted(rank[: len(loops)])]
+    left = [turns[index][0] for index in sorted(rank[: len(loops)])]
     by_place = zip(sorted(loops, key=lambda loop: loop.start), left, strict=True)
     times = [1.0] * len(kinds)
     # An inner loop's count is of all its turns: it comes after the loop around it.

@@ -71,7 +71,7 @@ def _fronts(tables: Mapping[str, Sequence[Row]], usual: str, remarks: list[str])
 
 def _errors(rows: Sequence[Row], lost: dict[str, dict[str, None]]) -> dict[Codec, float]:
     """The error of each codec; `lost` is told which codecs have none that can be drawn, by the reason."""
-    found: dict[Codec, float] = {}
+    errors: dict[Codec, float] = {}
     for key, row in _row_of_each(rows).items():
         codec = _codec(row)
         if not is_number(row.get(LEADING)):
@@ -81,22 +81,22 @@ def _errors(rows: Sequence[Row], lost: dict[str, dict[str, None]]) -> dict[Codec
         elif not codec:
             why = "how its code is stored is not known"
         else:
-            found[codec] = row[LEADING]
+            errors[codec] = row[LEADING]
             continue
         lost.setdefault(why, {})[key.label] = None
-    return found
+    return errors
 
 
 def _row_of_each(rows: Sequence[Row]) -> dict[CodecKey, Row]:
     """A row of each codec: one with an error before one without, then JAX's before GLSL's before others."""
     order = list(dict.fromkeys([*BACKENDS, *(row.get("backend", "jax") for row in rows)]))
     ranks: dict[CodecKey, tuple[bool, int]] = {}
-    found: dict[CodecKey, Row] = {}
+    by_codec: dict[CodecKey, Row] = {}
     for row in rows:
         key, rank = CodecKey.of(row), (not is_number(row.get(LEADING)), order.index(row.get("backend", "jax")))
         if rank <= ranks.get(key, rank):
-            ranks[key], found[key] = rank, row
-    return found
+            ranks[key], by_codec[key] = rank, row
+    return by_codec
 
 
 def _counted(tables: Mapping[str, Sequence[Row]]) -> list[Row]:
@@ -179,11 +179,11 @@ def _listings(folder: Path, family: str) -> dict[str, Listing]:
             continue
         # "fragment-octahedral-encode" is of "octahedral.glsl".
         source = sources.get(f"{path.stem.removeprefix(f'{STAGE}-').rpartition('-')[0]}.glsl")
-        found = Listing(_plain_file_text(path), _plain_file_text(source) if source else "")
-        size += len(found.text) + len(found.source)
+        listing = Listing(_plain_file_text(path), _plain_file_text(source) if source else "")
+        size += len(listing.text) + len(listing.source)
         if size > LISTED:
             break
-        listed[f"{family}, {plain_text(path.stem)}"] = found
+        listed[f"{family}, {plain_text(path.stem)}"] = listing
     return listed
 
 

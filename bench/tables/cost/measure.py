@@ -88,11 +88,11 @@ class CostCase:
 
 def cases(encodings: Iterable[Encoding], packings: Iterable[Packing], operations: Sequence[str]) -> list[CostCase]:
     """Every operation of each encoding, and what the packings add to it."""
-    found = [CostCase(e, None, name, partial(_operation, e, name)) for e in encodings for name in operations]
+    cost_cases = [CostCase(e, None, name, partial(_operation, e, name)) for e in encodings for name in operations]
     for packing in packings:
         by_name = {"encode": packing.pack, "decode": packing.unpack}
-        found += [CostCase(None, packing.name, PACKING_OPERATIONS[name], by_name[name]) for name in operations]
-    return found
+        cost_cases += [CostCase(None, packing.name, PACKING_OPERATIONS[name], by_name[name]) for name in operations]
+    return cost_cases
 
 
 def _operation(encoding: Encoding, operation: str) -> Operation:
@@ -188,17 +188,17 @@ def isa_rows(
     for family, reason in dead.items():
         yield TABLE.empty() | {"measure": "isa", "family": family, "skipped": reason}, ""
     for family in [f for f in families if f not in dead] or [None]:
-        for (case, stage), made in zip(pairs, prepared, strict=True):
+        for (case, stage), build in zip(pairs, prepared, strict=True):
             if family and _no_stage(family, [stage]):
                 continue
             row = case.row("isa", stage=stage, family=family, compiler=compiler)
-            if isinstance(made, Failure):
-                yield row | {"skipped": made.reason}, ""
+            if isinstance(build, Failure):
+                yield row | {"skipped": build.reason}, ""
             elif family is None:
-                yield row | {"spirv_instructions": made.spirv_instructions}, ""
+                yield row | {"spirv_instructions": build.spirv_instructions}, ""
             else:
-                row["spirv_instructions"] = made.spirv_instructions
-                jobs = made.jobs(family)
+                row["spirv_instructions"] = build.spirv_instructions
+                jobs = build.jobs(family)
                 compared = [outcomes[family, job] for job in jobs] if isinstance(jobs, tuple) else [jobs, jobs]
                 figures, assembly = _figures(row, *compared)
                 yield figures | {"executed_slots": _executed_slots(case, figures, assembly)}, assembly
@@ -206,7 +206,7 @@ def isa_rows(
 
 def _jobs(prepared: Iterable[Prepared | Failure], family: str) -> list[Job]:
     """What there is to compile for a family."""
-    pairs = (made.jobs(family) for made in prepared if isinstance(made, Prepared))
+    pairs = (build.jobs(family) for build in prepared if isinstance(build, Prepared))
     return list(dict.fromkeys(job for pair in pairs if isinstance(pair, tuple) for job in pair))
 
 
@@ -222,9 +222,9 @@ def _no_stage(family: str, stages: Sequence[str]) -> str:
 def _all_failed(outcomes: dict[tuple[str, Job], Outcome], family: str) -> str:
     """The first reason for which a family compiled nothing; empty where it compiled something, or there was nothing."""
     stages = FAMILIES[family].stages if family in FAMILIES else tuple(kernels.STAGES)
-    found = [outcome for (name, job), outcome in outcomes.items() if name == family and job.stage in stages]
-    failures = [outcome for outcome in found if isinstance(outcome, Failure)]
-    return failures[0].reason if found and len(failures) == len(found) else ""
+    attempts = [outcome for (name, job), outcome in outcomes.items() if name == family and job.stage in stages]
+    failures = [outcome for outcome in attempts if isinstance(outcome, Failure)]
+    return failures[0].reason if attempts and len(failures) == len(attempts) else ""
 
 
 def _figures(row: Row, outcome: Outcome, empty: Outcome) -> tuple[Row, str]:
@@ -270,7 +270,7 @@ def _width_mismatch(kernels: Iterable[Kernel], empties: Iterable[Kernel]) -> str
 def _total(kernel: Kernel, names: Iterable[tuple[str, ...]]) -> float | None:
     """The sum of the statistics that the driver has of one of these sets; None where it has none."""
     sets = ([kernel.statistics.get(name) for name in some] for some in names)
-    return next((sum(found) for found in sets if None not in found), None)  # type: ignore[arg-type]
+    return next((sum(numbers) for numbers in sets if None not in numbers), None)  # type: ignore[arg-type]
 
 
 def _difference(a: float | None, b: float | None) -> float | None:
@@ -319,8 +319,8 @@ def counted(chosen: Sequence[CostCase], family: str, stage: str) -> dict[tuple[s
     """The rows of one family with instructions, by encoding, packing or layout, and operation. Where there are no
     compilers, those that another machine's counted, which have `recorded_by`."""
     try:
-        found = isa_rows(chosen, [stage], [family], [], nobody)
-        rows = [row for row, _ in found if row["family"] == family and row["instructions"] is not None]
+        pairs = isa_rows(chosen, [stage], [family], [], nobody)
+        rows = [row for row, _ in pairs if row["family"] == family and row["instructions"] is not None]
     except MissingError:
         rows = []
     rows = rows or [case.row("isa", family=family, stage=stage) | row for case, row in recorded(chosen, family, stage)]
@@ -335,12 +335,12 @@ def known_counts(chosen: Sequence[CostCase], family: str, stage: str) -> dict[tu
         return counted(chosen, family, stage)
     probe, row = next(iter(known.items()))
     others = [case for case in chosen if case not in known]
-    found = counted([probe, *others], family, stage)
-    here = found.get(_operation_of(probe), {})
+    fresh = counted([probe, *others], family, stage)
+    here = fresh.get(_operation_of(probe), {})
     if f"{here.get('driver')}, {here.get('compiler')}" != row["recorded_by"]:
-        return found | counted([case for case in known if case is not probe], family, stage)
+        return fresh | counted([case for case in known if case is not probe], family, stage)
     rows = {_operation_of(case): case.row("isa", family=family, stage=stage) | row for case, row in known.items()}
-    return {operation: row | {"recorded_by": None} for operation, row in rows.items()} | found
+    return {operation: row | {"recorded_by": None} for operation, row in rows.items()} | fresh
 
 
 def _operation_of(case: CostCase) -> tuple[str, str]:
@@ -357,12 +357,14 @@ def static_notes(rows: Iterable[Row]) -> list[str]:
         "loops": "contains a loop, whose body counts once, however often it runs",
         "branches": "contains a branch, both of whose sides count",
     }
-    found: dict[str, dict[str, None]] = {column: {} for column in notes}
+    by_column: dict[str, dict[str, None]] = {column: {} for column in notes}
     for row in rows:
         column = next((column for column in notes if row[column]), None)
         if column:
-            found[column][f"{row['encoding'] or row['storage']} {row['operation']}"] = None
-    return [f"static count: {', '.join(found[column])} {note}" for column, note in notes.items() if found[column]]
+            by_column[column][f"{row['encoding'] or row['storage']} {row['operation']}"] = None
+    return [
+        f"static count: {', '.join(by_column[column])} {note}" for column, note in notes.items() if by_column[column]
+    ]
 
 
 def file_name(name: Any) -> str:

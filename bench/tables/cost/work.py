@@ -46,21 +46,21 @@ def measures(options: CostOptions) -> list[str]:
 
 def packings(names: Names) -> list[Packing]:
     """Return what `--storage` names: packings, and storages by their bits alone. Raises UsageError."""
-    said = storages_said(map(str, names), PACKINGS)
-    known = {**PACKINGS, **{word: packings_of(storage) for word, storage in said.items() if storage}}
+    storages = storages_said(map(str, names), PACKINGS)
+    known = {**PACKINGS, **{word: packings_of(storage) for word, storage in storages.items() if storage}}
     if few := next((word for word, several in known.items() if not several), None):
         raise UsageError(f"--storage {few}: a code of a normal has two numbers or three")
-    chosen = choose("storage", said, known)
+    chosen = choose("storage", storages, known)
     return list(dict.fromkeys(packing for several in chosen for packing in several))
 
 
 def chosen_families(names: Names) -> list[str]:
     """What `--family` names: families, and vendors for all of theirs. NVIDIA's, whose compiler
     people install themselves, are among all of them where it is there. Raises UsageError."""
-    found = families_named(names)
+    chosen = families_named(names)
     if names != ("all",) or not isa.missing(families.NVRTC):
-        return found
-    return [name for name in found if families.FAMILIES[name].library != families.NVRTC]
+        return chosen
+    return [name for name in chosen if families.FAMILIES[name].library != families.NVRTC]
 
 
 @dataclass
@@ -90,7 +90,7 @@ class Costing:
 def costing(options: CostOptions) -> Costing:
     """What the options name. Raises UsageError for what is unknown or out of range."""
     in_range("--repeats", options.repeats, 2, MAX_REPEATS)
-    made = Costing(
+    asked = Costing(
         options,
         _encodings(options),
         packings(options.storage),
@@ -101,15 +101,15 @@ def costing(options: CostOptions) -> Costing:
     if "time" in measures(options):
         from ...subjects.codecs.names import check_twin
 
-        for encoding in made.encodings:
+        for encoding in asked.encodings:
             check_twin(encoding)
-    return made
+    return asked
 
 
 def _encodings(options: CostOptions) -> list[Encoding]:
     named = encodings_named(options.encoding)
     is_usual = options.arithmetic == CostOptions.arithmetic
-    if options.arithmetic == (FLOAT,) or (is_usual and not any(one.is_also_half for one in named)):
+    if options.arithmetic == (FLOAT,) or (is_usual and not any(encoding.is_also_half for encoding in named)):
         return named
     from ...subjects.codecs.names import with_arithmetics
 
@@ -125,12 +125,12 @@ def _steps(options: CostOptions, outputs: CostOutputs) -> list[Step]:
         "isa": key | {"stages": asked.stages, "families": asked.families},
         "time": key | {"size": options.size, "repeats": options.repeats},
     }
-    made = [
+    steps = [
         Step({"measure": name} | keys[name], CostMeasure(asked, name, MEASURED[name]), name)
         for name in measures(options)
     ]
     article = [Step({"measure": "article"} | key, CostMeasure(asked, "article", _article), "article")]
-    return made + (article if options.article else [])
+    return steps + (article if options.article else [])
 
 
 def _check(asked: Costing, outputs: CostOutputs) -> None:
@@ -260,8 +260,8 @@ def _write(done: Measured, _: Tick) -> None:
 
 def _front_charts(found: Any) -> Iterator[Chart]:
     """Draw instructions against each error of a run."""
-    for at, front in enumerate(found.fronts):
-        yield front_chart(f"cost-{at}", front.label, front.panels)
+    for index, front in enumerate(found.fronts):
+        yield front_chart(f"cost-{index}", front.label, front.panels)
 
 
 def _listing(step: Step, row: Row) -> str | None:

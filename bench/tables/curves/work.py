@@ -41,11 +41,11 @@ def cases(options: CurvesOptions) -> list[measure.CurveCase]:
 def codecs(options: CurvesOptions) -> list[CurveCodec]:
     """Return the codecs asked for; those that do not fit are named on standard error."""
     roundings = roundings_named(options.rounding, ROUNDINGS_AND_DITHERED)
-    said = None if options.range is None else checked_numbers("--range", options.range, float, *RANGES)
+    ranges = None if options.range is None else checked_numbers("--range", options.range, float, *RANGES)
     return that_fit(
         replace(codec, range=largest)
         for codec in codecs_of_kind(CURVE, options.encoding, options.storage, roundings)
-        for largest in said or (codec.range,)
+        for largest in ranges or (codec.range,)
     )
 
 

@@ -60,7 +60,7 @@ def _range_text(row: Row) -> str:
 
 def _line_name(row: Row, rows: Sequence[Row]) -> str:
     """What a line is called; with the way to its positions where codes have several."""
-    several = len({(one["depth"], one["rebuilt"]) for one in rows}) > len({one["depth"] for one in rows})
+    several = len({(other["depth"], other["rebuilt"]) for other in rows}) > len({other["depth"] for other in rows})
     rounding = "" if row["rounding"] == "nearest" else row["rounding"]
     words = (row["depth"], row["storage"], rounding, row["rebuilt"] if several else "")
     return " ".join(filter(None, words)).replace("_", " ")

@@ -113,14 +113,14 @@ def check_and_say(frames: Sequence[DepthImage], cameras: Sequence[Camera]) -> No
 
 
 def _left_out(frame: DepthImage, camera: Camera) -> list[str]:
-    found, depths = seen(frame, camera), frame.depths(camera)
+    sample, depths = seen(frame, camera), frame.depths(camera)
     planes = f"--near {camera.near:g} --far {camera.far:g}"
     finite = depths[np.isfinite(depths)]
     reach = f"{finite.min():.4g} to {finite.max():.4g}" if len(finite) else "not finite"
-    if not len(found.points.depths):
+    if not len(sample.points.depths):
         remedy = "--depth-unit -1 turns them around" if len(finite) and finite.max() <= 0 else "see --depths-are"
         raise UsageError(f"{frame.name}: no depth lies within {planes}; they are {reach}: {remedy}")
-    said = [f"1 pixel in {found.every} is measured"] * (found.every > 1)
-    if found.background:
-        said.append(f"{found.background / depths.size:.1%} of its pixels are not within {planes}; it has {reach}")
-    return said + [f"{frame.not_finite} numbers are NaN and left out"] * bool(frame.not_finite)
+    notes = [f"1 pixel in {sample.every} is measured"] * (sample.every > 1)
+    if sample.background:
+        notes.append(f"{sample.background / depths.size:.1%} of its pixels are not within {planes}; it has {reach}")
+    return notes + [f"{frame.not_finite} numbers are NaN and left out"] * bool(frame.not_finite)

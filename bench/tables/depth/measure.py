@@ -49,8 +49,8 @@ def points(camera: Camera, distance: float | None, count: int, seed: int) -> Poi
 @lru_cache(maxsize=4)
 def all_points(camera: Camera, distances: tuple[float | None, ...], count: int, seed: int) -> Points:
     """The points of every distance, one after the other."""
-    made = [points(camera, distance, count, seed) for distance in distances]
-    return Points(np.concatenate([p.places for p in made]), np.concatenate([p.depths for p in made]))
+    parts = [points(camera, distance, count, seed) for distance in distances]
+    return Points(np.concatenate([p.places for p in parts]), np.concatenate([p.depths for p in parts]))
 
 
 @dataclass(frozen=True)
@@ -102,12 +102,12 @@ def usual_ways(codec: DepthCodec) -> list[str]:
 
 def _in_blocks(function: Callable[..., Sequence[Any]], *arrays: np.ndarray) -> list[np.ndarray]:
     """What a function makes of arrays, BLOCK rows at a time: JAX compiles every operation for every shape."""
-    count, made = len(arrays[0]), []
+    count, blocks = len(arrays[0]), []
     for start in range(0, count, BLOCK):
         parts = [array[start : start + BLOCK] for array in arrays]
         missing = BLOCK - len(parts[0])
-        made.append(function(*(np.concatenate([p, np.repeat(p[-1:], missing, axis=0)]) for p in parts)))
-    return [np.concatenate([np.asarray(part) for part in parts])[:count] for parts in zip(*made, strict=True)]
+        blocks.append(function(*(np.concatenate([p, np.repeat(p[-1:], missing, axis=0)]) for p in parts)))
+    return [np.concatenate([np.asarray(part) for part in parts])[:count] for parts in zip(*blocks, strict=True)]
 
 
 def _rebuilt_by_jax(case: DepthCase, signed: np.ndarray, on: Points) -> tuple[Rebuilt, dict[str, str]]:
@@ -220,12 +220,12 @@ def measure(case: DepthCase) -> list[Row]:
         count = len(on.depths)
         shared |= _frame_columns(case.frame, camera) | {"count": count}
     try:
-        found = through(case, on)
+        measured = through(case, on)
     except UNMEASURABLE as error:
         return [shared | {"distance": distance, "skipped": str(error)} for distance in case.distances]
     parts = [slice(i * count, (i + 1) * count) for i in range(len(case.distances))]
     return [
-        shared | found.how | {"distance": distance} | _figures(case, found, part)
+        shared | measured.how | {"distance": distance} | _figures(case, measured, part)
         for distance, part in zip(case.distances, parts, strict=True)
     ]
 

@@ -73,13 +73,17 @@ def cases(options: DepthOptions) -> list[measure.DepthCase]:
     in_range("--count", options.count, 2, MAX_POINTS // max(map(len, distances.values())))
     chosen = codecs(options)
     backends = backends_here(options.backend, measure.BACKENDS)
-    made = [(camera, distances[camera], None) for camera in cameras]
+    views = [(camera, distances[camera], None) for camera in cameras]
     if frames := frames_named(options):
         check_and_say(frames, cameras)
-        made = [(replace(camera, aspect=one.aspect), (None,), one) for one in frames for camera in cameras]
+        views = [
+            (replace(camera, aspect=depth_image.aspect), (None,), depth_image)
+            for depth_image in frames
+            for camera in cameras
+        ]
     return [
-        measure.DepthCase(codec, way, backend, camera, at, options.count, options.seed, frame)
-        for camera, at, frame in made
+        measure.DepthCase(codec, way, backend, camera, case_distances, options.count, options.seed, frame)
+        for camera, case_distances, frame in views
         for codec, way in chosen
         for backend in backends
     ]
@@ -87,7 +91,7 @@ def cases(options: DepthOptions) -> list[measure.DepthCase]:
 
 def codecs(options: DepthOptions) -> list[tuple[DepthCodec, str]]:
     """Codecs with the ways to their positions; those that cannot be are named on standard error."""
-    made: list[tuple[DepthCodec, str]] = []
+    pairs: list[tuple[DepthCodec, str]] = []
     complaints: list[str] = []
     roundings = roundings_named(options.rounding, ROUNDINGS_AND_DITHERED)
     asked = None if options.rebuild is None else choose("rebuild", options.rebuild, {name: name for name in REBUILDS})
@@ -97,11 +101,11 @@ def codecs(options: DepthOptions) -> list[tuple[DepthCodec, str]]:
             continue
         known = measure.ways(codec)
         chosen = measure.usual_ways(codec) if asked is None else [way for way in asked if way in known]
-        made += [(codec, way) for way in chosen]
+        pairs += [(codec, way) for way in chosen]
         if not chosen:
             ways = ", ".join(asked or ())
             complaints.append(f"{codec.name}: {ways}: only for codes stored in a depth buffer")
-    return what_is_left(made, complaints)
+    return what_is_left(pairs, complaints)
 
 
 def _ranges(options: DepthOptions) -> list[tuple[float, float]]:
@@ -119,11 +123,11 @@ def _distances(options: DepthOptions, camera: Camera) -> tuple[float | None, ...
     if options.distance is None:
         powers = range(math.ceil(math.log10(camera.near) - 1e-9), math.floor(math.log10(camera.far) + 1e-9) + 1)
         return (*(10.0**power for power in powers), None)
-    found = _numbers("--distance", options.distance)
-    for distance in found:
+    distances = _numbers("--distance", options.distance)
+    for distance in distances:
         if not camera.near <= distance <= camera.far:
             raise UsageError(f"--distance {distance:g}: not between near {camera.near:g} and far {camera.far:g}")
-    return (*found, None)
+    return (*distances, None)
 
 
 def _numbers(option: str, words: Names) -> tuple[float, ...]:
@@ -135,10 +139,10 @@ def _steps(options: DepthOptions, outputs: DepthOutputs) -> list[Step]:
         raise UsageError("--plot draws errors over distances, and depths of an image have none; leave one out")
     if options.depths is not None and outputs.images and options.fov is None:
         raise UsageError("--images of depth images needs --fov, the vertical angle, which gives surfaces their slope")
-    made = cases(options)
+    chosen = cases(options)
     if outputs.images:
-        _pictured(outputs.images, made)
-    return [Step(_key(case), case, case.name) for case in made]
+        _pictured(outputs.images, chosen)
+    return [Step(_key(case), case, case.name) for case in chosen]
 
 
 def _key(case: measure.DepthCase) -> Row:
@@ -153,21 +157,21 @@ def _key(case: measure.DepthCase) -> Row:
 
 def _write(done: Measured, tick: Tick) -> None:
     """The pictures, where they were asked for."""
-    made, folder = [step.case for step in done.steps], done.outputs.images
+    chosen, folder = [step.case for step in done.steps], done.outputs.images
     if folder:
-        _write_pictures(_for_drawing(made), _pictured(folder, made), folder, tick)
+        _write_pictures(_for_drawing(chosen), _pictured(folder, chosen), folder, tick)
 
 
 def _plotted(done: Measured) -> list[Chart]:
     """The chart of many distances, close to each other."""
-    made = [step.case for step in done.steps if not step.case.frame]
-    rows = [row for case in _for_drawing(made) for row in _curve(case)]
+    chosen = [step.case for step in done.steps if not step.case.frame]
+    rows = [row for case in _for_drawing(chosen) for row in _curve(case)]
     return [depth_chart(usable)] if (usable := having(rows, "distance", "error_max")) else []
 
 
 def _shown(done: Measured) -> Iterator[Sheet]:
-    found = but_without_twins(done.rows)
-    rows = _of_frames(found) if any(step.case.frame for step in done.steps) else _beside(found)
+    kept = but_without_twins(done.rows)
+    rows = _of_frames(kept) if any(step.case.frame for step in done.steps) else _beside(kept)
     yield Sheet("", rows, TABLE.drops(rows))
 
 
@@ -195,8 +199,8 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
         for row in rows:
             if _is_at(row, near, far) and row["backend"] == rows[0]["backend"]:
                 line = {name: row[name] for name in ("depth", "storage", "rounding", "rebuilt")}
-                at = lines.setdefault(tuple(line.values()), line)
-                at[f"at_{row['distance']:g}"] = row["error_max"]
+                entry = lines.setdefault(tuple(line.values()), line)
+                entry[f"at_{row['distance']:g}"] = row["error_max"]
         if lines:
             yield Sheet(f"the worst position error, near {near:g}, far {far:g}", list(lines.values()))
 
@@ -288,9 +292,9 @@ def _seen(device: Device) -> Surface:
     """The pictures' scene, rendered once: it is asked for before anything is measured, and again for the pictures."""
     plan = Plan(SIZE, 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 2, False, 1.0)
     scene = SCENE.make(Setting())
-    with rendering(device, PIPELINES["prepass"], scene, plan) as made:
-        made.draw()
-        return Surface(SCENE.name, -made.gbuffer()[0][..., 2], scene.view.fov)
+    with rendering(device, PIPELINES["prepass"], scene, plan) as drawing:
+        drawing.draw()
+        return Surface(SCENE.name, -drawing.gbuffer()[0][..., 2], scene.view.fov)
 
 
 def _pictured(folder: Path, cases: Iterable[measure.DepthCase]) -> Surface | None:
@@ -337,8 +341,8 @@ def _write_pictures(
         scene = _seen_by(case, pictured)
         camera = replace(case.camera, fov=scene.fov, aspect=scene.aspect)
         points, covered = scene.points(camera), scene.within(camera)
-        found = _through(replace(case, camera=camera), points)
-        errors, positions = found.errors.reshape(covered.shape), found.positions.reshape(*covered.shape, 3)
+        measured = _through(replace(case, camera=camera), points)
+        errors, positions = measured.errors.reshape(covered.shape), measured.positions.reshape(*covered.shape, 3)
         where = f"{scene.name}-{camera.near:g}-{camera.far:g}"
         for kind, pixels in pictures.depth_pictures(errors, positions, covered).items():
             name = f"{where}-{case.codec.name.replace('/', '-')}-{case.rebuilt}-{kind}.png"

@@ -37,10 +37,10 @@ def codec_name(row: Row) -> str:
 
 def by_device(rows: Sequence[Row]) -> dict[str, list[Row]]:
     """Rows by what their device is called."""
-    found: dict[str, list[Row]] = {}
+    groups: dict[str, list[Row]] = {}
     for row in rows:
-        found.setdefault(device_of(row), []).append(row)
-    return found
+        groups.setdefault(device_of(row), []).append(row)
+    return groups
 
 
 def many(count: int, what: str) -> str:
@@ -55,8 +55,8 @@ def sentences(rows: Sequence[Row]) -> list[str]:
     whole = [name for name in parts if name not in off]
     first = [_agreement_sentence(whole, [row for name in whole for row in parts[name]])] if whole else []
     worst = sorted(off, key=lambda name: min(row["same_percent"] for row in off[name]))
-    made = [*first, *(f"{name} {difference(off[name])}." for name in worst)]
-    return [*made, *_other_runs(rows)]
+    lines = [*first, *(f"{name} {difference(off[name])}." for name in worst)]
+    return [*lines, *_other_runs(rows)]
 
 
 def _other_runs(rows: Sequence[Row]) -> Iterator[str]:
@@ -105,21 +105,21 @@ def pivot(rows: Sequence[Row]) -> list[Row]:
     shown = [row for row in rows if differs(row)]
     keys = [name for name in CODEC if name in CODEC[:2] or len({row[name] for row in rows}) > 1]
     wanted = dict.fromkeys(map(codec_of, shown))
-    found = {(codec_of(row), device_of(row)): SAME - row["same_percent"] for row in rows}
+    shares = {(codec_of(row), device_of(row)): SAME - row["same_percent"] for row in rows}
     about = {codec_of(row): {name: row[name] for name in keys} for row in shown}
     devices = [name for name, part in by_device(rows).items() if any(map(differs, part))]
-    return [about[one] | {name: found.get((one, name)) for name in devices} for one in wanted]
+    return [about[codec] | {name: shares.get((codec, name)) for name in devices} for codec in wanted]
 
 
 def sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
     """What people look at first."""
     if not rows:
         return
-    said = tuple(sentences(rows))
+    lines = tuple(sentences(rows))
     table = pivot(rows)
     if table:
-        yield Sheet("Codes that differ from the run's, in percent, by codec and device", table, said=said)
-    yield Sheet("Devices", overview(rows), said=() if table else said)
+        yield Sheet("Codes that differ from the run's, in percent, by codec and device", table, said=lines)
+    yield Sheet("Devices", overview(rows), said=() if table else lines)
 
 
 def overview(rows: Sequence[Row]) -> list[Row]:
@@ -146,5 +146,5 @@ def time_of(row: Row) -> float | None:
 
 def fastest(rows: Sequence[Row]) -> Row | None:
     """The codec with the least time to encode and decode; None where no time was measured."""
-    timed = [(time, at) for at, row in enumerate(rows) if (time := time_of(row)) is not None]
+    timed = [(time, index) for index, row in enumerate(rows) if (time := time_of(row)) is not None]
     return rows[min(timed)[1]] if timed else None

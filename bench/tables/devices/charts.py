@@ -40,13 +40,13 @@ def timed(rows: Sequence[Row]) -> list[Row]:
 
     A logarithmic axis has no place for times that are not above 0.
     """
-    made = [{"codec": codec_name(row), "device": device_of(row), "ms": time_of(row)} for row in rows]
-    made = [row for row in made if row["ms"] is not None and row["ms"] > 0]
+    points = [{"codec": codec_name(row), "device": device_of(row), "ms": time_of(row)} for row in rows]
+    points = [row for row in points if row["ms"] is not None and row["ms"] > 0]
     logs: dict[str, list[float]] = {}
-    for row in made:
+    for row in points:
         logs.setdefault(row["codec"], []).append(math.log(row["ms"]))
     order = sorted(logs, key=lambda name: statistics.fmean(logs[name]))[:MOST_DRAWN]
-    return sorted((row for row in made if row["codec"] in order), key=lambda row: order.index(row["codec"]))
+    return sorted((row for row in points if row["codec"] in order), key=lambda row: order.index(row["codec"]))
 
 
 def _finding_sentence(drawn: Sequence[Row]) -> str:

@@ -53,14 +53,14 @@ def _plain_line(text: str) -> str:
 def _utc_time(text: str) -> str:
     """A time as UTC, to the second, so that the order of texts is that of times."""
     try:
-        made = datetime.fromisoformat(text)
-        made = made.replace(tzinfo=made.tzinfo or UTC).astimezone(UTC)
+        moment = datetime.fromisoformat(text)
+        moment = moment.replace(tzinfo=moment.tzinfo or UTC).astimezone(UTC)
     except (ValueError, OverflowError):
         raise ValueError("is not a time such as 2026-11-23T15:00:00Z") from None
     # It would count as newer than every honest file.
-    if made > datetime.now(UTC) + AHEAD:
+    if moment > datetime.now(UTC) + AHEAD:
         raise ValueError("lies in the future")
-    return made.strftime("%Y-%m-%dT%H:%M:%SZ")
+    return moment.strftime("%Y-%m-%dT%H:%M:%SZ")
 
 
 def _checked_fact(value: Any) -> Any:
@@ -217,11 +217,11 @@ def _parsed(data: bytes) -> Any:
 
 
 def _object_without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    made = dict(pairs)
-    if len(made) < len(pairs):
+    entries = dict(pairs)
+    if len(entries) < len(pairs):
         twice = Counter(name for name, _ in pairs).most_common(1)[0][0]
         raise ValueError(f"{_short_text(twice)} is given twice in one object")
-    return made
+    return entries
 
 
 def _checked_file(found: Any) -> DeviceFile:
@@ -271,8 +271,8 @@ def _first_fault(error: ValidationError) -> str:
         return f"{where}: it has no entries"
     if "error" in context and isinstance(first["input"], dict):
         return ": ".join(filter(None, (where, str(context["error"]))))
-    said = context.get("error") or WRONG.get(first["type"], first["msg"]).format(**context)
-    return f"{where}: {_short_text(first['input'])} {said}"
+    reason = context.get("error") or WRONG.get(first["type"], first["msg"]).format(**context)
+    return f"{where}: {_short_text(first['input'])} {reason}"
 
 
 def _short_text(value: Any) -> str:

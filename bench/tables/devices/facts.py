@@ -10,10 +10,10 @@ from .agreement import by_device, device_of, many
 
 def side_by_side(rows: Sequence[Row]) -> list[Row]:
     """A row for each fact, with a column for each device; the facts that devices differ in come first."""
-    found = {(row["name"], device_of(row)): row["value"] for row in rows}
+    values = {(row["name"], device_of(row)): row["value"] for row in rows}
     names, devices = dict.fromkeys(row["name"] for row in rows), list(by_device(rows))
-    made = [{"fact": name, **{device: found.get((name, device)) for device in devices}} for name in names]
-    return sorted(made, key=lambda row: not _is_told_apart(row))
+    table = [{"fact": name, **{device: values.get((name, device)) for device in devices}} for name in names]
+    return sorted(table, key=lambda row: not _is_told_apart(row))
 
 
 def _is_told_apart(row: Row) -> bool:
@@ -26,7 +26,7 @@ def sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
         return
     table, devices = side_by_side(rows), len(by_device(rows))
     apart = sum(map(_is_told_apart, table))
-    said = f"{many(devices, 'device')}: " + (
+    sentence = f"{many(devices, 'device')}: " + (
         f"they differ in {apart} of {many(len(table), 'fact')}." if devices > 1 else f"{many(len(table), 'fact')}."
     )
-    yield Sheet("Facts by device", table, said=(said,))
+    yield Sheet("Facts by device", table, said=(sentence,))

@@ -50,21 +50,21 @@ def device_name(renderer: str) -> str:
 
 def _comma_parts(text: str) -> list[str]:
     """What commas separate, but for those inside parentheses."""
-    found, depth = [""], 0
+    parts, depth = [""], 0
     for letter in text:
         depth += {"(": 1, ")": -1}.get(letter, 0)
         if letter == "," and depth == 0:
-            found.append("")
+            parts.append("")
         else:
-            found[-1] += letter
-    return [part.strip() for part in found]
+            parts[-1] += letter
+    return [part.strip() for part in parts]
 
 
 def browser_name(agent: str) -> str:
     """A browser and its major version: `Firefox 153`."""
     for pattern, name in BROWSERS:
-        if found := re.search(pattern, agent):
-            return f"{name} {found[1][:6]}"
+        if match := re.search(pattern, agent):
+            return f"{name} {match[1][:6]}"
     return " ".join(agent.split())[:LONGEST].strip() or UNKNOWN_BROWSER
 
 
@@ -74,11 +74,13 @@ def told_apart(renderers: Iterable[str]) -> dict[str, str]:
     Those that share one get their API behind it; where that is the same too, four digits of a hash.
     """
     every = sorted(set(renderers))
-    made = {renderer: device_name(renderer) for renderer in every}
+    short_names = {renderer: device_name(renderer) for renderer in every}
     for more in (_api_name, _renderer_hash):
-        names = list(made.values())
-        made = {r: f"{name} ({more(r)})" if names.count(name) > 1 and more(r) else name for r, name in made.items()}
-    return made
+        names = list(short_names.values())
+        short_names = {
+            r: f"{name} ({more(r)})" if names.count(name) > 1 and more(r) else name for r, name in short_names.items()
+        }
+    return short_names
 
 
 def _api_name(renderer: str) -> str:

@@ -53,22 +53,22 @@ def files_named(words: Names) -> list[Path]:
     Raises:
         UsageError: none is named, a folder has none, or there are too many.
     """
-    found: dict[Path, None] = {}
+    paths: dict[Path, None] = {}
     for word in map(str, words):
-        found |= dict.fromkeys(_folder_files(Path(word)) if names_a_folder(word) else [Path(word)])
-    if not found:
+        paths |= dict.fromkeys(_folder_files(Path(word)) if names_a_folder(word) else [Path(word)])
+    if not paths:
         raise UsageError(f"no device file named; --devices FILE,FILE names them, and {SAVED}")
-    return checked_number(list(found))
+    return checked_number(list(paths))
 
 
 def _folder_files(folder: Path) -> list[Path]:
     try:
-        found = sorted(folder.glob("*.json"))
+        paths = sorted(folder.glob("*.json"))
     except OSError as error:
         raise UsageError(f"{folder} cannot be read: {error.strerror or error}") from None
-    if not found:
+    if not paths:
         raise UsageError(f"{folder}: there is no *.json in it; {SAVED}")
-    return found
+    return paths
 
 
 def checked_number(paths: list[Path]) -> list[Path]:
@@ -92,16 +92,16 @@ def devices(found: Iterable[Read]) -> list[Device]:
 
 def reads_of_rows(rows: Iterable[Row], path: Path) -> list[Read]:
     """The devices of a run's rows; one whose rows no device file has is named on standard error."""
-    found: dict[tuple[Any, ...], list[Row]] = {}
+    groups: dict[tuple[Any, ...], list[Row]] = {}
     for row in rows:
-        found.setdefault((row.get("device"), row.get("renderer"), row.get("browser")), []).append(row)
-    made = []
-    for (device, _, browser), part in found.items():
+        groups.setdefault((row.get("device"), row.get("renderer"), row.get("browser")), []).append(row)
+    reads = []
+    for (device, _, browser), part in groups.items():
         try:
-            made.append(Read(path, _file_of(part)))
+            reads.append(Read(path, _file_of(part)))
         except (KeyError, TypeError, ValueError) as error:
             tell(f"left out: {called(device, browser)} of {path}: {error}")
-    return made
+    return reads
 
 
 def _file_of(rows: Sequence[Row]) -> DeviceFile:
@@ -119,9 +119,9 @@ def named(files: Sequence[DeviceFile]) -> list[Device]:
 def steps_of(words: Names, is_of_facts: bool) -> list[Step]:
     """A step for each device: its facts, or its codecs. Raises UsageError for a file that cannot be read or is not a
     device's."""
-    found = devices(read_device_file(path) for path in files_named(words))
+    reads = devices(read_device_file(path) for path in files_named(words))
     row_of = FACT if is_of_facts else CODEC
-    return [Step(one.key(row_of), (one, row_of), one.called) for one in found]
+    return [Step(device.key(row_of), (device, row_of), device.called) for device in reads]
 
 
 def rows_of(device: Device, row_of: str) -> list[Row]:
@@ -135,10 +135,10 @@ def codec_rows(device: Device) -> list[Row]:
 
 
 def _codec_row(row: CodecRow) -> Row:
-    said = row.model_dump(exclude={"equal"})
+    columns = row.model_dump(exclude={"equal"})
     # A clock that was not read has no name.
     timer = row.timer if row.encode_ms is not None or row.decode_ms is not None else None
-    return said | {"same_percent": 100 * row.equal / row.normals, "timer": timer or None}
+    return columns | {"same_percent": 100 * row.equal / row.normals, "timer": timer or None}
 
 
 def fact_rows(device: Device) -> list[Row]:
@@ -158,9 +158,9 @@ def _device_row(device: Device, row_of: str) -> Row:
 
 def newest(rows: Sequence[Row], keys: Sequence[str]) -> list[Row]:
     """Of rows that share their keys the newest: a run may hold an older file's rows as well."""
-    found: dict[tuple[Any, ...], Row] = {}
+    latest: dict[tuple[Any, ...], Row] = {}
     for row in rows:
         key = tuple(row.get(name) for name in keys)
-        if key not in found or str(row.get("made")) >= str(found[key].get("made")):
-            found[key] = row
-    return list(found.values())
+        if key not in latest or str(row.get("made")) >= str(latest[key].get("made")):
+            latest[key] = row
+    return list(latest.values())

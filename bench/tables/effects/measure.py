@@ -93,13 +93,13 @@ class EffectsBench(Bench[EffectsCase, Drawn]):
 
     def frames(self, case: EffectsCase, repeats: int = 0) -> list[Drawn]:
         effect, scene = case.effect.effect, self.scene(case.maker, case.setting)
-        with rendering(self.device, case.pipeline, scene, case.plan) as made:
-            made.draw()
-            position, direction, *_ = made.gbuffer()
-            own, hits = made.read(effect.result)[0], made.read(effect.hits)[0] if effect.hits else None
+        with rendering(self.device, case.pipeline, scene, case.plan) as drawing:
+            drawing.draw()
+            position, direction, *_ = drawing.gbuffer()
+            own, hits = drawing.read(effect.result)[0], drawing.read(effect.hits)[0] if effect.hits else None
             covered = drawn_at(own, position[..., 2] != 0)
-            times = _effect_times(case, made, repeats) if repeats else {}
-            return [Drawn(made.image(), own[..., :3], direction[..., :3], covered, hits, times=times)]
+            times = _effect_times(case, drawing, repeats) if repeats else {}
+            return [Drawn(drawing.image(), own[..., :3], direction[..., :3], covered, hits, times=times)]
 
     def display(self, case: EffectsCase, frames: list[Drawn]) -> Display:
         (frame,) = frames
@@ -125,11 +125,11 @@ class EffectsBench(Bench[EffectsCase, Drawn]):
     def _method_columns(self, case: EffectsCase) -> Row:
         scene = self.scene(case.maker, case.setting)
         try:
-            found = method_error(self.device, case.effect, scene, case.plan.size, rays=self._rays)
+            errors = method_error(self.device, case.effect, scene, case.plan.size, rays=self._rays)
         except MissingError as error:
             tell(f"method_rms stays empty: {error}")
             return {}
-        return {"method_rms": found.rms, "method_mean": found.mean}
+        return {"method_rms": errors.rms, "method_mean": errors.mean}
 
 
 def _effect_times(case: EffectsCase, made: Rendering, repeats: int) -> Row:
@@ -148,10 +148,10 @@ def drawn_at(own: np.ndarray, surfaces: np.ndarray) -> np.ndarray:
 def _distance_columns(drawn: Drawn, exact: Drawn) -> Row:
     """How far the effect's own image is from the exact one's, and the normals from the exact ones."""
     covered = exact.covered
-    one, other = (frame.own[covered].astype(np.float64) for frame in (drawn, exact))
+    own, other = (frame.own[covered].astype(np.float64) for frame in (drawn, exact))
     peak = float(np.max(np.abs(np.nan_to_num(other))))
     # What is no number is as far off as the brightest pixel is from none.
-    apart = np.where(np.isfinite(one - other), np.abs(one - other), peak)
+    apart = np.where(np.isfinite(own - other), np.abs(own - other), peak)
     mse, angles = float(np.mean(apart**2)), _angles(drawn, exact)
     row: Row = {"effect_rms": mse**0.5, "effect_mean": float(np.mean(apart)), "effect_max": float(np.max(apart))}
     row["effect_psnr_db"] = psnr_db(mse)
@@ -179,9 +179,9 @@ def moved_percent(hits: np.ndarray, exact: np.ndarray) -> float | None:
 
 def _angles(drawn: Drawn, exact: Drawn) -> np.ndarray:
     """Degrees between the normals of two frames, where both have one."""
-    one, other = drawn.normals[exact.covered], exact.normals[exact.covered]
+    normals, other = drawn.normals[exact.covered], exact.normals[exact.covered]
     there = np.any(other != 0, axis=-1)
-    return np.nan_to_num(angles_deg(other[there], one[there]), nan=180.0) if np.any(there) else np.zeros(1)
+    return np.nan_to_num(angles_deg(other[there], normals[there]), nan=180.0) if np.any(there) else np.zeros(1)
 
 
 def _case_columns(case: EffectsCase) -> Row:

@@ -59,10 +59,12 @@ def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
             groups.setdefault(_file_stem(row, True), []).append(row)
     for name, part in groups.items():
         original = there.get(f"{name}-{REFERENCE}-{OWN}.png")
-        found = [one for rank, row in enumerate(in_order(part)) if (one := _pictured_or_none(there, row, rank))]
-        if original and found:
+        pictured = [
+            picture for rank, row in enumerate(in_order(part)) if (picture := _pictured_or_none(there, row, rank))
+        ]
+        if original and pictured:
             title = f"{part[0]['effect']} alone, on {part[0]['scene']}"
-            yield Subject(title, "image", partial(read_png, original), found)
+            yield Subject(title, "image", partial(read_png, original), pictured)
 
 
 def _pictured_or_none(there: Mapping[str, Path], row: Row, rank: int) -> Pictured | None:

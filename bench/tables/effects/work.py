@@ -71,10 +71,10 @@ def _with_depths(options: EffectsOptions, complaints: list[str]) -> list[tuple[L
     names = DEPTHS if options.depth is None else options.depth
     if names == (NO_DEPTH,):
         return []
-    made: list[tuple[Layout, str | None]] = []
+    layouts: list[tuple[Layout, str | None]] = []
     for codec in (_depth_codec(str(name)) for name in names):
-        attempt(lambda codec=codec: (LAYOUTS["fp32"].with_depth(codec), codec.name), made, complaints)
-    return made
+        attempt(lambda codec=codec: (LAYOUTS["fp32"].with_depth(codec), codec.name), layouts, complaints)
+    return layouts
 
 
 def _depth_codec(name: str) -> DepthCodec:
@@ -96,32 +96,32 @@ def cases(options: EffectsOptions, device: Device) -> list[EffectsCase]:
     effects, pipelines = effects_named(options.effect), choose("pipeline", options.pipeline, PIPELINES)
     exact, inside = Plan(size, 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 1, True, 1.0), contents(options)
     complaints: list[str] = []
-    made: list[EffectsCase] = []
+    possible: list[EffectsCase] = []
     complaints += [f"pipeline {p.name} {NO_GBUFFER}" for p in pipelines if not p.has_gbuffer]
     for effect in effects:
         makers = _suitable(effect, options.scene, setting, complaints)
         for pipeline in filter(lambda p: p.has_gbuffer, pipelines) if makers else ():
             if with_effect := pipeline_with(pipeline, [effect], complaints):
-                one = replace(exact, light_targets=max(pipeline.light_targets, default=1))
-                plans = [(replace(one, layout=layout), depth) for layout, depth in inside]
+                base_plan = replace(exact, light_targets=max(pipeline.light_targets, default=1))
+                plans = [(replace(base_plan, layout=layout), depth) for layout, depth in inside]
                 sized = [(m, replace(p, size=m.within(p.size)), depth) for m in makers for p, depth in plans]
                 chosen = [EffectsCase(effect, with_effect, plan, m, setting, depth) for m, plan, depth in sized]
-                made += [case for case in chosen if _is_possible(device, case, makers[case.maker], complaints)]
-    return what_is_left(made, complaints)
+                possible += [case for case in chosen if _is_possible(device, case, makers[case.maker], complaints)]
+    return what_is_left(possible, complaints)
 
 
 def _suitable(
     effect: ChosenEffect, names: Names | None, setting: Setting, complaints: list[str]
 ) -> dict[SceneMaker, bool]:
     """The scenes asked for, or the effect's own, that have something for it; whether each is metal/rough."""
-    made: dict[SceneMaker, bool] = {}
+    suitable: dict[SceneMaker, bool] = {}
     for maker in scene_makers_named(names or (effect.effect.scene,)):
         scene = maker.make(setting)
         if why := lacking([effect], maker.name, scene):
             complaints.append(why)
         else:
-            made[maker] = scene.is_metal_rough
-    return made
+            suitable[maker] = scene.is_metal_rough
+    return suitable
 
 
 def _is_possible(device: Device, case: EffectsCase, is_metal_rough: bool, complaints: list[str]) -> bool:
@@ -149,7 +149,7 @@ def _key(case: EffectsCase, options: EffectsOptions) -> Row:
 
 def _verdict(rows: Sequence[Row]) -> Iterator[str]:
     measured = [row for row in rows if row["effect_psnr_db"] is not None and row["encoding"]]
-    said = []
+    phrases = []
     for effect, pipeline, scene in dict.fromkeys(map(group_of, measured)):
         part = [row for row in measured if group_of(row) == (effect, pipeline, scene)]
         # What a ray hits is light of any size; how many hit something else says more than its decibels.
@@ -157,9 +157,9 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
         figure, form = ("moved_percent", "{:.2g}%") if moved else ("effect_psnr_db", "{:.1f} dB")
         ranked = sorted(moved or part, key=lambda row: row[figure])
         ends = [f"{form.format(row[figure])} ({codec_name(row)})" for row in (ranked[0], ranked[-1])]
-        said.append(f"{effect} in {scene} {' to '.join(dict.fromkeys(ends))}{' of the rays moved' * bool(moved)}")
-    if said:
-        yield f"Effects against those of exact normals: {'; '.join(said)}."
+        phrases.append(f"{effect} in {scene} {' to '.join(dict.fromkeys(ends))}{' of the rays moved' * bool(moved)}")
+    if phrases:
+        yield f"Effects against those of exact normals: {'; '.join(phrases)}."
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:

@@ -65,8 +65,8 @@ def _trip_by_jax(codec: FrameCodec) -> Iterator[tuple[Trip, dict[str, str]]]:
     def trip(given: Frames) -> Frames:
         normals, tangents = (jnp.asarray(np.ascontiguousarray(a.T)) for a in (given.normals, given.tangents))
         n, t, hand = _compiled_trip(codec)(normals, tangents, noise)
-        found = (np.stack([np.asarray(c) for c in v], axis=1) for v in ((*n, hand), (*t, 0 * hand)))
-        return Frames(*found)
+        decoded = (np.stack([np.asarray(c) for c in v], axis=1) for v in ((*n, hand), (*t, 0 * hand)))
+        return Frames(*decoded)
 
     yield trip, {"device": jax.devices()[0].device_kind, "rounded_by": "emulation"}
 
@@ -77,8 +77,8 @@ def _trip_by_glsl(codec: FrameCodec) -> Iterator[tuple[Trip, dict[str, str]]]:
     with FramePasses(gl, codec) as passes:
 
         def trip(given: Frames) -> Frames:
-            found = passes.round_trip(*(a.reshape(-1, WIDTH, 4) for a in (given.normals, given.tangents)))
-            return Frames(*(a.reshape(-1, 4) for a in found))
+            decoded = passes.round_trip(*(a.reshape(-1, WIDTH, 4) for a in (given.normals, given.tangents)))
+            return Frames(*(a.reshape(-1, 4) for a in decoded))
 
         yield trip, {"device": gl.renderer, "rounded_by": passes.rounded_by}
 
@@ -150,12 +150,12 @@ def measure(case: FrameCase) -> Row:
         with BACKENDS[case.backend](case.codec) as (trip, how), np.errstate(invalid="ignore", divide="ignore"):
             for given in case.frame_set.chunks():
                 count = len(given.normals)
-                found = trip(_whole_chunk(given))
-                total.add(given, Frames(found.normals[:count], found.tangents[:count]))
+                outcome = trip(_whole_chunk(given))
+                total.add(given, Frames(outcome.normals[:count], outcome.tangents[:count]))
     except UNMEASURABLE as error:
         return row | {"skipped": str(error)}
-    found = _figures(total, case.codec) | (_supremum_columns(case) if case.worst_case else {})
-    return row | found | _limit_columns(case, total, found) | how
+    outcome = _figures(total, case.codec) | (_supremum_columns(case) if case.worst_case else {})
+    return row | outcome | _limit_columns(case, total, outcome) | how
 
 
 def _supremum_columns(case: FrameCase) -> Row:

@@ -88,8 +88,8 @@ def frames_from(normals: np.ndarray, with_hands: np.ndarray) -> Frames:
     across[lost] = np.cross(normals[lost], np.eye(3)[np.argmin(abs(normals[lost]), axis=1)])
     across /= np.linalg.norm(across, axis=1, keepdims=True)
     hands = with_hands[:, 3:]
-    made = (np.concatenate(parts, axis=1).astype(np.float32) for parts in ((normals, hands), (across, 0 * hands)))
-    return Frames(*made)
+    arrays = (np.concatenate(parts, axis=1).astype(np.float32) for parts in ((normals, hands), (across, 0 * hands)))
+    return Frames(*arrays)
 
 
 FRAME_SETS: Mapping[str, Callable[[int, int], FrameSet]] = MappingProxyType({"rotations": rotations})
@@ -106,12 +106,12 @@ def frame_sets_named(names: Names, count: int, seed: int) -> list[FrameSet]:
     def read(path: Path) -> Callable[[int, int], FrameSet]:
         file = mesh_file(path)
         notes[path] = file.notes
-        made = mesh_frames(called(path.name), [piece.baked() for piece in file.pieces])
-        return lambda *_: made
+        frame_set = mesh_frames(called(path.name), [piece.baked() for piece in file.pieces])
+        return lambda *_: frame_set
 
-    made = [make(count, seed) for make in choose_or_read("frame set", names, FRAME_SETS, tuple(READERS), read)]
+    sets = [make(count, seed) for make in choose_or_read("frame set", names, FRAME_SETS, tuple(READERS), read)]
     say_notes(notes)
-    return made
+    return sets
 
 
 def _as_in_files(mesh: Mesh) -> np.ndarray:

@@ -39,8 +39,8 @@ class FramesOptions(SourceOptions):
 def _angle_columns(what: str, says: str, *drops: int) -> tuple[Column, ...]:
     figures = zip(("mean", "rms", "max"), ("Mean", "Root mean square", "Largest"), drops, strict=True)
     return tuple(
-        Column(f"{what}_{name}_deg", f"{title} {says}", unit="degrees", better="less", drops=at)
-        for name, title, at in figures
+        Column(f"{what}_{name}_deg", f"{title} {says}", unit="degrees", better="less", drops=drop)
+        for name, title, drop in figures
     )
 
 

@@ -44,8 +44,8 @@ def cases(options: FramesOptions) -> list[measure.FrameCase]:
 def codecs(options: FramesOptions) -> list[FrameCodec]:
     """Return the codecs asked for; those that do not fit are named on standard error."""
     roundings = roundings_named(options.rounding, ROUNDINGS_AND_DITHERED)
-    made = codecs_of_kind(FRAME, options.encoding, options.storage, roundings)
-    return that_fit(without_noise(made, not_with_noise("--worst-case")) if options.worst_case else made)
+    chosen = codecs_of_kind(FRAME, options.encoding, options.storage, roundings)
+    return that_fit(without_noise(chosen, not_with_noise("--worst-case")) if options.worst_case else chosen)
 
 
 def _steps(options: FramesOptions, _: NoOutputs) -> list[Step]:

@@ -63,13 +63,13 @@ def _random_rows(rows: Sequence[Row]) -> list[Row]:
 
 def _worst(panel: str, errors: Sequence[tuple[Row, float]]) -> list[Row]:
     """A point for each buffer and number of lights, of the largest error, by the number."""
-    found: dict[tuple[str, int], tuple[float, float]] = {}
+    largest: dict[tuple[str, int], tuple[float, float]] = {}
     for row, error in errors:
         key = (row["light_buffer"], row["lights"])
-        found[key] = max(found.get(key, (0.0, 0.0)), (error, row["bound"]))
+        largest[key] = max(largest.get(key, (0.0, 0.0)), (error, row["bound"]))
     return [
         {"light_buffer": name, "panel": panel, "x": count, "y": max(error, LEAST_ERROR), "error": error, "bound": bound}
-        for (name, count), (error, bound) in sorted(found.items(), key=lambda item: item[0][1])
+        for (name, count), (error, bound) in sorted(largest.items(), key=lambda item: item[0][1])
     ]
 
 
@@ -78,5 +78,5 @@ def _finding_sentence(points: Sequence[Row]) -> str:
     panel, most = points[-1]["panel"], max(point["x"] for point in points)
     last = sorted((p for p in points if (p["panel"], p["x"]) == (panel, most)), key=lambda p: p["y"])
     best, worst = last[0], last[-1]
-    said = f"Of {most} lights {best['light_buffer']} loses the least, {best['error']:.2g}"
-    return f"{said}, and {worst['light_buffer']} the most, {worst['error']:.2g}"
+    sentence = f"Of {most} lights {best['light_buffer']} loses the least, {best['error']:.2g}"
+    return f"{sentence}, and {worst['light_buffer']} the most, {worst['error']:.2g}"

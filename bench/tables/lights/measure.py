@@ -70,9 +70,9 @@ def check_light_twin(encoding: LightCodec) -> None:
     """Traces a light encoding's Python half. Raises UsageError where it fails; one line with its file."""
     light = Vec4(*[jax.ShapeDtypeStruct((1,), jnp.float32)] * 4)
     try:
-        found = jax.eval_shape(lambda light: encoding.decode(encoding.encode(light)), light)
-        if len(found) != 4:
-            raise TypeError(f"{len(found)} numbers of light, not 4")
+        decoded = jax.eval_shape(lambda light: encoding.decode(encoding.encode(light)), light)
+        if len(decoded) != 4:
+            raise TypeError(f"{len(decoded)} numbers of light, not 4")
     except NoTwinError:
         return
     except Exception as error:  # whatever a user's own file raises
@@ -90,13 +90,13 @@ def sum_rows(names: list[str], encoding: LightCodec, sums: Sums, device: Device 
     try:
         with Adder(encoding, device) as adder:
             rounding = adder.rounding
-            found = [(name, row) for name in names for row in EXPERIMENTS[name](sums, adder)]
+            named_rows = [(name, row) for name in names for row in EXPERIMENTS[name](sums, adder)]
     except UNMEASURABLE as error:
         for row in sum_rows(names, encoding, sums, None):
             yield row | {"skipped": str(error)}
         return
     how = {"rounds": rounding.name, "agree_percent": 100 * rounding.share} if rounding else {}
-    for name, row in found:
+    for name, row in named_rows:
         yield _filled_row(name, encoding, device, seed=sums.seed, **how, **row)
 
 
@@ -118,7 +118,7 @@ def banded(encoding: LightCodec, peak: float, device: Device | None) -> np.ndarr
     """
     with Adder(encoding, device if not has_light_twin(encoding) else None) as adder:
         light = gradient(peak)[None]
-        found = adder.model(light) or adder.device(light)
-    if not found:
+        stored = adder.model(light) or adder.device(light)
+    if not stored:
         raise MissingError(f"{encoding.name} is written for shaders alone, and there is no GL device")
-    return found.light[:, :3]
+    return stored.light[:, :3]

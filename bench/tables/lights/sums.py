@@ -178,8 +178,8 @@ def worst_rounding(adder: Adder, light: np.ndarray) -> np.ndarray | None:
     without a model."""
     below = np.where(np.max(light, axis=1, keepdims=True) <= adder.encoding.limit, light, 0.0).astype(np.float32)
     # A light that multiplies is stored beside none.
-    found = adder.model(below[None])
-    return np.abs(found.light - below).max(axis=0) if found else None
+    stored = adder.model(below[None])
+    return np.abs(stored.light - below).max(axis=0) if stored else None
 
 
 def _channel_labels(found: list[tuple[Any, ...]]) -> dict[tuple[Any, ...], str]:
@@ -198,14 +198,14 @@ def equal_lights(adder: Adder, sums: Sequence[float], counts: Sequence[int]) -> 
         for count in counts:
             lights = np.full((max(counts), 1, 4), total / count, np.float32)
             model, gl = adder.model(lights, count), adder.device(lights, count)
-            found = [
+            by_channel = [
                 (
-                    *(float(one.light[0, i]) if one else None for one in (model, gl)),
+                    *(float(stored.light[0, i]) if stored else None for stored in (model, gl)),
                     None if half_step is None else count * float(half_step[i]) + max(total - adder.encoding.limit, 0),
                 )
                 for i in range(adder.channels)
             ]
-            for (by_model, by_gl, bound), channel in _channel_labels(found).items():
+            for (by_model, by_gl, bound), channel in _channel_labels(by_channel).items():
                 row: Row = {"channel": channel, "sum": total, "lights": count, "model": by_model, "gl": by_gl}
                 yield row | {"error": _off(by_model, total), "gl_error": _off(by_gl, total), "bound": bound}
 
@@ -252,8 +252,8 @@ def random_lights(adder: Adder, total: float, counts: Sequence[int], seed: int) 
         for order in ORDERS:
             padded[:count] = ordered(lights, order)
             row: Row = {"order": order, "sum": total, "lights": count, "bound": bound}
-            for name, found in (("model", adder.model(padded, count)), ("gl", adder.device(padded, count))):
-                apart = np.abs(found.light[:, : adder.channels] - exact) if found else None
+            for name, stored in (("model", adder.model(padded, count)), ("gl", adder.device(padded, count))):
+                apart = np.abs(stored.light[:, : adder.channels] - exact) if stored else None
                 row[f"{name}_rms"] = float(np.sqrt(np.mean(apart**2))) if apart is not None else None
                 row[f"{name}_max"] = float(apart.max()) if apart is not None else None
             yield row
@@ -275,13 +275,15 @@ def banding(adder: Adder, peaks: Sequence[float]) -> Iterator[Row]:
     """One lamp's falloff: how many levels are left of it, and how far the largest step goes, in light and as shown."""
     for peak in peaks:
         light = gradient(peak)
-        found: list[tuple[Any, ...]] = []
+        by_channel: list[tuple[Any, ...]] = []
         kept = [adder.model(light[None]), adder.device(light[None])]
         for i in range(adder.channels):
-            found.append(
-                tuple(value for one in kept for value in (_band_figures(one.light[:, i]) if one else (None,) * 3))
+            by_channel.append(
+                tuple(
+                    value for stored in kept for value in (_band_figures(stored.light[:, i]) if stored else (None,) * 3)
+                )
             )
-        for figures, channel in _channel_labels(found).items():
+        for figures, channel in _channel_labels(by_channel).items():
             row: Row = {"channel": channel, "peak": peak, "exact_step": float(np.abs(np.diff(light[:, 0])).max())}
             names = ("levels", "largest_step", "shown_step", "gl_levels", "gl_largest_step", "gl_shown_step")
             yield row | dict(zip(names, figures, strict=True))

@@ -82,8 +82,8 @@ def _sum_step(
         if images:
             with whole_file(images / f"banding-{encoding.name}.png") as partial:
                 pictures.write_png(partial, _bands(encoding, sums.peaks, gl))
-        found = list(measure.sum_rows(names, encoding, sums, gl))
-        return found if gl else [row | {"skipped": missing} for row in found]
+        sum_rows = list(measure.sum_rows(names, encoding, sums, gl))
+        return sum_rows if gl else [row | {"skipped": missing} for row in sum_rows]
 
     key: Row = {"experiments": names, "light_buffer": encoding.name, "seed": sums.seed}
     key |= {"sums": list(sums.sums), "counts": list(sums.counts), "peaks": list(sums.peaks)}

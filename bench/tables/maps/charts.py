@@ -21,8 +21,8 @@ COLUMNS = [column for column, *_ in MARKED]
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
     """A chart for each image and decoder."""
     usable = in_order(having(rows, *COLUMNS))
-    for at, group in enumerate(dict.fromkeys(map(group_of, usable))):
-        yield _chart(at, group, [row for row in usable if group_of(row) == group])
+    for index, group in enumerate(dict.fromkeys(map(group_of, usable))):
+        yield _chart(index, group, [row for row in usable if group_of(row) == group])
 
 
 def _chart(at: int, group: tuple[str, str], rows: Sequence[Row]) -> Chart:
@@ -58,8 +58,8 @@ def _finding_sentence(name: str, rows: Sequence[Row]) -> str:
     best: dict[float, Row] = {}
     for row in sorted(rows, key=lambda row: (row["bits_per_texel"], row["angle_mean_deg"])):
         best.setdefault(row["bits_per_texel"], row)
-    said = [f"{_line_name(row)} ({row['angle_mean_deg']:.2g})" for row in best.values()]
-    return f"The smallest mean angles on {name}, in degrees, have {'; '.join(said)}"
+    parts = [f"{_line_name(row)} ({row['angle_mean_deg']:.2g})" for row in best.values()]
+    return f"The smallest mean angles on {name}, in degrees, have {'; '.join(parts)}"
 
 
 def _line_name(row: Row) -> str:

@@ -96,7 +96,7 @@ class BlockFormat:
         if self.decode is None:
             return self.encoder.decoded(blocks, size)
         given = np.frombuffer(blocks, np.uint8).reshape(-1, 16)
-        parts = [self.decode(given[at : at + TOGETHER]) for at in range(0, len(given), TOGETHER)]
+        parts = [self.decode(given[start : start + TOGETHER]) for start in range(0, len(given), TOGETHER)]
         width, height = size
         texels = np.concatenate(parts).reshape(height // SIDE, width // SIDE, SIDE, SIDE, self.channels)
         return texels.transpose(0, 2, 1, 3, 4).reshape(height, width, self.channels)

@@ -180,8 +180,8 @@ def measure(case: MapCase) -> list[Row]:
 
     def loads() -> Iterator[Callable[[], Decoded]]:
         for band in bands(whole):
-            found, real = through(case, band, clock), tuple(slice(side) for side in band.real)
-            n, back = (Vec3(*_vectors(pixels)) for pixels in (band.n[real], found))
+            decoded, real = through(case, band, clock), tuple(slice(side) for side in band.real)
+            n, back = (Vec3(*_vectors(pixels)) for pixels in (band.n[real], decoded))
             covered = np.zeros(n.z.size, bool)
             covered[: band.covered.size] = band.covered.ravel()
             yield partial(identity, Decoded(n, back, jnp.asarray(covered.reshape(n.z.shape))))

@@ -25,12 +25,12 @@ def write(cases: Iterable[MapCase], folder: Path) -> None:
     """The decoded normals and their error, times `pictures.GAIN`, of each case. Raises OSError."""
     for case in cases:
         try:
-            found = _case_pictures(case)
+            images = _case_pictures(case)
         except UNMEASURABLE:
             continue
         for kind in KINDS:
             with whole_file(folder / f"{stem(case)}-{kind}.png") as partial:
-                pictures.write_png(partial, found[kind])
+                pictures.write_png(partial, images[kind])
 
 
 def _case_pictures(case: MapCase) -> dict[str, np.ndarray]:

@@ -43,7 +43,7 @@ DECODERS: Mapping[str, str] = MappingProxyType(
 
 
 def _listed_text(known: Mapping[str, str]) -> str:
-    return "; ".join(f"{name}: {said}" for name, said in known.items())
+    return "; ".join(f"{name}: {text}" for name, text in known.items())
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -54,7 +54,7 @@ def cases(options: MapsOptions) -> list[MapCase]:
     complaints += [] if fitting and "all" in options.block else no_room
     sets = _images(options, any(encoding.domain == "view" for encoding in encodings))
     left = what_is_left(fitting, complaints)
-    return [MapCase(*one, normals, decoder) for normals in sets for one in left for decoder in decoders]
+    return [MapCase(*parts, normals, decoder) for normals in sets for parts in left for decoder in decoders]
 
 
 def _blocks(names: Names) -> list[BlockFormat]:
@@ -84,15 +84,15 @@ def _is_possible(encoding: Encoding, complaints: list[str]) -> bool:
 
 
 def _swizzles(encoding: Encoding, block: BlockFormat, asked: list[Any], complaints: list[str]) -> list[Any]:
-    found = swizzles_of(block, encoding.components, asked)
-    if not found and block.channels < encoding.components:
+    swizzles = swizzles_of(block, encoding.components, asked)
+    if not swizzles and block.channels < encoding.components:
         complaints.append(
             f"{encoding.name}: {encoding.components} components, but {block.title} has {block.channels} channels"
         )
-    elif not found:
+    elif not swizzles:
         names = ", ".join(swizzle.name for swizzle in asked)
         complaints.append(f"{encoding.name} in {block.title}: {encoding.components} components do not lie in {names}")
-    return found
+    return swizzles
 
 
 def _images(options: MapsOptions, needs_rays: bool) -> list[NormalSet]:
@@ -100,19 +100,19 @@ def _images(options: MapsOptions, needs_rays: bool) -> list[NormalSet]:
     words = tuple(
         Given(word, MAPS[word]()) if isinstance(word, str) and word in MAPS else word for word in options.normals
     )
-    found = normal_sets_named(words, DEFAULT_COUNT, 0, options.reading, needs_rays)
-    others = [normals.name for normals in found if not normals.shape]
+    sets = normal_sets_named(words, DEFAULT_COUNT, 0, options.reading, needs_rays)
+    others = [normals.name for normals in sets if not normals.shape]
     if others:
         known = ", ".join((*MAPS, published.NORMALS))
         raise UsageError(f"--normals {', '.join(others)}: not an image; name {known}, or an image file")
-    return found
+    return sets
 
 
 def _steps(options: MapsOptions, outputs: MapsOutputs) -> list[Step]:
-    made = cases(options)
+    chosen = cases(options)
     if outputs.images:
         check_folder(outputs.images)
-    return [Step(_key(case), case, case.name) for case in made]
+    return [Step(_key(case), case, case.name) for case in chosen]
 
 
 def _key(case: MapCase) -> Row:

@@ -80,5 +80,5 @@ def _finding_sentence(cells: Sequence[Row]) -> str:
     codecs = distinct(cells, "codec")
     bad = {cell["codec"] for cell in cells if cell["garbage"]}
     worst = max(cells, key=lambda cell: (cell["garbage"], cell["angle"]))
-    said = f"{len(codecs) - len(bad)} of {len(codecs)} codes give no garbage"
-    return f"{said}; {worst['codec']} the most, {worst['said']} by {worst['operation']}" if bad else said
+    sentence = f"{len(codecs) - len(bad)} of {len(codecs)} codes give no garbage"
+    return f"{sentence}; {worst['codec']} the most, {worst['said']} by {worst['operation']}" if bad else sentence

@@ -31,8 +31,8 @@ class Figures:
 
     def errors(self, operation: str) -> np.ndarray:
         """How far each mix is off in degrees, (patches,); -1 where the encoding cannot hold it."""
-        found = angles_between(self._mixed[operation], right_of(self._mixes, operation).normals)
-        return np.where(self._held_mask(operation), found, -1.0)
+        angles = angles_between(self._mixed[operation], right_of(self._mixes, operation).normals)
+        return np.where(self._held_mask(operation), angles, -1.0)
 
     def _held_mask(self, operation: str) -> np.ndarray:
         return self._held & self._mixes.held_by(operation, self._domain)
@@ -61,17 +61,17 @@ class Figures:
             "garbage_percent": percent(garbage),
             "garbage_error_percent": error_of_percent(garbage),
         }
-        at = int(errors.argmax())
-        row |= _worst_columns(right.used[:, held][:, at], right.normals[held][at], mixed[at])
+        worst = int(errors.argmax())
+        row |= _worst_columns(right.used[:, held][:, worst], right.normals[held][worst], mixed[worst])
         return row | (self._power_columns(operation, held, right.mean[held], mixed) if operation in AVERAGES else {})
 
     def _power_columns(self, operation: str, held: np.ndarray, mean: np.ndarray, mixed: np.ndarray) -> Row:
         """Errors of the specular power that Toksvig's formula gives, in percent."""
         texels = np.nan_to_num(self._texels.astype(np.float64))
         decoded = MEANS[operation](texels, self._mixes)[held]
-        exact, found, after = (toksvig_power(_lengths(v), self._power) for v in (mean, mixed, decoded))
+        exact, mixed_power, after = (toksvig_power(_lengths(v), self._power) for v in (mean, mixed, decoded))
         return {
-            "power_error_percent": 100 * float(np.mean(np.abs(found / exact - 1))),
+            "power_error_percent": 100 * float(np.mean(np.abs(mixed_power / exact - 1))),
             "power_decoded_percent": 100 * float(np.mean(np.abs(after / exact - 1))),
         }
 
@@ -84,8 +84,8 @@ def excused(operation: str, alone_deg: float) -> float:
 
 def _worst_columns(texels: np.ndarray, right: np.ndarray, mixed: np.ndarray) -> Row:
     """The two of the texels (count, 3) that are farthest apart, what is right and what came back, as text."""
-    one, other = np.unravel_index(np.argmin(texels @ texels.T), (len(texels), len(texels)))
-    named = {"worst_first": texels[min(one, other)], "worst_second": texels[max(one, other)]}
+    first, other = np.unravel_index(np.argmin(texels @ texels.T), (len(texels), len(texels)))
+    named = {"worst_first": texels[min(first, other)], "worst_second": texels[max(first, other)]}
     named |= {"worst_right": right, "worst_result": mixed}
     return {name: f"({', '.join(f'{c:.4f}' for c in n)})" for name, n in named.items()}
 

@@ -41,8 +41,8 @@ _INSIDE, _ACROSS = attrgetter("inside"), attrgetter("across")
 @cache
 def _usual_mixes(seed: int) -> tuple[Mixes, ...]:
     chosen = (NORMAL_SETS[name](COUNT, seed) for name in SETS)
-    made = (patches for one in chosen for patches in patches_of(one, ANGLES, COUNT, seed, (EDGE,)))
-    return tuple(mixes_of(patches, SAMPLES) for patches in made)
+    all_patches = (patches for normals in chosen for patches in patches_of(normals, ANGLES, COUNT, seed, (EDGE,)))
+    return tuple(mixes_of(patches, SAMPLES) for patches in all_patches)
 
 
 def _mixes_of_set(normals: NormalSet) -> tuple[Mixes, ...]:
@@ -129,5 +129,5 @@ def _is_of_codes(use: str) -> bool:
 
 
 def _faults_by_use(rows: Sequence[Row], uses: Sequence[str]) -> dict[str, str]:
-    found = {use: worst_fault([row for row in rows if row["operation"] in USES[use]]) for use in uses}
-    return {use: summed_up(row) for use, row in found.items() if row}
+    faults = {use: worst_fault([row for row in rows if row["operation"] in USES[use]]) for use in uses}
+    return {use: summed_up(row) for use, row in faults.items() if row}

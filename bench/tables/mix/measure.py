@@ -94,8 +94,8 @@ class Modelled:
     def _raw_and_stored(self, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         shape = normals.shape[:-1]
         views = np.broadcast_to(self._views, normals.shape).reshape(-1, 3)
-        made = self._programs.codes(normals.reshape(-1, 3), views)
-        raw, stored = (code.reshape(len(code), *shape) for code in made)
+        codes = self._programs.codes(normals.reshape(-1, 3), views)
+        raw, stored = (code.reshape(len(code), *shape) for code in codes)
         return raw, stored
 
     def texels(self) -> np.ndarray:
@@ -115,18 +115,18 @@ class Modelled:
 
     def of_normals(self, operation: str, texels: np.ndarray) -> np.ndarray:
         """What an operation on decoded texels (TEXELS, patches, 3) gives, (patches, 3)."""
-        made = BY_NORMALS[operation](texels.astype(np.float64), self._mixes)
-        return self.decoded(self._raw_and_stored(made)[1]) if operation in STORED_AGAIN else made
+        normals = BY_NORMALS[operation](texels.astype(np.float64), self._mixes)
+        return self.decoded(self._raw_and_stored(normals)[1]) if operation in STORED_AGAIN else normals
 
 
 def _result_by_jax(case: MixCase) -> Result:
-    made = Modelled(case.codec, case.mixes)
-    codes = made.texels()
-    texels, given = made.decoded(codes), made.given(codes)
+    model = Modelled(case.codec, case.mixes)
+    codes = model.texels()
+    texels, given = model.decoded(codes), model.given(codes)
     stored = [name for name in case.operations if name in BY_MODEL]
-    numbers = [made.mixed(name, given, MODEL) for name in stored]
-    mixed = dict(zip(stored, made.decoded(np.stack(numbers, axis=1)), strict=True)) if stored else {}
-    mixed |= {name: made.of_normals(name, texels) for name in case.operations if name in BY_NORMALS}
+    numbers = [model.mixed(name, given, MODEL) for name in stored]
+    mixed = dict(zip(stored, model.decoded(np.stack(numbers, axis=1)), strict=True)) if stored else {}
+    mixed |= {name: model.of_normals(name, texels) for name in case.operations if name in BY_NORMALS}
     how = {name: {"mixed_by": str(MODEL) if name in BY_MODEL else None} for name in case.operations}
     return Result(texels, mixed, how, {"device": jax.devices()[0].device_kind})
 
@@ -135,14 +135,14 @@ def _result_by_glsl(case: MixCase) -> Result:
     gl: Device = device()
     with MixPasses(gl, case.codec, case.mixes.meetings(), case.mixes.samples) as passes:
         texels = passes.texels()
-        found = {name: BY_DEVICE[name](passes) for name in case.operations}
+        images = {name: BY_DEVICE[name](passes) for name in case.operations}
     height, width, _ = texels.normals.shape
     blocks = (_blocked_image(a, height // SIDE, width // SIDE) for a in (texels.normals, texels.codes))
     decoded, codes = blocks
-    flat = {name: Decoded(one.normals.reshape(-1, 3), one.codes.reshape(-1, 4)) for name, one in found.items()}
+    flat = {name: Decoded(image.normals.reshape(-1, 3), image.codes.reshape(-1, 4)) for name, image in images.items()}
     numbers = case.codec.encoding.components + case.codec.encoding.sign_bits
     how = _compared(case, np.moveaxis(codes[..., :numbers], -1, 0), flat)
-    return Result(decoded, {name: one.normals for name, one in flat.items()}, how, {"device": gl.renderer})
+    return Result(decoded, {name: mixed.normals for name, mixed in flat.items()}, how, {"device": gl.renderer})
 
 
 def _blocked_image(image: np.ndarray, height: int, width: int) -> np.ndarray:
@@ -158,13 +158,13 @@ def _compared(case: MixCase, codes: np.ndarray, found: Mapping[str, Decoded]) ->
     """
     if not has_twin(case.codec.encoding):
         return {name: {} for name in found}
-    made = Modelled(case.codec, case.mixes)
-    given = made.given(codes)
+    model = Modelled(case.codec, case.mixes)
+    given = model.given(codes)
     return {
-        name: _way_columns(made, name, given, one, case.mixes.patches.count)
+        name: _way_columns(model, name, given, mixed, case.mixes.patches.count)
         if name in BY_MODEL
-        else {"agree_percent": _agreed_percent(made.of_normals(name, made.decoded(codes)), one.normals, case)}
-        for name, one in found.items()
+        else {"agree_percent": _agreed_percent(model.of_normals(name, model.decoded(codes)), mixed.normals, case)}
+        for name, mixed in found.items()
     }
 
 
@@ -199,8 +199,8 @@ def measure(case: MixCase) -> list[Row]:
     described = _case_columns(case)
     domain = case.domain or case.codec.encoding.domain
     if not case.mixes.patches.held_by(domain).any():
-        said = outside(case.mixes.patches.name, domain)
-        return [described | {"operation": name, "skipped": said} for name in case.operations]
+        reason = outside(case.mixes.patches.name, domain)
+        return [described | {"operation": name, "skipped": reason} for name in case.operations]
     refused = [name for name in case.operations if name in BY_MODEL] if case.codec.is_integer else []
     allowed = tuple(name for name in case.operations if name not in refused)
     rows = [described | {"operation": name, "skipped": OF_INTEGER} for name in refused]
@@ -212,17 +212,17 @@ def _measured(case: MixCase, domain: str) -> list[Row]:
     """A row for each operation that a code allows."""
     described = _case_columns(case)
     try:
-        found = BACKENDS[case.backend](case)
+        outcome = BACKENDS[case.backend](case)
     except UNMEASURABLE as error:
         return [described | {"operation": name, "skipped": str(error)} for name in case.operations]
-    figures = Figures(case.mixes, domain, case.power, found.texels, found.mixed)
+    figures = Figures(case.mixes, domain, case.power, outcome.texels, outcome.mixed)
     return [
         described
         | {"operation": name}
         | figures.of(name)
         | _worst_columns(case, figures, name)
-        | found.how[name]
-        | found.said
+        | outcome.how[name]
+        | outcome.said
         for name in case.operations
     ]
 
@@ -239,8 +239,8 @@ def _worst_columns(case: MixCase, figures: Figures, operation: str) -> Row:
         result = _result_by_jax(replace(case, mixes=mixes, operations=(operation,)))
         return Figures(mixes, domain, case.power, result.texels, result.mixed)
 
-    found = climbed(case.mixes, errors, lambda mixes: figures_of(mixes).errors(operation), case.mixes.patches.seed)
-    row = figures_of(found).of(operation)
+    worst = climbed(case.mixes, errors, lambda mixes: figures_of(mixes).errors(operation), case.mixes.patches.seed)
+    row = figures_of(worst).of(operation)
     named = {name: row[name] for name in ("worst_first", "worst_second", "worst_right", "worst_result")}
     return {"angle_worst_deg": row["angle_max_deg"]} | named
 

@@ -45,11 +45,11 @@ class Way:
     rounds_source: bool = False
 
     def __str__(self) -> str:
-        said = ["integers" if self.is_fixed else "32-bit floats"]
-        said += [f"fractions of {self.fraction_bits} bits"] if self.fraction_bits else []
-        said += ["the source rounded first"] if self.rounds_source else []
-        said += [WRITTEN[self.rounding]] if self.rounding in WRITTEN else []
-        return ", ".join(said)
+        parts = ["integers" if self.is_fixed else "32-bit floats"]
+        parts += [f"fractions of {self.fraction_bits} bits"] if self.fraction_bits else []
+        parts += ["the source rounded first"] if self.rounds_source else []
+        parts += [WRITTEN[self.rounding]] if self.rounding in WRITTEN else []
+        return ", ".join(parts)
 
 
 CUT = "cut"
@@ -155,9 +155,9 @@ class Texels:
         if self._storage.kind != "unorm":
             return texels
         scales = [self._storage.scale(channel) for channel in range(len(texels))]
-        one = np.array(scales, np.float64).reshape(-1, *[1] * (texels.ndim - 1))
+        scale = np.array(scales, np.float64).reshape(-1, *[1] * (texels.ndim - 1))
         sixteen = np.rint(np.clip(texels.astype(np.float64), 0, 1) * (2**16 - 1))
-        return (np.floor(sixteen * (one + 1) / 2**16) / one).astype(F32)
+        return (np.floor(sixteen * (scale + 1) / 2**16) / scale).astype(F32)
 
     def _whole_values(self, texels: np.ndarray) -> np.ndarray:
         """What stands for 1 in each plane, of a shape that broadcasts; 0 for floats, and for the sign's."""
@@ -170,29 +170,29 @@ class Texels:
         """a + (b - a) share."""
         step = 2.0**way.fraction_bits
         share = np.rint(share * step) / step if way.fraction_bits else share
-        made = a + (b - a) * share.astype(F32)
-        one = self._whole_values(a)
-        if not way.is_fixed or not one.any():
-            return made
-        low, high = np.rint(a * one), np.rint(b * one)
+        mixed = a + (b - a) * share.astype(F32)
+        scale = self._whole_values(a)
+        if not way.is_fixed or not scale.any():
+            return mixed
+        low, high = np.rint(a * scale), np.rint(b * scale)
         whole = low + np.floor((high - low) * share + 0.5)
-        return np.where(one > 0, whole / np.maximum(one, 1), made).astype(F32)
+        return np.where(scale > 0, whole / np.maximum(scale, 1), mixed).astype(F32)
 
     def blended(self, base: np.ndarray, source: np.ndarray, alpha: np.ndarray, way: Way) -> np.ndarray:
         """source alpha + base (1 - alpha), written."""
         source = self.written(source, self._codec.rounding) if way.rounds_source else source
         x = alpha.astype(F32)
-        made = self.written(source * x + base * (F32(1) - x), way.rounding)
-        one = self._whole_values(base)
-        if not way.is_fixed or not one.any():
-            return made
-        share = np.rint(alpha * one)
+        mixed = self.written(source * x + base * (F32(1) - x), way.rounding)
+        scale = self._whole_values(base)
+        if not way.is_fixed or not scale.any():
+            return mixed
+        share = np.rint(alpha * scale)
         parts = (
-            _scaled_product(np.rint(source * one), share, one),
-            _scaled_product(np.rint(base * one), one - share, one),
+            _scaled_product(np.rint(source * scale), share, scale),
+            _scaled_product(np.rint(base * scale), scale - share, scale),
         )
         # Products that go down may add up to one step below -1, which reads as -1.
-        return np.where(one > 0, np.maximum(sum(parts) / np.maximum(one, 1), -1), made).astype(F32)
+        return np.where(scale > 0, np.maximum(sum(parts) / np.maximum(scale, 1), -1), mixed).astype(F32)
 
 
 def _scaled_product(a: np.ndarray, b: np.ndarray, one: np.ndarray) -> np.ndarray:
@@ -203,14 +203,14 @@ def _scaled_product(a: np.ndarray, b: np.ndarray, one: np.ndarray) -> np.ndarray
 
 def _filtered_texels(texels: Texels, quad: np.ndarray, mixes: Mixes, way: Way) -> np.ndarray:
     x, y = mixes.shares.T
-    low, high = (texels.lerped(quad[:, at], quad[:, at + 1], x, way) for at in (0, 2))
+    low, high = (texels.lerped(quad[:, first], quad[:, first + 1], x, way) for first in (0, 2))
     return texels.lerped(low, high, y, way)
 
 
 def _averaged_texels(texels: Texels, quad: np.ndarray, way: Way) -> np.ndarray:
     """The mean of four texels (planes, 4, ...), written."""
     half = np.full(quad.shape[2:], 0.5)
-    low, high = (texels.lerped(quad[:, at], quad[:, at + 1], half, way) for at in (0, 2))
+    low, high = (texels.lerped(quad[:, first], quad[:, first + 1], half, way) for first in (0, 2))
     return texels.written(texels.lerped(low, high, half, way), way.rounding)
 
 
@@ -222,10 +222,10 @@ def _reduced_texels(texels: Texels, planes: np.ndarray, way: Way) -> np.ndarray:
 
 def _mip_texel(level: int, texels: Texels, planes: np.ndarray, way: Way) -> np.ndarray:
     side = int(planes.shape[1] ** 0.5)
-    made = planes.reshape(len(planes), side, side, -1)
+    reduced = planes.reshape(len(planes), side, side, -1)
     for _ in range(level):
-        made = _reduced_texels(texels, made, way)
-    return made[:, 0, 0]
+        reduced = _reduced_texels(texels, reduced, way)
+    return reduced[:, 0, 0]
 
 
 def _resolved_texels(texels: Texels, planes: np.ndarray, mixes: Mixes, way: Way) -> np.ndarray:

@@ -148,11 +148,11 @@ def patches_of(
         return
     directions = _chosen_directions(normals, count, seed)
     is_anywhere = normals.area == SPHERE
-    made = [
+    by_angle = [
         replace(_turned_patches(normals.name, directions, angle, seed), is_anywhere=is_anywhere) for angle in angles_deg
     ]
-    yield from made
-    yield from (_with_edge(made[0], edge, seed) for edge in edges_deg)
+    yield from by_angle
+    yield from (_with_edge(by_angle[0], edge, seed) for edge in edges_deg)
 
 
 def _patch_indices(count: int) -> np.ndarray:
@@ -163,12 +163,12 @@ def _patch_indices(count: int) -> np.ndarray:
 
 def _set_arrays(normals: NormalSet) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Normals, views and coverage of a set: (count, 3), (count, 3) and (count,)."""
-    found = ([], [], [])
+    gathered = ([], [], [])
     for load in normals.loads():
         chunk = load()
-        for parts, planes in zip(found, (chunk.n, chunk.view, chunk.covered), strict=True):
+        for parts, planes in zip(gathered, (chunk.n, chunk.view, chunk.covered), strict=True):
             parts.append(np.stack([np.asarray(p) for p in planes], axis=1) if isinstance(planes, Vec3) else planes)
-    n, view, covered = (np.concatenate(parts)[: normals.count] for parts in found)
+    n, view, covered = (np.concatenate(parts)[: normals.count] for parts in gathered)
     return n, view, np.asarray(covered)
 
 
@@ -186,8 +186,8 @@ def _turned_patches(name: str, directions: np.ndarray, angle_deg: float, seed: i
     """
     count, random = len(directions), np.random.default_rng([seed, 0])
     within, turn = random.random((count, 2)), random.uniform(0, 2 * np.pi, count)
-    at = np.stack(np.meshgrid(np.arange(SIDE), np.arange(SIDE)), axis=-1).reshape(TEXELS, 1, 2)
-    steps = math.radians(angle_deg) * (at - within)
+    grid = np.stack(np.meshgrid(np.arange(SIDE), np.arange(SIDE)), axis=-1).reshape(TEXELS, 1, 2)
+    steps = math.radians(angle_deg) * (grid - within)
     length, way = np.hypot(steps[..., 0], steps[..., 1]), np.arctan2(steps[..., 1], steps[..., 0]) + turn
     across = tilted(np.full_like(length, np.pi / 2), way)
     tangents = reoriented(np.broadcast_to(directions, across.shape), across)
@@ -206,9 +206,9 @@ def _with_edge(patches: Patches, edge_deg: float, seed: int) -> Patches:
     random = np.random.default_rng([seed, 3])
     count = patches.normals.shape[1]
     turn, lean = random.uniform(0, 2 * np.pi, count), random.uniform(-np.pi / 3, np.pi / 3, count)
-    at = np.stack(np.meshgrid(np.arange(SIDE), np.arange(SIDE)), axis=-1).reshape(TEXELS, 1, 2)
+    grid = np.stack(np.meshgrid(np.arange(SIDE), np.arange(SIDE)), axis=-1).reshape(TEXELS, 1, 2)
     way = np.stack([np.cos(lean), np.sin(lean)], axis=-1)
-    is_beyond = np.sum((at - np.array([0.5, 0.0])) * way, axis=-1) > 0
+    is_beyond = np.sum((grid - np.array([0.5, 0.0])) * way, axis=-1) > 0
     n, angle = patches.normals, np.radians(edge_deg)
     tangent = reoriented(n[0], tilted(np.full(count, np.pi / 2), turn))
     along = np.sum(n * tangent, axis=-1, keepdims=True)
@@ -248,7 +248,7 @@ def _steepest_deg(normals: np.ndarray) -> np.ndarray:
     """The largest angle between neighbours of each patch (TEXELS, patches, 3), in degrees."""
     grid = normals.reshape(SIDE, SIDE, *normals.shape[1:])
     pairs = ((grid[1:], grid[:-1]), (grid[:, 1:], grid[:, :-1]))
-    return np.max([angles_between(one, other).max(axis=(0, 1)) for one, other in pairs], axis=0)
+    return np.max([angles_between(first, other).max(axis=(0, 1)) for first, other in pairs], axis=0)
 
 
 def rounded(n: np.ndarray) -> np.ndarray:

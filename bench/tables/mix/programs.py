@@ -57,7 +57,7 @@ class Programs:
         """Codes as encoded and as stored, float32 of shape (numbers, count), of unit normals (count, 3)."""
         encode = _encoder(self._codec.encoding, self._like, self._codec.rounding)
         parts = [
-            [np.asarray(found)[:, :count] for found in encode(Vec3(*n), Vec3(*view), *self._scales)]
+            [np.asarray(array)[:, :count] for array in encode(Vec3(*n), Vec3(*view), *self._scales)]
             for count, n, view in self._blocks(normals.T, views.T)
         ]
         code, stored = (np.concatenate(side, axis=1) for side in zip(*parts, strict=True))

@@ -106,14 +106,14 @@ def _degrees_column(name: str, says: str, drops: int = 0) -> Column:
 
 def _verdict_column(use: str) -> Column:
     decides = ", ".join(USES[use])
-    said = f"The verdict, yes or no, by all rows of {decides} of this codec and back end "
+    text = f"The verdict, yes or no, by all rows of {decides} of this codec and back end "
     inside = f"inside a surface: those without an edge, with angle_deg of at most {MOST_JUDGED_DEG:g}."
-    return Column(VERDICTS[use], f"{said}{inside}", HOW)
+    return Column(VERDICTS[use], f"{text}{inside}", HOW)
 
 
 def _across_column(use: str) -> Column:
-    said = f"The same across an edge: by rows of {', '.join(USES[use])} with an edge."
-    return Column(f"{VERDICTS[use]}{ACROSS}", said, HOW, drops=3)
+    text = f"The same across an edge: by rows of {', '.join(USES[use])} with an edge."
+    return Column(f"{VERDICTS[use]}{ACROSS}", text, HOW, drops=3)
 
 
 COLUMNS = (
@@ -124,7 +124,7 @@ COLUMNS = (
     Column("edge_deg", "The angle across an edge that runs through each patch; empty for none.", KEY, "degrees"),
     Column(
         "operation",
-        f"{'; '.join(f'{name}: {said}' for name, said in OPERATIONS.items())}. The right normal is the same mix of "
+        f"{'; '.join(f'{name}: {text}' for name, text in OPERATIONS.items())}. The right normal is the same mix of "
         "the exact unit normals, renormalised. For detail it is reoriented normal mapping of the base and the detail, "
         "whose tilt is scaled by alpha.",
         KEY,

@@ -64,8 +64,8 @@ def judged(rows: Sequence[Row]) -> list[Row]:
     groups: dict[tuple[str, ...], list[Row]] = {}
     for row in rows:
         groups.setdefault(codec_of(row), []).append(row)
-    found = {codec: _verdict_columns(group) for codec, group in groups.items()}
-    return [row | found[codec_of(row)] for row in rows]
+    verdicts = {codec: _verdict_columns(group) for codec, group in groups.items()}
+    return [row | verdicts[codec_of(row)] for row in rows]
 
 
 def codec_of(row: Row) -> tuple[str, ...]:
@@ -74,22 +74,22 @@ def codec_of(row: Row) -> tuple[str, ...]:
 
 
 def _verdict_columns(rows: Sequence[Row]) -> Row:
-    made: Row = {}
+    verdicts: Row = {}
     reasons = []
     for suffix, is_decisive in (("", decides), (ACROSS, decides_across)):
         for use, operations in USES.items():
             part = [row for row in rows if row["operation"] in operations and is_decisive(row)]
             column = f"{VERDICTS[use]}{suffix}"
-            made[column] = None
+            verdicts[column] = None
             if any(row["operation"] in operations and _is_integer(row, suffix == ACROSS) for row in rows):
-                made[column] = "no"
+                verdicts[column] = "no"
                 reasons.append(OF_INTEGER)
             if {row["operation"] for row in part} != set(operations):
                 continue
             worst = worst_fault(part)
-            made[column] = "no" if worst else "yes"
+            verdicts[column] = "no" if worst else "yes"
             reasons += [_fault_reason(worst)] if worst else []
-    return made | {"why": "; ".join(dict.fromkeys(reasons)) or None}
+    return verdicts | {"why": "; ".join(dict.fromkeys(reasons)) or None}
 
 
 def _is_integer(row: Row, is_across: bool) -> bool:
@@ -133,13 +133,13 @@ def lines(rows: Sequence[Row]) -> Iterator[Row]:
 
 def worst_of_each(rows: Sequence[Row]) -> list[Row]:
     """Of each operation on a codec by a back end, the row with the most garbage, or with the largest error."""
-    found: dict[tuple[Any, ...], Row] = {}
+    worst: dict[tuple[Any, ...], Row] = {}
     for row in rows:
         key = (row["operation"], row["encoding"], row["storage"], row["backend"])
-        if row["angle_max_deg"] is not None and (key not in found or _badness(row) > _badness(found[key])):
-            found[key] = row
+        if row["angle_max_deg"] is not None and (key not in worst or _badness(row) > _badness(worst[key])):
+            worst[key] = row
     order = list(OPERATIONS)
-    return sorted(found.values(), key=lambda row: (order.index(row["operation"]), *_badness(row)))
+    return sorted(worst.values(), key=lambda row: (order.index(row["operation"]), *_badness(row)))
 
 
 def _badness(row: Row) -> tuple[float, float]:

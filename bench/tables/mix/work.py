@@ -76,15 +76,15 @@ def _patches(
     options: MixOptions, apart: tuple[tuple[float, ...], tuple[float, ...]], needs_rays: bool
 ) -> list[Patches]:
     angles, edges = apart
-    made: list[Patches] = []
+    all_patches: list[Patches] = []
     sets = normal_sets_named(options.normals, options.count, options.seed, options.reading, needs_rays)
     check_rays(sets, needs_rays)
     for normals in sets:
-        found = list(patches_of(normals, angles, options.count, options.seed, edges))
-        if not found:
+        patches = list(patches_of(normals, angles, options.count, options.seed, edges))
+        if not patches:
             raise UsageError(f"--normals {normals.name}: no square of 4 x 4 pixels of it is covered")
-        made += found
-    return made
+        all_patches += patches
+    return all_patches
 
 
 def _samples(asked: int, backends: Sequence[str]) -> dict[str, int]:
@@ -138,24 +138,24 @@ def _shown(done: Measured) -> Iterator[Sheet]:
 
 def _ways(rows: Sequence[Row]) -> list[Row]:
     """A line for each storage, operation and arithmetic of the device."""
-    found: dict[tuple[str, ...], float] = {}
+    agreed: dict[tuple[str, ...], float] = {}
     for row in rows:
         if row["mixed_by"] and row["agree_percent"] is not None:
             key = row["storage"], row["operation"], row["mixed_by"]
-            found[key] = min(found.get(key, 100.0), row["agree_percent"])
+            agreed[key] = min(agreed.get(key, 100.0), row["agree_percent"])
     names = ("storage", "operation", "mixed_by")
-    return [dict(zip(names, key, strict=True)) | {"agree_percent": least} for key, least in found.items()]
+    return [dict(zip(names, key, strict=True)) | {"agree_percent": least} for key, least in agreed.items()]
 
 
 def _verdict(rows: Sequence[Row]) -> Iterator[str]:
     """Say which codes survive each use by every backend."""
-    made = list(lines(rows))
+    verdict_lines = list(lines(rows))
     uses = {"filtering": "filterable", "blending": "blendable", "MSAA resolve": "resolvable"}
     uses["filtering across an edge"] = f"filterable{ACROSS}"
     by_codecs: dict[str, list[str]] = {}
     for use, column in uses.items():
-        if any(line[column] is not None for line in made):
-            by_codecs.setdefault(_surviving(made, column), []).append(use)
+        if any(line[column] is not None for line in verdict_lines):
+            by_codecs.setdefault(_surviving(verdict_lines, column), []).append(use)
     if by_codecs:
         yield (
             "Codes that survive inside a surface "
@@ -179,12 +179,12 @@ def _is_of_half(name: str) -> bool:
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
-    made = list(lines(rows))
-    if made:
+    verdict_lines = list(lines(rows))
+    if verdict_lines:
         notes = tuple(
-            f"{line['encoding']}/{line['storage']}: {line['why']}" for line in one_backend(made) if line["why"]
+            f"{line['encoding']}/{line['storage']}: {line['why']}" for line in one_backend(verdict_lines) if line["why"]
         )
-        shown = [{name: value for name, value in line.items() if name != "why"} for line in made]
+        shown = [{name: value for name, value in line.items() if name != "why"} for line in verdict_lines]
         title = f"What each code can be used for: inside a surface, by neighbours up to {MOST_JUDGED_DEG:g} degrees "
         title += "apart or an image's own; and filtered across an edge"
         yield Sheet(title, shown, SUMMARY_DROPS, notes=notes)

@@ -37,11 +37,11 @@ def climbed(mixes: Mixes, errors: np.ndarray, of: Errors, seed: int) -> Mixes:
     known, steps = of(best), np.full(len(best.alphas), mixes.patches.angle_deg or 1.0)
     for _ in range(ROUNDS):
         tried = _moved(chosen(best, np.repeat(np.arange(len(known)), TRIES)), np.repeat(steps, TRIES), random)
-        found = of(tried).reshape(-1, TRIES)
-        at = found.argmax(axis=1)
-        largest = found.max(axis=1)
+        tried_errors = of(tried).reshape(-1, TRIES)
+        indices = tried_errors.argmax(axis=1)
+        largest = tried_errors.max(axis=1)
         is_better = largest > known
-        places = np.arange(len(known)) * TRIES + at
+        places = np.arange(len(known)) * TRIES + indices
         best = _chosen_mixes(is_better, chosen(tried, places), best)
         known, steps = np.maximum(known, largest), steps * np.where(is_better, GROWS, SHRINKS)
     return chosen(best, np.array([known.argmax()]))
@@ -82,8 +82,8 @@ def _between(base: np.ndarray, detail: np.ndarray, alpha: np.ndarray) -> np.ndar
     tilt = np.radians(angles_between(base, detail))[:, None]
     # slerp: (sin((1 - a) t) base + sin(a t) detail) / sin t
     a, whole = alpha[:, None], np.sin(tilt)
-    made = np.sin((1 - a) * tilt) * base + np.sin(a * tilt) * detail
-    return unit_rows(np.divide(made, whole, out=base.copy(), where=whole > 0))
+    mixed = np.sin((1 - a) * tilt) * base + np.sin(a * tilt) * detail
+    return unit_rows(np.divide(mixed, whole, out=base.copy(), where=whole > 0))
 
 
 def _random_rotations(degrees: np.ndarray, random: np.random.Generator) -> np.ndarray:
@@ -103,5 +103,5 @@ def _chosen_mixes(first: np.ndarray, one: Mixes, other: Mixes) -> Mixes:
     normals = np.where(first[:, None], one.patches.normals, other.patches.normals)
     patches = replace(one.patches, normals=normals)
     named = {name: (getattr(one, name), getattr(other, name)) for name in OF_EACH}
-    made = {name: np.where(first.reshape(-1, *[1] * (a.ndim - 1)), a, b) for name, (a, b) in named.items()}
-    return replace(one, patches=patches, **made)
+    arrays = {name: np.where(first.reshape(-1, *[1] * (a.ndim - 1)), a, b) for name, (a, b) in named.items()}
+    return replace(one, patches=patches, **arrays)

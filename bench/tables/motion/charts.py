@@ -54,7 +54,7 @@ def _line_name(row: Row, rows: Sequence[Row]) -> str:
 
 def _conditions_text(row: Row, rows: Sequence[Row]) -> str:
     """What tells lines of one codec apart; empty where nothing does."""
-    return " ".join(str(row.get(name)) for name in CONDITIONS if len({one.get(name) for one in rows}) > 1)
+    return " ".join(str(row.get(name)) for name in CONDITIONS if len({other.get(name) for other in rows}) > 1)
 
 
 def _finding_sentence(points: Sequence[Row]) -> str:

@@ -74,7 +74,7 @@ def wobble(frames: list[Spots], exact: Spots) -> tuple[np.ndarray, np.ndarray]:
         squared pixels, and squared percent of the exact peak, each a mean over pairs of frames and lights, of shape
         (spheres,); NaN where a sphere has no light.
     """
-    moved = np.diff(np.stack([one.centroids for one in frames]), axis=0)
+    moved = np.diff(np.stack([frame.centroids for frame in frames]), axis=0)
     with np.errstate(invalid="ignore", divide="ignore"):
-        flickered = 100 * np.diff(np.stack([one.peaks for one in frames]), axis=0) / exact.peaks
+        flickered = 100 * np.diff(np.stack([frame.peaks for frame in frames]), axis=0) / exact.peaks
     return np.mean(np.sum(moved**2, axis=-1), axis=(0, 2)), np.mean(flickered**2, axis=(0, 2))

@@ -129,12 +129,12 @@ class Bench:
                 row |= code_wobble(trip, case.codec.encoding.domain, case.motion, case.count, case.seed)
                 if not case.pictures or not self._device:
                     return row, None
-                filmed, found = self._film_and_columns(case, case.pictures, trip)
+                filmed, columns = self._film_and_columns(case, case.pictures, trip)
                 if case.motion.moves == turning.MOVES[0]:
-                    found |= self._panel_columns(case.motion, case.pictures.frames, trip)
+                    columns |= self._panel_columns(case.motion, case.pictures.frames, trip)
         except UNMEASURABLE as error:
             return row | {"skipped": str(error)}, None
-        return row | found | {"device": self._device.renderer}, filmed
+        return row | columns | {"device": self._device.renderer}, filmed
 
     def reference(self, case: MotionCase) -> Filmed:
         """The frames of exact normals. Raises ValueError for a case without frames."""
@@ -159,21 +159,21 @@ class Bench:
 
     def _film_and_columns(self, case: MotionCase, pictures: FrameSequence, trip: Trip) -> tuple[Filmed, Row]:
         assert self._device
-        exact, found, sums, fixed = self.reference(case), Filmed(), Differences(), Differences()
+        exact, filmed, sums, fixed = self.reference(case), Filmed(), Differences(), Differences()
         assert exact.spheres is not None and exact.still is not None
         with _projector(self._device, pictures) as projector:
-            for at, view in enumerate(projector.views()):
+            for index, view in enumerate(projector.views()):
                 image = projector.image(view, in_space(trip, case.motion.space, view))
-                sums.add(image - exact.shown[at], exact.covered[at])
+                sums.add(image - exact.shown[index], exact.covered[index])
             for matrices in case.motion.matrices():
                 keeps = on_surfaces(trip, *matrices)
                 fixed.add(projector.image(projector.scene.view, keeps) - exact.still, exact.still_covered)
                 light = projector.highlights(keeps)
-                found.spots.append(highlights.spots(light, exact.spheres))
+                filmed.spots.append(highlights.spots(light, exact.spheres))
                 if self._keeps_frames:
-                    found.lit.append(exact.display.image(light).astype(np.float32))
+                    filmed.lit.append(exact.display.image(light).astype(np.float32))
         row = {"static_psnr_db": sums.static_db, "wobble_psnr_db": sums.wobble_db}
-        return found, row | {"reprojected_psnr_db": fixed.wobble_db} | _of_highlights(found, exact)
+        return filmed, row | {"reprojected_psnr_db": fixed.wobble_db} | _of_highlights(filmed, exact)
 
 
 @dataclass
@@ -234,26 +234,26 @@ def _projector(device: Device, pictures: FrameSequence) -> Iterator[Projector]:
     scene, pipeline = SCENES[SCENE].make(pictures.setting), PIPELINES[PIPELINE]
     lit = highlights.lit_scene(scene)
     plan = Plan(pictures.size, 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], max(pipeline.light_targets), False, 1.0)
-    with rendering(device, pipeline, scene, plan) as one, rendering(device, pipeline, lit, plan) as other:
-        yield Projector(pictures, scene, one, other)
+    with rendering(device, pipeline, scene, plan) as scene_drawing, rendering(device, pipeline, lit, plan) as other:
+        yield Projector(pictures, scene, scene_drawing, other)
 
 
 def _exact_film(projector: Projector) -> Filmed:
-    found = Filmed()
+    filmed = Filmed()
     for view in projector.views():
-        found.shown.append(projector.image(view))
-        found.covered.append(projector.of_scene.gbuffer()[0][..., 2] != 0)
-    found.still = projector.image(projector.scene.view)
-    found.still_covered = projector.of_scene.gbuffer()[0][..., 2] != 0
+        filmed.shown.append(projector.image(view))
+        filmed.covered.append(projector.of_scene.gbuffer()[0][..., 2] != 0)
+    filmed.still = projector.image(projector.scene.view)
+    filmed.still_covered = projector.of_scene.gbuffer()[0][..., 2] != 0
     light = projector.highlights()
     position, _, albedo, _ = projector.of_lit.gbuffer()
     covered = position[..., 2] != 0
-    found.spheres = highlights.spheres_of(albedo[..., 3], covered)
+    filmed.spheres = highlights.spheres_of(albedo[..., 3], covered)
     # The brightest highlight is just not clipped.
-    found.display = Display(-math.log2(peak)) if (peak := float(light.max())) > 0 else CLIPPED_ALONE
-    found.spots.append(highlights.spots(light, found.spheres))
-    found.lit.append(found.display.image(light).astype(np.float32))
-    return found
+    filmed.display = Display(-math.log2(peak)) if (peak := float(light.max())) > 0 else CLIPPED_ALONE
+    filmed.spots.append(highlights.spots(light, filmed.spheres))
+    filmed.lit.append(filmed.display.image(light).astype(np.float32))
+    return filmed
 
 
 def in_space(trip: Trip, space: str, view: View) -> Keeps:

@@ -74,8 +74,8 @@ def going_around(device: Device, axis: str, turn: float, frames: int) -> Iterato
     """The panel under a camera that goes around it, `turn` degrees a frame about its own up, right or line of sight."""
     scene = shown(OBJECT, ENVIRONMENTS[ENVIRONMENT].make()).scene(ROUGHNESS)
     plan = Plan(SIZE, 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 1, False, 1.0, antialiased=False)
-    with rendering(device, PIPELINES[PIPELINE], scene, plan) as made:
-        yield Around(scene, made, axis, turn, frames)
+    with rendering(device, PIPELINES[PIPELINE], scene, plan) as drawing:
+        yield Around(scene, drawing, axis, turn, frames)
 
 
 def exact(panel: Around) -> Exact:
@@ -86,16 +86,16 @@ def exact(panel: Around) -> Exact:
         covered.append(panel.covered())
     middle = len(light) // 2
     display = Display(measured_exposure(light[middle][covered[middle]]), TONE_MAPPING)
-    return Exact([display.image(one).astype(np.float32) for one in light], covered, display)
+    return Exact([display.image(frame).astype(np.float32) for frame in light], covered, display)
 
 
 def differences(
     panel: Around, right: Exact, keeps_of: Callable[[View], Keeps]
 ) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """Of each frame its image less that of exact normals, and where the panel is."""
-    for at, view in enumerate(panel.views()):
+    for index, view in enumerate(panel.views()):
         image = right.display.image(panel.light(view, keeps_of(view))).astype(np.float32)
-        yield image - right.shown[at], right.covered[at]
+        yield image - right.shown[index], right.covered[index]
 
 
 def around(view: View, axis: str, degrees: float) -> View:

@@ -30,7 +30,7 @@ def write(folder: Path, row: Row, filmed: Filmed, exact: Filmed) -> None:
         return
     window = _window(where)
     title = f"{row['encoding']} {row['storage']}, {row['space']} space, power {POWERS[filmed.worst - 1]:g}"
-    frames = [chart.beside(one[window], exact.lit[0][window], title) for one in filmed.lit]
+    frames = [chart.beside(frame[window], exact.lit[0][window], title) for frame in filmed.lit]
     with whole_file(folder / f"{_file_stem(row)}.png") as partial:
         chart.write_animation(partial, frames)
 
@@ -49,6 +49,6 @@ def films(folder: Path, rows: Sequence[Row]) -> Iterator[Film]:
     for row in usable[:1]:
         if path := there.get(f"{_file_stem(row)}.png"):
             code = f"{row['encoding']} {row['storage']} in {row['space']} space"
-            said = f"The highlight that moves the most, of {code}, at {row['turn_deg']:g} degrees a frame of "
-            said += f"{row['axis']}: the code, exact normals, and {chart.GAIN:g} times their difference."
-            yield Film(said, path)
+            caption = f"The highlight that moves the most, of {code}, at {row['turn_deg']:g} degrees a frame of "
+            caption += f"{row['axis']}: the code, exact normals, and {chart.GAIN:g} times their difference."
+            yield Film(caption, path)

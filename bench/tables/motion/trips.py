@@ -82,8 +82,8 @@ def _trip_by_glsl(codec: Codec, passes: CodecPasses) -> Trip:
     size = codec.encoding.components + codec.encoding.sign_bits
 
     def trip(n: np.ndarray, view: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        found = passes.round_trip(*(np.pad(a, ((0, 0), (0, 1))).reshape(-1, WIDTH, 4) for a in (n, view)))
-        return found.codes.reshape(-1, 4)[:, :size], found.normals.reshape(-1, 3)
+        decoded = passes.round_trip(*(np.pad(a, ((0, 0), (0, 1))).reshape(-1, WIDTH, 4) for a in (n, view)))
+        return decoded.codes.reshape(-1, 4)[:, :size], decoded.normals.reshape(-1, 3)
 
     return trip
 
@@ -92,7 +92,7 @@ def _in_chunks(trip: Trip) -> Trip:
     """The same for any count, CHUNK rows at a time: compiled once, and a rectangle of pixels."""
 
     def whole(n: np.ndarray, view: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        codes, decoded = zip(*(part(n, view, at) for at in range(0, len(n), CHUNK)), strict=True)
+        codes, decoded = zip(*(part(n, view, start) for start in range(0, len(n), CHUNK)), strict=True)
         return np.concatenate(codes)[: len(n)], np.concatenate(decoded)[: len(n)]
 
     def part(n: np.ndarray, view: np.ndarray, at: int) -> tuple[np.ndarray, np.ndarray]:

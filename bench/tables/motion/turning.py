@@ -42,8 +42,8 @@ class Points:
 def angles(turn: float, frames: int, swing: float = SWING_DEG) -> np.ndarray:
     """Degrees at each frame, (frames,): `turn` more each frame, up to `swing`, and back, and so on."""
     steps = max(1, math.floor(swing / turn + 1e-9))
-    at = np.arange(frames) % (2 * steps)
-    return turn * np.minimum(at, 2 * steps - at)
+    phase = np.arange(frames) % (2 * steps)
+    return turn * np.minimum(phase, 2 * steps - phase)
 
 
 def rotations(axis: str, turn: float, frames: int) -> np.ndarray:
@@ -68,8 +68,8 @@ def points(space: str, count: int, seed: int) -> Iterator[Points]:
     low, high = np.array([least, 0, -HALF_WIDTH, -HALF_HEIGHT]), np.array([1, 2 * np.pi, HALF_WIDTH, HALF_HEIGHT])
     shift = np.random.default_rng(seed).uniform(size=len(STEPS))
     for start in range(0, count, CHUNK):
-        at = np.arange(start, min(start + CHUNK, count))
-        z, turn, x, y = (low + (high - low) * ((shift + at[:, None] * STEPS) % 1)).T
+        indices = np.arange(start, min(start + CHUNK, count))
+        z, turn, x, y = (low + (high - low) * ((shift + indices[:, None] * STEPS) % 1)).T
         out = np.sqrt(1 - z * z)
         normals = np.stack([out * np.cos(turn), out * np.sin(turn), z], axis=1)
         yield Points(normals, np.stack([x, y, np.full_like(x, -1.0)], axis=1))

@@ -92,7 +92,7 @@ def cases(options: MotionOptions, device: Device | None) -> list[MotionCase]:
     setting = checked_setting(1, options.lights, options.seed)
     chosen, rendered = motions(options), picture_turns(options)
     size, _ = checked_target(options.size, 1, options.frames, device) if device else ((0, 0), 0)
-    made: list[MotionCase] = []
+    possible: list[MotionCase] = []
     outside: list[str] = []
     for codec in codecs(options):
         suited = [motion for motion in chosen if is_suited(codec, motion)]
@@ -101,8 +101,8 @@ def cases(options: MotionOptions, device: Device | None) -> list[MotionCase]:
             # A smooth sphere that turns looks the same: images are of turning cameras.
             is_rendered = device and motion.moves == turning.MOVES[0] and motion.turn in rendered
             shots = FrameSequence(motion.axis, motion.turn, motion.frames, size, setting) if is_rendered else None
-            made.append(MotionCase(codec, motion, options.count, options.seed, shots))
-    return what_is_left(made, by_reason((name, OTHER_DOMAIN) for name in outside))
+            possible.append(MotionCase(codec, motion, options.count, options.seed, shots))
+    return what_is_left(possible, by_reason((name, OTHER_DOMAIN) for name in outside))
 
 
 def is_suited(codec: Codec, motion: Motion) -> bool:
@@ -113,10 +113,10 @@ def is_suited(codec: Codec, motion: Motion) -> bool:
 def _steps(options: MotionOptions, outputs: MotionOutputs) -> list[Step]:
     require_jax()
     device, missing = found_device()
-    made = cases(options, device)
+    chosen = cases(options, device)
     if not device and picture_turns(options):
         tell(f"no frames are rendered, so columns of highlights and images stay empty: {missing}")
-    return shot_steps(Bench(device, outputs.images is not None), made, outputs.images, _key)
+    return shot_steps(Bench(device, outputs.images is not None), chosen, outputs.images, _key)
 
 
 def _check(outputs: MotionOutputs, made: Sequence[Step]) -> None:
@@ -147,14 +147,16 @@ def _lines(rows: Sequence[Row]) -> list[list[Row]]:
 
 def _verdict(rows: Sequence[Row]) -> Iterator[str]:
     measured = having(rows, "wobble_deg", "turn_deg")
-    said = []
+    phrases = []
     for space, moves in dict.fromkeys((row["space"], row["moves"]) for row in measured):
         part = [row for row in measured if (row["space"], row["moves"]) == (space, moves)]
         worst = max(part, key=lambda row: row["wobble_deg"])
         largest = f"up to {worst['wobble_deg']:.2g}° RMS ({codec_name(worst)})"
-        said.append(f"{'none' if worst['wobble_deg'] < STILL_DEG else largest} in {space} space as the {moves} turns")
-    if said:
-        yield f"Change of the error from frame to frame: {'; '.join(said)}."
+        phrases.append(
+            f"{'none' if worst['wobble_deg'] < STILL_DEG else largest} in {space} space as the {moves} turns"
+        )
+    if phrases:
+        yield f"Change of the error from frame to frame: {'; '.join(phrases)}."
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
@@ -165,9 +167,9 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
         named = {name: worst[name] for name in LINE if name not in ("rounding", "moves")}
         if len({row["moves"] for row in rows}) > 1:
             named["moves"] = worst["moves"]
-        found = {name: worst[name] for name in ("static_rms_deg", "ratio", "jumps_percent")}
+        figures = {name: worst[name] for name in ("static_rms_deg", "ratio", "jumps_percent")}
         turn = worst["turn_deg"] if worst["wobble_deg"] else None
-        codes.append(named | {"worst_turn_deg": turn, "worst_wobble_deg": worst["wobble_deg"]} | found)
+        codes.append(named | {"worst_turn_deg": turn, "worst_wobble_deg": worst["wobble_deg"]} | figures)
         for row in line:
             if row.get("highlight_px") is not None:
                 names = ("turn_deg", "highlight_px", "peak_percent", *IMAGE)

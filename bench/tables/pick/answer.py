@@ -115,8 +115,8 @@ def decibels(angle: float | None) -> float:
 
 
 def image_loss(row: Row) -> float:
-    found = image_db(row)
-    return math.inf if found is None else -min(found, INDISTINGUISHABLE_DB)
+    psnr = image_db(row)
+    return math.inf if psnr is None else -min(psnr, INDISTINGUISHABLE_DB)
 
 
 # By aim: what a code loses, in decibels; less is better.
@@ -160,8 +160,8 @@ def doublings(row: Row) -> float:
 def is_enough(row: Row) -> bool:
     """Whether an environment map does not show what a code does to a reflection: twice its largest angle is at most
     what was asked for."""
-    found = largest_mixed(row)
-    return found is not None and 2 * found <= row["enough"]
+    angle = largest_mixed(row)
+    return angle is not None and 2 * angle <= row["enough"]
 
 
 def order(row: Row) -> tuple[float, ...]:
@@ -277,10 +277,10 @@ def shown_share(percent: float) -> str:
 
 def groups(rows: Sequence[Row]) -> dict[tuple[str, str, str], list[Row]]:
     """Rows by the question that they answer: a storage or a number of bytes and how it rounds, normals, and scenes."""
-    found: dict[tuple[str, str, str], list[Row]] = {}
+    by_question: dict[tuple[str, str, str], list[Row]] = {}
     for row in rows:
-        found.setdefault((asked_of(row), row["normals"], row["scene"]), []).append(row)
-    return found
+        by_question.setdefault((asked_of(row), row["normals"], row["scene"]), []).append(row)
+    return by_question
 
 
 def asked_of(row: Row) -> str:
@@ -300,19 +300,19 @@ def _answered_rows(group: Sequence[Row]) -> list[Row]:
     judged = _unpriced(_rows_with_holes(judged))
     fit, tied = _with_ties(sorted((row for row in judged if not row["left_out"] and not row["beside"]), key=order))
     places = _places(fit)
-    for at in tied:
-        places[at].append(TIE)
-    made = [
-        row | {"front": not any(beats(other, row) for other in fit), "place": _place_text(row, places[at])}
-        for at, row in enumerate(fit)
+    for index in tied:
+        places[index].append(TIE)
+    ranked = [
+        row | {"front": not any(beats(other, row) for other in fit), "place": _place_text(row, places[i])}
+        for i, row in enumerate(fit)
     ]
-    inside = _only_inside(judged, made[:1])
+    inside = _only_inside(judged, ranked[:1])
     others = [
         row | {"front": False, "place": _place_text(row, [INSIDE] if row is inside else [])}
         for row in judged
         if row["left_out"] and not row["beside"]
     ]
-    return [*made, *_elsewhere_rows(judged, fit), *others]
+    return [*ranked, *_elsewhere_rows(judged, fit), *others]
 
 
 def _with_ties(fit: list[Row]) -> tuple[list[Row], list[int]]:
@@ -322,7 +322,7 @@ def _with_ties(fit: list[Row]) -> tuple[list[Row], list[int]]:
     tied = [row for row in fit[1:] if score(row) - score(fit[0]) < clear_gap_db(fit[0], row)]
     first = min([fit[0], *tied], key=lambda row: (price(row), _bits(row), score(row)))
     rows = [first, *(row for row in fit if row is not first)]
-    return rows, [at for at, row in enumerate(rows) if at and (row is fit[0] or any(row is other for other in tied))]
+    return rows, [i for i, row in enumerate(rows) if i and (row is fit[0] or any(row is other for other in tied))]
 
 
 def _only_inside(judged: Sequence[Row], best: Sequence[Row]) -> Row | None:
@@ -341,23 +341,23 @@ def _rows_with_holes(rows: Sequence[Row]) -> list[Row]:
     could be asked for, whatever they cost and survive."""
     least: dict[str, float] = {}
     for row in rows:
-        if not why_unfit(row) and (found := largest(row)) is not None:
-            least[row["storage"]] = min(found, least.get(row["storage"], math.inf))
-    made: list[Row] = []
+        if not why_unfit(row) and (angle := largest(row)) is not None:
+            least[row["storage"]] = min(angle, least.get(row["storage"], math.inf))
+    judged: list[Row] = []
     for row in rows:
         hole = _hole_text(row, least.get(row["storage"], math.inf))
         is_why = hole and (not row["left_out"] or str(row["left_out"]).startswith(NO_FIGURE))
-        made.append(row | {"hole": hole or None, "left_out": HOLE_SAID if is_why else row["left_out"]})
-    return made
+        judged.append(row | {"hole": hole or None, "left_out": HOLE_SAID if is_why else row["left_out"]})
+    return judged
 
 
 def _hole_text(row: Row, least: float) -> str:
     """How large a code's hole is, and where; empty where it has none."""
-    found = largest(row)
-    if why_unfit(row) or row["accept_holes"] or found is None or found <= HOLE * least:
+    angle = largest(row)
+    if why_unfit(row) or row["accept_holes"] or angle is None or angle <= HOLE * least:
         return ""
     worst = [f"{float(x):.2f}" for x in re.findall(r"[-+.\de]+", str(row.get("worst_normal") or ""))]
-    return f"{found:.3g}°" + (f" at {' '.join(worst)}" if worst else "")
+    return f"{angle:.3g}°" + (f" at {' '.join(worst)}" if worst else "")
 
 
 def _unpriced(rows: Sequence[Row]) -> list[Row]:
@@ -375,22 +375,22 @@ def _places(fit: Sequence[Row]) -> list[list[str]]:
     places: list[list[str]] = [[] for _ in fit]
     if not fit:
         return places
-    for at in [at for at, row in enumerate(fit) if not row.get("packed")][: bool(fit[0].get("packed"))]:
-        places[at].append(PLAIN)
-    best, rungs = fit[0], [at for at, row in enumerate(fit) if at and not any(beats(other, row) for other in fit)]
+    for index in [i for i, row in enumerate(fit) if not row.get("packed")][: bool(fit[0].get("packed"))]:
+        places[index].append(PLAIN)
+    best, rungs = fit[0], [i for i, row in enumerate(fit) if i and not any(beats(other, row) for other in fit)]
     places[0].append(BEST)
     exact = min(range(len(fit)), key=lambda at: (figures(fit[at]), at))
     if exact and is_clearly_better(fit[exact], best):
         places[exact].append(MOST_EXACT)
-    above = [at for at in rungs if is_clearly_better(fit[at], best) and at != exact]
-    below = [at for at in rungs if loss_db(fit[at]) >= loss_db(best)]
+    above = [i for i in rungs if is_clearly_better(fit[i], best) and i != exact]
+    below = [i for i in rungs if loss_db(fit[i]) >= loss_db(best)]
     for place, chosen in (
         (MORE_EXACT, _rungs_apart(sorted(above, key=lambda at: -loss_db(fit[at])), fit)[:MOST_RUNGS]),
-        (CHEAPER, [at for at in below if _is_cheaper(fit[at], best) and fit[at]["bits"] == best["bits"]][:1]),
-        (FEWER_BITS, _first_of_each_size([at for at in below if _is_smaller(fit[at], best)], fit)[:MOST_RUNGS]),
+        (CHEAPER, [i for i in below if _is_cheaper(fit[i], best) and fit[i]["bits"] == best["bits"]][:1]),
+        (FEWER_BITS, _first_of_each_size([i for i in below if _is_smaller(fit[i], best)], fit)[:MOST_RUNGS]),
     ):
-        for at in chosen:
-            places[at].append(place)
+        for index in chosen:
+            places[index].append(place)
     return places
 
 
@@ -414,16 +414,16 @@ def _bits(row: Row) -> float:
 
 def _first_of_each_size(chosen: Sequence[int], fit: Sequence[Row]) -> list[int]:
     """Of rungs in their order the first of each number of bits, the most bits first."""
-    first = {_bits(fit[at]): at for at in reversed(chosen)}
+    first = {_bits(fit[i]): i for i in reversed(chosen)}
     return [first[size] for size in sorted(first, reverse=True)]
 
 
 def _rungs_apart(chosen: Sequence[int], fit: Sequence[Row]) -> list[int]:
     """Of rungs, the least exact first, those that gain enough on the one before."""
     kept: list[int] = []
-    for at in chosen:
-        if not kept or is_clearly_better(fit[at], fit[kept[-1]]):
-            kept.append(at)
+    for index in chosen:
+        if not kept or is_clearly_better(fit[index], fit[kept[-1]]):
+            kept.append(index)
     return kept
 
 

@@ -22,13 +22,13 @@ LOWEST_SHARE, MOST_ANGLES = 1.0, 96
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
     """For each question of which two codes have a price, what they cost, and how their angles are spread."""
-    for at, group in enumerate(groups(rows).values()):
+    for index, group in enumerate(groups(rows).values()):
         able = [row for row in group if _has_place(row)]
         if len(able) > 1:
-            yield _chart(chart_name(at), group, [_point(row) for row in able])
-        counted = [(row, found) for row in able if (found := bins(row.get("angle_counts")))]
+            yield _chart(chart_name(index), group, [_point(row) for row in able])
+        counted = [(row, angle_bins) for row in able if (angle_bins := bins(row.get("angle_counts")))]
         if len(counted) > 1:
-            yield _spread(spread_name(at), counted)
+            yield _spread(spread_name(index), counted)
 
 
 def chart_name(at: int) -> str:
@@ -55,7 +55,9 @@ def _point(row: Row) -> Row:
 def _front(points: Sequence[Row]) -> list[Row]:
     """The points that no other one beats in both, the cheapest first."""
     kept: list[Row] = []
-    for point in sorted((one for one in points if not one["rest"]), key=lambda one: (one["x"], one["y"])):
+    for point in sorted(
+        (candidate for candidate in points if not candidate["rest"]), key=lambda one: (one["x"], one["y"])
+    ):
         if not kept or point["y"] < kept[-1]["y"]:
             kept.append(point)
     return kept
@@ -87,14 +89,15 @@ Bins = Sequence[tuple[float, float, int]]
 
 def _spread(name: str, counted: Sequence[tuple[Row, Bins]]) -> Chart:
     """The share of normals that are off by less than an angle: a line for each code, and an area that all lie in."""
-    shares = {CodecKey.of(row).label: _shares_below(found) for row, found in counted}
+    shares = {CodecKey.of(row).label: _shares_below(angle_bins) for row, angle_bins in counted}
     angles = _angles(shares.values())
-    lines = {codec: [_share_at(at, *one) for at in angles] for codec, one in shares.items()}
+    lines = {codec: [_share_at(angle, *curve) for angle in angles] for codec, curve in shares.items()}
     points = tuple(
         {"codec": codec, "x": x, "y": y} for codec, line in lines.items() for x, y in zip(angles, line, strict=True)
     )
     around = tuple(
-        {"x": x, "y": max(at), "low": min(at)} for x, at in zip(angles, zip(*lines.values(), strict=True), strict=True)
+        {"x": x, "y": max(percents), "low": min(percents)}
+        for x, percents in zip(angles, zip(*lines.values(), strict=True), strict=True)
     )
     first = counted[0][0]
     tips = (("codec", "codec"), ("x", "angle, degrees"), ("y", "% of normals below it"))
@@ -123,8 +126,8 @@ def _shares_below(found: Bins) -> tuple[list[float], list[float]]:
 
 def _share_at(angle: float, edges: Sequence[float], below: Sequence[float]) -> float:
     """How many percent lie below an angle that is an edge of bins; rows round edges."""
-    at = bisect_right(edges, angle * 1.001)
-    return round(below[at - 1], 1) if at else 0.0
+    index = bisect_right(edges, angle * 1.001)
+    return round(below[index - 1], 1) if index else 0.0
 
 
 def _angles(shares: Iterable[tuple[Sequence[float], Sequence[float]]]) -> list[float]:

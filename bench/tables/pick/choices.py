@@ -46,21 +46,21 @@ ASKED = (
 def extras(_folder: Path, tables: Mapping[str, Sequence[Row]], _remarks: list[str]) -> Mapping[str, Any]:
     """The questions of a run, for the page; nothing where it answers none."""
     asked = enumerate(groups(tables[TABLE.name]).values())
-    made = [
-        _question(group) | {"chart": chart_name(at), "spread": spread_name(at)}
-        for at, group in asked
+    questions = [
+        _question(group) | {"chart": chart_name(index), "spread": spread_name(index)}
+        for index, group in asked
         if group[0]["aim"] != "cost"
     ]
-    return {"choices": {"constants": CONSTANTS, "questions": made, "found": FOUND}} if made else {}
+    return {"choices": {"constants": CONSTANTS, "questions": questions, "found": FOUND}} if questions else {}
 
 
 def _question(group: Sequence[Row]) -> dict[str, Any]:
     first = group[0]
     asked = {name: first.get(name) for name in ASKED} | {"look_ups": first.get("look_ups") is not False}
     unpriced = {"length": answer.LENGTH_SAID, "hole": answer.HOLE_SAID, "price": answer.LOOPS_SAID}
-    said = {**unpriced, "figure": f"{answer.NO_FIGURE} {first['aim']}", "table": answer.TABLE_SAID}
+    texts = {**unpriced, "figure": f"{answer.NO_FIGURE} {first['aim']}", "table": answer.TABLE_SAID}
     about = {"where": question(first), "of": asked_of(first), "on": _on(first), "needs": _needs_text(first)}
-    about |= {"aim": first["aim"], "asked": asked, "said": said}
+    about |= {"aim": first["aim"], "asked": asked, "said": texts}
     codes = [_code(row) for row in group]
     counted = dict.fromkeys(name for code in codes for name in code["families"] or ())
     families = {name: f"{FAMILIES[name].title} ({name})" if name in FAMILIES else name for name in counted}

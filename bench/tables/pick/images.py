@@ -65,14 +65,14 @@ class Images:
         """
         poles = _poles(case)
         if case.said.get("effects"):
-            found = self._errors(case, 0, turns.FIRST, poles)
+            errors = self._errors(case, 0, turns.FIRST, poles)
         else:
-            found, count = self._errors(case, 0, turns.ALL, [*poles, TURNED] if len(poles) > 1 else poles), turns.ALL
-            while found and count < turns.MOST and (turns.error_db(*_frames_and_pole(found)) or 0.0) > turns.EXACT_DB:
-                _, pole = _frames_and_pole(found)
-                _extend(found, self._errors(case, count, count, [pole]))
+            errors, count = self._errors(case, 0, turns.ALL, [*poles, TURNED] if len(poles) > 1 else poles), turns.ALL
+            while errors and count < turns.MOST and (turns.error_db(*_frames_and_pole(errors)) or 0.0) > turns.EXACT_DB:
+                _, pole = _frames_and_pole(errors)
+                _extend(errors, self._errors(case, count, count, [pole]))
                 count *= 2
-        row = _with_conditions(columns(found), case)
+        row = _with_conditions(columns(errors), case)
         if case.codec.encoding.domain != "sphere":
             lost = {maker.name: self._lost_percent(case, maker) for maker in case.makers}
             row["image_lost_scene"] = max(lost, key=lambda name: lost[name], default=None)
@@ -83,30 +83,30 @@ class Images:
 
     def _errors(self, case: PickCase, first: int, count: int, poles: Sequence[str]) -> Found:
         """Errors of `count` yaws from number `first` on, and of as many rotations for TURNED."""
-        found: Found = {}
+        errors: Found = {}
         for maker in case.makers:
             known = maker.name if maker is SCENES.get(maker.name) else None
             about = (case.setting, case.powers, case.said.get("effects") or "", first, count, tuple(poles))
             key = figures_key("image errors", case.codec, known, *about, self._device.renderer)
             try:
-                found |= kept.figures(key, partial(self._errors_now, case, maker, first, count, poles))
+                errors |= kept.figures(key, partial(self._errors_now, case, maker, first, count, poles))
             except (LayoutError, *shots.UNMEASURABLE):
                 continue
-        return found
+        return errors
 
     def _errors_now(self, case: PickCase, maker: SceneMaker, first: int, count: int, poles: Sequence[str]) -> Found:
         trip, domain = self._trip(case.codec), case.codec.encoding.domain
-        found: Found = {}
+        errors: Found = {}
         for power, whole in self._images(case, maker).items():
             image = whole if case.said.get("effects") else self._sample(whole, case.setting.seed)
             by_pole = {
                 pole: image.by_class(trip, _turns(pole, first, count, case.setting.seed), domain) for pole in poles
             }
             if all(by_pole.values()):
-                found[image_name(maker.name, power)] = {
+                errors[image_name(maker.name, power)] = {
                     pole: {name: values.tolist() for name, values in means.items()} for pole, means in by_pole.items()
                 }
-        return found
+        return errors
 
     def _trip(self, codec: Codec) -> Trip:
         if codec not in self._trips:
@@ -124,12 +124,12 @@ class Images:
         question = (maker, case.setting, case.powers, case.pipeline)
         if question not in self._whole:
             powers = case.powers_of(maker)
-            found = whole_images(self._device, self._stack, case.pipeline, maker, case.setting, powers)
-            covered = 100.0 * float(np.mean(next(iter(found.values())).covered))
+            images = whole_images(self._device, self._stack, case.pipeline, maker, case.setting, powers)
+            covered = 100.0 * float(np.mean(next(iter(images.values())).covered))
             shots.require_surface(maker, covered > 0)
             for line in shots.says_little(maker.name, covered):
                 tell(line)
-            self._whole[question] = found
+            self._whole[question] = images
         return self._whole[question]
 
     def _sample(self, whole: WholeImage, seed: int) -> SampledImage:
@@ -165,12 +165,12 @@ class Images:
 
 def _with_conditions(row: Row, case: PickCase) -> Row:
     """Return columns of images, if there are any, with their size, exposure and display in words."""
-    said = []
+    parts = []
     for maker in case.makers:
         exposure = "a measured exposure" if maker.exposure is None else f"{maker.exposure:g} stops"
         shown = f"{maker.tone_mapping} with specular antialiasing" if maker.is_metal_rough else "clipped"
-        said.append(f"{maker.name} at {'x'.join(map(str, maker.within(SIZE)))}, {exposure}, {shown}")
-    return row and row | {"image_conditions": "; ".join(said)}
+        parts.append(f"{maker.name} at {'x'.join(map(str, maker.within(SIZE)))}, {exposure}, {shown}")
+    return row and row | {"image_conditions": "; ".join(parts)}
 
 
 def _poles(case: PickCase) -> Sequence[str]:

@@ -112,10 +112,10 @@ def rows(
     """
     if not asked:
         return
-    said = asked[0][0].said
+    shared = asked[0][0].said
     codecs = [case.codec for chosen in asked for case in chosen]
-    costs = Costs(codecs, said["family"].split(","), said["readers"])
-    others = Costs(codecs, SURVEYED, said["readers"]) if asked[0][0].is_surveyed else None
+    costs = Costs(codecs, shared["family"].split(","), shared["readers"])
+    others = Costs(codecs, SURVEYED, shared["readers"]) if asked[0][0].is_surveyed else None
     # JAX compiles in a thread of its own while the device draws in this one.
     pool = ThreadPoolExecutor(1)
     try:
@@ -267,8 +267,8 @@ class Question:
                 self._suprema[name] = self._pool.submit(_supremum_deg, self._cases[name])
 
     def _take_suprema(self) -> None:
-        for name, found in self._suprema.items():
-            self._rows[name][SUPREMUM] = found.result()
+        for name, future in self._suprema.items():
+            self._rows[name][SUPREMUM] = future.result()
 
     def rows(self) -> list[Row]:
         """The rows, in the order of the cases."""
@@ -307,15 +307,19 @@ def _by_use(case: PickCase) -> Row:
     key = figures_key("each use", case.codec, domain, at_edges, _normals_key(case))
 
     def judged() -> Row:
-        found = judge.judgements(case.codec, list(USES), case.normal_set, domain)
+        judgements = judge.judgements(case.codec, list(USES), case.normal_set, domain)
         return {
             use: {
-                "cannot": f"cannot be {DONE[use]}" if one.inside else EDGE_SAID if one.across and at_edges else "",
-                "count": one.count,
-                "sum": (one.mean_deg or 0.0) * one.count,
-                "max": one.max_deg,
+                "cannot": f"cannot be {DONE[use]}"
+                if judgement.inside
+                else EDGE_SAID
+                if judgement.across and at_edges
+                else "",
+                "count": judgement.count,
+                "sum": (judgement.mean_deg or 0.0) * judgement.count,
+                "max": judgement.max_deg,
             }
-            for use, one in found.items()
+            for use, judgement in judgements.items()
         }
 
     return kept.figures(key, judged)
@@ -327,13 +331,13 @@ def _mixing_columns(case: PickCase) -> Row:
     key = figures_key("mixing", case.codec, uses, domain, _normals_key(case))
 
     def judged() -> Row:
-        found = judge.judgement(case.codec, uses.split(","), case.normal_set, domain)
-        said = (f"cannot be {DONE[use]}: {why}" for use, why in found.inside.items())
+        judgement = judge.judgement(case.codec, uses.split(","), case.normal_set, domain)
+        reasons = (f"cannot be {DONE[use]}: {why}" for use, why in judgement.inside.items())
         return {
-            "cannot_mix": "; ".join(said) or None,
-            "mixed_across": "; ".join(found.across.values()) or None,
-            "mixed_mean_deg": found.mean_deg,
-            "mixed_max_deg": found.max_deg,
+            "cannot_mix": "; ".join(reasons) or None,
+            "mixed_across": "; ".join(judgement.across.values()) or None,
+            "mixed_mean_deg": judgement.mean_deg,
+            "mixed_max_deg": judgement.max_deg,
         }
 
     return kept.figures(key, judged)
@@ -371,11 +375,11 @@ def _angle_columns(chosen: Sequence[PickCase]) -> list[Row]:
     rows = [kept.read_figures(key) for key in keys]
     missing = [_quality_case(case) for case, row in zip(chosen, rows, strict=True) if row is None]
     measured = quality.rows(missing, lambda _: None)
-    for at, key in enumerate(keys):
-        if rows[at] is None:
-            found = next(measured)
-            row = {name: found[name] for name in QUALITY} | {"length_share": _length_share(found)}
-            rows[at] = row
+    for index, key in enumerate(keys):
+        if rows[index] is None:
+            figures = next(measured)
+            row = {name: figures[name] for name in QUALITY} | {"length_share": _length_share(figures)}
+            rows[index] = row
             if key and not row["skipped"]:
                 kept.write(key, row)
     return [row or {} for row in rows]
@@ -413,11 +417,13 @@ def _quality_case(case: PickCase) -> quality.QualityCase:
 
 def _supremum_deg(case: PickCase) -> float | None:
     """The largest angle in exact arithmetic; None of a code in GLSL alone and of a set without a domain."""
-    one = _quality_case(case)
-    if one.backend != "jax":
+    quality_case = _quality_case(case)
+    if quality_case.backend != "jax":
         return None
     key = figures_key("supremum", case.codec, _normals_key(case))
-    return kept.figures(key, lambda: {SUPREMUM: quality.measure(replace(one, worst_case=True))[SUPREMUM]})[SUPREMUM]
+    return kept.figures(key, lambda: {SUPREMUM: quality.measure(replace(quality_case, worst_case=True))[SUPREMUM]})[
+        SUPREMUM
+    ]
 
 
 def _normals_key(case: PickCase) -> list[Any] | None:

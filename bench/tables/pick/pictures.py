@@ -33,7 +33,7 @@ PLACES = (BEST, AGAINST, MORE_EXACT, MOST_EXACT, CHEAPER, FEWER_BITS)
 def write(folder: Path, chosen: Sequence[PickCase], rows: Sequence[Row], drawing: Images) -> None:
     """The images of every code that has a place, and of the exact normals."""
     poles = {CodecKey.of(row): row.get("image_pole") or VIEW_SPACE for row in rows}
-    for case, maker in ((one, maker) for one in placed(chosen, rows) for maker in one.makers):
+    for case, maker in ((pick_case, maker) for pick_case in placed(chosen, rows) for maker in pick_case.makers):
         # A code that the device has no room for has no image.
         with suppress(LayoutError, *shots.UNMEASURABLE):
             for power, (image, exact) in drawing.shown(case, maker, poles[_key_of_case(case)]).items():
@@ -69,8 +69,8 @@ def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
     """What lies in a folder of the answers: at each power, the highest first, the codes by their places."""
     there = files_of(folder)
     storages = list(dict.fromkeys(row.get("storage") for row in rows))
-    found = [row for row in rows if set(places_of(row)) & set(PLACES)]
-    placed = sorted(found, key=lambda row: (storages.index(row["storage"]), _place_index(row)))
+    kept = [row for row in rows if set(places_of(row)) & set(PLACES)]
+    placed = sorted(kept, key=lambda row: (storages.index(row["storage"]), _place_index(row)))
     drawn = dict.fromkeys(key for row in placed for key in images(row))
     scenes = list(dict.fromkeys(scene for scene, _ in drawn))
     for scene, power in sorted(drawn, key=lambda key: (scenes.index(key[0]), -float(key[1] or 0))):

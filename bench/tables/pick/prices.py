@@ -29,13 +29,13 @@ class Costs:
 
     def of(self, codec: Codec) -> Row:
         """The columns of costs on the family where the code is dearest; none where nothing is known."""
-        found = [row for family in self._rows if (row := self._price_columns(family, codec))]
-        return max(found, key=lambda row: (row["slots"] is None, row["slots"] or 0.0), default={})
+        prices = [row for family in self._rows if (row := self._price_columns(family, codec))]
+        return max(prices, key=lambda row: (row["slots"] is None, row["slots"] or 0.0), default={})
 
     def slots_of(self, codec: Codec) -> dict[str, tuple[float | None, float | None]]:
         """By family the slots to encode and to decode; a family without a figure is left out."""
-        found = {family: self._price_columns(family, codec) for family in self._rows}
-        return {family: (row["encode_slots"], row["decode_slots"]) for family, row in found.items() if row}
+        prices = {family: self._price_columns(family, codec) for family in self._rows}
+        return {family: (row["encode_slots"], row["decode_slots"]) for family, row in prices.items() if row}
 
     def _price_columns(self, family: str, codec: Codec) -> Row:
         rows, name = self._rows[family], codec.encoding.name

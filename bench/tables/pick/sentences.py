@@ -89,15 +89,15 @@ def told(group: Sequence[Row]) -> list[str]:
     best = next((row for row in group if BEST in places_of(row)), None)
     if best is None:
         return [f"{question(group[0])}: no code qualifies{_constraints_text(group[0])}.", *_instead(group)]
-    made = [
+    lines = [
         _first_sentences(group, best),
         f"{_error_sentences(best)} {_seen_sentences(best)}",
         f"{_price_sentence(best)} {_bits_sentence(best)}{_reservation_sentence(best)}",
     ]
-    made += list(filter(None, [_images_text(best), _mixing_text(best)]))
-    made += [*filter(None, [_space_sentences(best)]), *rungs(group, best), *_hangs_on(group, best)]
-    made += [f"Images: {best['image_conditions']}."] if best.get("image_conditions") and images(best) else []
-    return made + [_rival_sentence(row, best) for row in group if row["against"] and row is not best]
+    lines += list(filter(None, [_images_text(best), _mixing_text(best)]))
+    lines += [*filter(None, [_space_sentences(best)]), *rungs(group, best), *_hangs_on(group, best)]
+    lines += [f"Images: {best['image_conditions']}."] if best.get("image_conditions") and images(best) else []
+    return lines + [_rival_sentence(row, best) for row in group if row["against"] and row is not best]
 
 
 def _first_sentences(group: Sequence[Row], best: Row) -> str:
@@ -177,8 +177,8 @@ def _instead(group: Sequence[Row]) -> Iterator[str]:
     """What comes nearest where no code qualifies."""
     if group[0]["mixing"]:
         for row in (row for row in group if INSIDE in places_of(row)):
-            found = f"{called(row)}, mean error {degrees(mean(row))}"
-            yield f"{RUNGS[INSIDE]}: {found}. Across an edge: {row['mixed_across']}."
+            code_text = f"{called(row)}, mean error {degrees(mean(row))}"
+            yield f"{RUNGS[INSIDE]}: {code_text}. Across an edge: {row['mixed_across']}."
         uses = group[0]["mixing"].split(",")
         if {*uses} & {"blend", "resolve"}:
             yield "What the hardware blends or resolves needs three numbers: in rgb10a2 xyz_renormalised survives both."
@@ -191,12 +191,12 @@ def _instead(group: Sequence[Row]) -> Iterator[str]:
     if priced and (most := group[0]["most_instructions"]) is not None:
         nearest = min((row for row in priced if not row.get("hole")), key=_slots_once, default=None)
         if nearest:
-            said = f"{called(nearest)}, with {_slots_once(nearest):g} issue slots"
-            yield f"Of codes without a hole the nearest is {said}."
+            phrase = f"{called(nearest)}, with {_slots_once(nearest):g} issue slots"
+            yield f"Of codes without a hole the nearest is {phrase}."
         holed = min((row for row in priced if row.get("hole")), key=_slots_once, default=None)
         if holed and _slots_once(holed) <= most:
-            said = f"{called(holed)}, with {_slots_once(holed):g} issue slots and a hole of {holed['hole']}"
-            yield f"--accept-holes takes {said}."
+            phrase = f"{called(holed)}, with {_slots_once(holed):g} issue slots and a hole of {holed['hole']}"
+            yield f"--accept-holes takes {phrase}."
 
 
 def _slots_once(row: Row) -> float:
@@ -219,14 +219,14 @@ def _hangs_on(group: Sequence[Row], best: Row) -> Iterator[str]:
     supposed += [({"hidden_slots": slots}, f"if {slots} slots of a pass are free") for slots in FREE_SLOTS]
     supposed += [({"enough": share * enough}, f"with --enough {share * enough:.2g}") for share in ENOUGH if enough]
     others: dict[str, list[str]] = {}
-    for values, said in supposed:
+    for values, assumption in supposed:
         rows = answered([{**row, **values} for row in group])
         code = next((called(row) for row in rows if BEST in places_of(row)), "")
         if code and code != called(best):
-            others.setdefault(code, []).append(said)
+            others.setdefault(code, []).append(assumption)
     if others:
-        found = "; ".join(f"{code} {' or '.join(said)}" for code, said in others.items())
-        yield f"Under other assumptions: {found}."
+        alternatives = "; ".join(f"{code} {' or '.join(assumptions)}" for code, assumptions in others.items())
+        yield f"Under other assumptions: {alternatives}."
 
 
 def called(row: Row) -> str:
@@ -235,15 +235,15 @@ def called(row: Row) -> str:
 
 
 def _constraints_text(row: Row) -> str:
-    said = constraints(row)
-    return f" ({', '.join(said)})" if said else ""
+    limits = constraints(row)
+    return f" ({', '.join(limits)})" if limits else ""
 
 
 def constraints(row: Row) -> list[str]:
     """What a code must keep to, in words."""
-    said = [f"at most {row['most_instructions']} issue slots"] if row["most_instructions"] is not None else []
-    said += [f"for {row['needs']}"] if row["needs"] else []
-    return said + ([f"that survives {row['mixing'].replace(',', ', ')}"] if row["mixing"] else [])
+    limits = [f"at most {row['most_instructions']} issue slots"] if row["most_instructions"] is not None else []
+    limits += [f"for {row['needs']}"] if row["needs"] else []
+    return limits + ([f"that survives {row['mixing'].replace(',', ', ')}"] if row["mixing"] else [])
 
 
 def degrees(value: float | None) -> str:
@@ -255,11 +255,11 @@ def decibels(value: float | None) -> str:
 
 
 def _error_sentences(row: Row) -> str:
-    said = f"Its mean error is {degrees(row['angle_mean_deg'])}, {_largest_text(row)}."
+    sentence = f"Its mean error is {degrees(row['angle_mean_deg'])}, {_largest_text(row)}."
     axes = row.get("angle_axes_deg")
     if axes is None:
-        return said
-    return f"{said} Floors and walls come back {'exact' if axes < EXACT_DEG else f'up to {degrees(axes)} off'}."
+        return sentence
+    return f"{sentence} Floors and walls come back {'exact' if axes < EXACT_DEG else f'up to {degrees(axes)} off'}."
 
 
 def _largest_text(row: Row) -> str:
@@ -276,14 +276,14 @@ def _seen_sentences(row: Row) -> str:
     moved = _moved_deg(row)
     if len(moved) < 2:
         return ""
-    said = f"A mirror's reflection moves by {degrees(moved[0])} in the mean and at most {degrees(moved[1])}: "
+    text = f"A mirror's reflection moves by {degrees(moved[0])} in the mean and at most {degrees(moved[1])}: "
     if moved[1] >= ELSEWHERE_DEG:
-        return f"{said}it shows something else."
+        return f"{text}it shows something else."
     texels = " and ".join(f"{value / TEXEL_DEG:.2g}" for value in moved)
     far = " and ".join(_length_text(100 * FAR * math.tan(math.radians(value))) for value in moved)
-    said += f"{texels} texels of {MAP}, {far} cm at {FAR:g} m."
+    text += f"{texels} texels of {MAP}, {far} cm at {FAR:g} m."
     enough = f" That is within --enough {row['enough']:.2g}; steps may show." if is_enough(row) else ""
-    return f"{said}{enough} {_roughness_command(row)} says from which roughness on no step shows."
+    return f"{text}{enough} {_roughness_command(row)} says from which roughness on no step shows."
 
 
 def _roughness_command(row: Row) -> str:
@@ -335,11 +335,11 @@ def _bits_text(row: Row) -> str:
 
 def _images_text(row: Row) -> str:
     """The worst of a row's images; empty where there is none."""
-    found = images(row)
-    if not found:
+    by_scene = images(row)
+    if not by_scene:
         return ""
-    (scene, power), worst = min(found.items(), key=lambda item: item[1])
-    scenes = " and ".join(dict.fromkeys(name for name, _ in found))
+    (scene, power), worst = min(by_scene.items(), key=lambda item: item[1])
+    scenes = " and ".join(dict.fromkeys(name for name, _ in by_scene))
     effects = f" with {row['effects']}" if row.get("effects") else ""
     lost = row.get("image_lost_percent")
     beyond = f" Images leave out the normals that it does not hold, up to {lost:.2g} %." if lost else ""
@@ -373,10 +373,10 @@ def _mixing_text(row: Row) -> str:
     if not row.get("mixing"):
         return ""
     upsampled = "Upsampling decodes each texel before it weighs it, which no code minds. "
-    said = upsampled if UPSAMPLE in row["mixing"].split(",") else ""
+    opening = upsampled if UPSAMPLE in row["mixing"].split(",") else ""
     left = f"then mean error {degrees(mean(row))}, largest {degrees(largest_mixed(row))}"
     edges = f". Across an edge: {row['mixed_across']}" if row["mixed_across"] else " and across an edge"
-    return f"{said}It survives {_uses_text(row)}, inside a surface ({left}){edges}."
+    return f"{opening}It survives {_uses_text(row)}, inside a surface ({left}){edges}."
 
 
 def _uses_text(row: Row) -> str:
@@ -397,8 +397,8 @@ def _gain_text(row: Row, best: Row) -> str:
 
 def _rung_text(row: Row, best: Row) -> str:
     """A rung of the ladder: what it gains, and for what price."""
-    said = f"{called(row)}, {_gain_text(row, best)} ({_errors_text(row)})"
-    return f"{said}, {_price_text(row, best)}{_bits_clause(row, best)}."
+    text = f"{called(row)}, {_gain_text(row, best)} ({_errors_text(row)})"
+    return f"{text}, {_price_text(row, best)}{_bits_clause(row, best)}."
 
 
 def _errors_text(row: Row) -> str:
@@ -416,12 +416,12 @@ def _price_text(row: Row, best: Row) -> str:
     if price(row) == floor(row):
         return f"for {HIDDEN_SLOTS} issue slots a pass, which take no longer than {TRAFFIC}{table}"
     ratio, gain = price(row) / price(best), loss_db(best) - loss_db(row)
-    said = f"for {price(row):g} issue slots{table}, {ratio:.2g} times the price"
+    text = f"for {price(row):g} issue slots{table}, {ratio:.2g} times the price"
     if ratio <= 1 or gain <= 0 or is_enough(best):
-        return said
+        return text
     rate = gain / math.log2(ratio)
     tie = f", about the {row['worth']:g} that --worth asks: the cheaper code is taken" if rate >= row["worth"] else ""
-    return f"{said}: {rate:.1f} dB a doubling{tie}"
+    return f"{text}: {rate:.1f} dB a doubling{tie}"
 
 
 def _bits_clause(row: Row, best: Row) -> str:
@@ -447,10 +447,10 @@ def _rival_sentence(row: Row, best: Row) -> str:
     if row["left_out"]:
         hole = f" ({row['hole']})" if row.get("hole") else ""
         return f"{row['encoding']} does not qualify: {row['left_out']}{hole}."
-    said = f"{row['encoding']}: {_rung_text(row, best).removesuffix('.')}; {_images_text(row) or 'no image.'}"
+    text = f"{row['encoding']}: {_rung_text(row, best).removesuffix('.')}; {_images_text(row) or 'no image.'}"
     if row["front"]:
-        return f"{said} No other code beats it in every figure."
-    return f"{said} {best['encoding']} beats it in every figure." if beats(best, row) else said
+        return f"{text} No other code beats it in every figure."
+    return f"{text} {best['encoding']} beats it in every figure." if beats(best, row) else text
 
 
 def left_out(group: Sequence[Row]) -> Iterator[str]:

@@ -71,7 +71,7 @@ def questions(options: PickOptions) -> list[list[measure.PickCase]]:
     """
     count = checked_count(options.count)
     check_seed(options.seed)
-    said = _question(options)
+    shared = _question(options)
     asked = _asked(options)
     names = tuple(dict.fromkeys(storage.name for storages in asked.values() for storage in storages))
     against = as_declared(codecs_named(options.against, names, options.rounding)) if options.against else []
@@ -83,20 +83,20 @@ def questions(options: PickOptions) -> list[list[measure.PickCase]]:
     for encoding in dict.fromkeys(codec.encoding for codec in fit if not is_in_catalogue(codec.encoding)):
         check_twin(encoding)
     needs_rays = any(codec.encoding.domain == "view" for codec in fit)
-    chosen = options.normals or (SETS[said["needs"]],)
+    chosen = options.normals or (SETS[shared["needs"]],)
     sets = normal_sets_named(chosen, count, options.seed, options.reading, needs_rays)
-    if said["needs"] == "view":
+    if shared["needs"] == "view":
         sets = [normals.facing() for normals in sets]
     _say_if_few(sets)
     powers, makers = (
         checked_numbers("--power", options.power, float, 1, MAX_POWER),
-        _scenes(options, said["needs"]),
+        _scenes(options, shared["needs"]),
     )
     effects = effects_named(options.effects) if options.effects else []
     setting = Setting(seed=options.seed)
     pipeline = _pipeline(effects, makers, setting)
-    said |= {"effects": name_of(effects), "scene": ",".join(maker.name for maker in makers)}
-    for codec in (one for one in fit if one.encoding.is_packed):
+    shared |= {"effects": name_of(effects), "scene": ",".join(maker.name for maker in makers)}
+    for codec in (packed_codec for packed_codec in fit if packed_codec.encoding.is_packed):
         for name in (name for name, storages in asked.items() if not _is_held(codec, storages, codec.rounding)):
             leave_out(
                 f"{codec.encoding.name} is an integer of {codec.storage.texel_bytes} bytes, not of those of {name}"
@@ -107,9 +107,11 @@ def questions(options: PickOptions) -> list[list[measure.PickCase]]:
     def case(codec: Codec, normals: NormalSet, about: Row) -> measure.PickCase:
         more: Row = {"normals": normals.name, "code_space": normals.code_space}
         more["against"] = codec.encoding.name in named and not about["beside"]
-        return measure.PickCase(codec, normals, makers, setting, powers, said | about | more, pipeline, options.survey)
+        return measure.PickCase(
+            codec, normals, makers, setting, powers, shared | about | more, pipeline, options.survey
+        )
 
-    made = [
+    case_groups = [
         [
             case(codec, normals, about)
             for codec, about in _compared(name, storages, rounding, fit, encodings)
@@ -121,11 +123,11 @@ def questions(options: PickOptions) -> list[list[measure.PickCase]]:
         for normals in sets
     ]
     lacking = lacking_rays((codec.encoding, normals) for codec in fit for normals in sets)
-    if lacking and not any(made):
+    if lacking and not any(case_groups):
         raise UsageError(lacking[0])
     for line in dict.fromkeys(lacking) if "all" not in options.encoding else ():
         leave_out(line)
-    return [cases for cases in made if cases]
+    return [cases for cases in case_groups if cases]
 
 
 def _scenes(options: PickOptions, needs: str | None) -> tuple[SceneMaker, ...]:
@@ -136,7 +138,7 @@ def _scenes(options: PickOptions, needs: str | None) -> tuple[SceneMaker, ...]:
 
 def _say_if_few(sets: Iterable[NormalSet]) -> None:
     """A line where an answer is of so few random normals that another seed may give another answer."""
-    few = {one.count: one.name for one in sets if one.area is not None and one.count < FEW}
+    few = {normals.count: normals.name for normals in sets if normals.area is not None and normals.count < FEW}
     for count, name in few.items():
         tell(f"--count {count}: with fewer than {FEW} random normals ({name}), another --seed may give another answer")
 
@@ -149,12 +151,15 @@ def _asked(options: PickOptions) -> dict[str, list[Storage]]:
         return {storage.name: [storage, *_packings(storage)] for storage in asked}
     sizes = sorted({storage.texel_bytes for storage in STORAGES.values()})
     chosen = choose("number of bytes", options.bytes, {str(size): size for size in sizes})
-    return {f"{size} bytes": [one for one in STORAGES.values() if one.texel_bytes == size] for size in chosen}
+    return {
+        f"{size} bytes": [candidate for candidate in STORAGES.values() if candidate.texel_bytes == size]
+        for size in chosen
+    }
 
 
 def _packings(storage: Storage) -> list[Storage]:
     """The storages that lie packed in a texel of this one."""
-    return [one for one in STORAGES.values() if one.is_packed and one.target == storage and one != storage]
+    return [other for other in STORAGES.values() if other.is_packed and other.target == storage and other != storage]
 
 
 def _compared(
@@ -168,7 +173,11 @@ def _compared(
         if _is_held(codec, storages, rounding):
             is_laid = is_one and codec.storage.name != name and not codec.encoding.is_packed
             yield codec, about | {"packed": is_laid}
-    others = [one for one in STORAGES.values() if one.texel_bytes == size and one not in storages] if is_one else []
+    others = (
+        [sibling for sibling in STORAGES.values() if sibling.texel_bytes == size and sibling not in storages]
+        if is_one
+        else []
+    )
     codecs = (Codec(encoding, other, rounding) for other in others for encoding in encodings if not encoding.is_packed)
     yield from ((codec, about | {"beside": True}) for codec in codecs if codec.fits)
 
@@ -183,11 +192,11 @@ def _pipeline(effects: Sequence[ChosenEffect], makers: Sequence[SceneMaker], set
     """What renders the images. Raises UsageError for effects that do not go together or have nothing to do."""
     complaints: list[str] = []
     # Pixels can be sampled of deferred shading; some effects need what is special to the hybrid pipeline.
-    made = pipeline_with(PIPELINES["hybrid" if effects else "deferred"], effects, complaints)
+    pipeline = pipeline_with(PIPELINES["hybrid" if effects else "deferred"], effects, complaints)
     complaints += filter(None, (lacking(effects, maker.name, maker.make(setting)) for maker in makers))
-    if not made or complaints:
+    if not pipeline or complaints:
         raise UsageError(complaints[0])
-    return made
+    return pipeline
 
 
 def _question(options: PickOptions) -> Row:
@@ -205,13 +214,13 @@ def _question(options: PickOptions) -> Row:
         ",".join(families_named(options.family)),
     )
     uses = None if options.needs is None else choose("use", options.needs, {use: use for use in USES})
-    said = {"aim": aim, "family": family, "needs": needs, "most_instructions": options.most_instructions}
+    shared = {"aim": aim, "family": family, "needs": needs, "most_instructions": options.most_instructions}
     if not 0 <= options.enough <= MOST_ENOUGH:
         raise UsageError(f"--enough {options.enough:g}: 0 to {MOST_ENOUGH:g} degrees")
-    said |= {"readers": options.readers, "worth": options.worth, "enough": options.enough}
-    said |= {"accept_holes": options.accept_holes, "accept_lengths": options.accept_lengths}
-    said |= {"look_ups": options.look_ups}
-    return said | {"mixing": ",".join(uses) if uses else None}
+    shared |= {"readers": options.readers, "worth": options.worth, "enough": options.enough}
+    shared |= {"accept_holes": options.accept_holes, "accept_lengths": options.accept_lengths}
+    shared |= {"look_ups": options.look_ups}
+    return shared | {"mixing": ",".join(uses) if uses else None}
 
 
 def _fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:
@@ -222,10 +231,10 @@ def _fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:
             misfits.append((codec.encoding.name, codec.misfit))
         else:
             fit.append(codec)
-    said = by_reason(dict.fromkeys(misfits))
+    reasons = by_reason(dict.fromkeys(misfits))
     if not fit:
-        raise UsageError(said[0])
-    return fit, said
+        raise UsageError(reasons[0])
+    return fit, reasons
 
 
 def _steps(options: PickOptions, outputs: PickOutputs) -> list[Step]:
@@ -253,13 +262,13 @@ def _name(chosen: Sequence[measure.PickCase]) -> str:
 
 
 def _key(chosen: Sequence[measure.PickCase]) -> Row:
-    one = chosen[0]
-    key: Row = {"codecs": [case.codec.name for case in chosen], "powers": list(one.powers)}
-    key |= {"count": one.normal_set.count, "seed": one.normal_set.seed}
+    first = chosen[0]
+    key: Row = {"codecs": [case.codec.name for case in chosen], "powers": list(first.powers)}
+    key |= {"count": first.normal_set.count, "seed": first.normal_set.seed}
     against = [case.codec.name for case in chosen if case.said["against"]]
     # Runs that knew no other rounding have said nothing of it.
-    said = {name: value for name, value in one.said.items() if (name, value) != ("rounding", "nearest")}
-    return key | said | {"against": against} | ({"survey": True} if one.is_surveyed else {})
+    shared = {name: value for name, value in first.said.items() if (name, value) != ("rounding", "nearest")}
+    return key | shared | {"against": against} | ({"survey": True} if first.is_surveyed else {})
 
 
 def _measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
@@ -272,10 +281,10 @@ def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
     for (asked, normals, scene), group in groups(rows).items():
         front = [_short(row) for row in group if row["front"] or row["place"]]
         title = f"{asked}, on {normals}: the codes that no other one beats in error, price and bits"
-        said, aside = tuple(told(group)), tuple(left_out(group))
+        lines, aside = tuple(told(group)), tuple(left_out(group))
         keys = {"storage": group[0]["asked"], "rounding": group[0]["rounding"], "normals": normals}
         keys["scene"] = scene.split(",")[0]
-        yield Sheet(title if front else "", front, TABLE.drops(front), said=said, aside=aside, keys=keys)
+        yield Sheet(title if front else "", front, TABLE.drops(front), said=lines, aside=aside, keys=keys)
 
 
 def _short_sheets(rows: Sequence[Row]) -> Iterator[Sheet]:

@@ -25,9 +25,9 @@ MOST_DEG = 200.0
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
     """A chart for each set of normals; none where rows keep no histogram."""
     usable = [r for r in having(rows, "bits", "angle_mean_deg") if bins(r.get("angle_counts"))]
-    for at, normals in enumerate(dict.fromkeys(str(row.get("normals")) for row in usable)):
+    for index, normals in enumerate(dict.fromkeys(str(row.get("normals")) for row in usable)):
         part = one_backend([row for row in usable if str(row.get("normals")) == normals])
-        yield histogram_chart(at, sorted(part, key=lambda row: row["angle_mean_deg"]))
+        yield histogram_chart(index, sorted(part, key=lambda row: row["angle_mean_deg"]))
 
 
 def histogram_chart(at: int, rows: Sequence[Row]) -> Chart:
@@ -38,7 +38,7 @@ def histogram_chart(at: int, rows: Sequence[Row]) -> Chart:
         rows: of the quality table, one set, in that order: encoding, storage, bits, angle_counts and angles.
     """
     lines = lines_of(rows)
-    feet = [float(len(rows) - 1 - at) for at in range(len(rows))]
+    feet = [float(len(rows) - 1 - i) for i in range(len(rows))]
     abouts = [_point_row(row, line) for row, line in zip(rows, lines, strict=True)]
     outlines = [
         {**about, **point}
@@ -108,5 +108,5 @@ def _finding_sentence(rows: Sequence[Row]) -> str:
         alike.setdefault(row["bits"], []).append(row)
     compared = {bits: part[0] for bits, part in sorted(alike.items()) if len(part) > 1 or len(alike) == 1}
     best = compared or {row["bits"]: row for row in rows[:1]}
-    said = [f"{CodecKey.of(row).label} of {bits} bits ({row['angle_mean_deg']:.2g})" for bits, row in best.items()]
-    return f"The smallest mean angles, in degrees, have {', '.join(said)}"
+    phrases = [f"{CodecKey.of(row).label} of {bits} bits ({row['angle_mean_deg']:.2g})" for bits, row in best.items()]
+    return f"The smallest mean angles, in degrees, have {', '.join(phrases)}"

@@ -20,8 +20,8 @@ def with_half_loss(rows: Sequence[Row]) -> list[Row]:
 
 def survivors(rows: Sequence[Row]) -> tuple[str, ...]:
     """A line for each storage and set: which codes half arithmetic leaves nearly as they are, and which it does not."""
-    found = [row for row in rows if row.get("half_loss_percent") is not None]
-    return tuple(_loss_lines(found))
+    measured_rows = [row for row in rows if row.get("half_loss_percent") is not None]
+    return tuple(_loss_lines(measured_rows))
 
 
 def _loss_lines(rows: Sequence[Row]) -> Iterator[str]:
@@ -30,8 +30,8 @@ def _loss_lines(rows: Sequence[Row]) -> Iterator[str]:
         losses = {_base_name(row): row["half_loss_percent"] for row in part}
         kept = [name for name, loss in losses.items() if loss <= SURVIVES]
         lost = [f"{name} (+{loss:.3g} %)" for name, loss in losses.items() if loss > SURVIVES]
-        said = f"In half arithmetic, {storage} on {normals}: the RMS angle of {{}} grows by at most {SURVIVES:g} %"
-        yield said.format(", ".join(kept) or "no code") + (f"; of {', '.join(lost)} by more" if lost else "")
+        sentence = f"In half arithmetic, {storage} on {normals}: the RMS angle of {{}} grows by at most {SURVIVES:g} %"
+        yield sentence.format(", ".join(kept) or "no code") + (f"; of {', '.join(lost)} by more" if lost else "")
 
 
 def _is_half(row: Row) -> bool:

@@ -209,8 +209,8 @@ def _by_half_device(case: QualityCase) -> Decoding:
 
     def decoded(chunk: Chunk) -> Decoded:
         rows = (rgba(planes, 1, len(np.ravel(planes.z)))[0] for planes in (chunk.n, chunk.view))
-        found = np.ascontiguousarray(passes.round_trip(*rows).T).reshape(3, *np.shape(chunk.n.z))
-        return Decoded(chunk.n, Vec3(*found), chunk.covered)
+        normals = np.ascontiguousarray(passes.round_trip(*rows).T).reshape(3, *np.shape(chunk.n.z))
+        return Decoded(chunk.n, Vec3(*normals), chunk.covered)
 
     loads = (partial(identity, decoded(load())) for load in case.normal_set.loads())
     return Decoding(_decoded_meter(), loads, how)
@@ -224,8 +224,8 @@ def _decodings_by_wgsl(case: QualityCase) -> Iterator[Decoding]:
 
         def decoded(chunk: Chunk) -> Decoded:
             rows = (np.stack([np.ravel(plane) for plane in planes], axis=1) for planes in (chunk.n, chunk.view))
-            found = np.ascontiguousarray(trip(*rows).decoded.T).reshape(3, *np.shape(chunk.n.z))
-            return Decoded(chunk.n, Vec3(*found), chunk.covered)
+            normals = np.ascontiguousarray(trip(*rows).decoded.T).reshape(3, *np.shape(chunk.n.z))
+            return Decoded(chunk.n, Vec3(*normals), chunk.covered)
 
         loads = (partial(identity, decoded(load())) for load in case.normal_set.loads())
         yield Decoding(_decoded_meter(), loads, {"device": wgsl_trip.device_name(), "rounded_by": "shader"})
@@ -260,11 +260,11 @@ def measure(case: QualityCase, tick: Tick = idle) -> Row:
     A row that the device cannot give has its reason in `skipped` and no figures.
     """
     try:
-        with BACKENDS[case.backend](case) as found:
-            total = found.total(tick)
+        with BACKENDS[case.backend](case) as decoding:
+            total = decoding.total(tick)
     except UNMEASURABLE as error:
         return _case_columns(case) | {"skipped": str(error)}
-    return _row(case, total, found.how)
+    return _row(case, total, decoding.how)
 
 
 def _row(case: QualityCase, total: ErrorTotal, how: Mapping[str, str | None]) -> Row:
@@ -315,8 +315,8 @@ def _measured_columns(case: QualityCase, found: Statistics) -> Row:
 def worst(case: QualityCase) -> Worst | None:
     """The normal that a case turns the most, of those that it measures; None where the device cannot measure it."""
     try:
-        with BACKENDS[case.backend](case) as found:
-            return found.total().worst
+        with BACKENDS[case.backend](case) as decoding:
+            return decoding.total().worst
     except UNMEASURABLE:
         return None
 

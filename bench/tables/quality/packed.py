@@ -39,8 +39,10 @@ def _best_columns(bits: int, domain: str) -> Row:
 
 def _codecs(bits: int, domain: str) -> list[Codec]:
     """The codes of the catalogue that hold a domain and have so many bits, or the most below."""
-    holding = [one for one in ENCODINGS.values() if one.domain in ("sphere", domain) and not one.sign_bits]
-    made = [Codec(encoding, storage) for encoding in holding for storage in STORAGES.values()]
-    fitting = [codec for codec in made if codec.fits and codec.bits <= bits]
+    holding = [
+        encoding for encoding in ENCODINGS.values() if encoding.domain in ("sphere", domain) and not encoding.sign_bits
+    ]
+    codecs = [Codec(encoding, storage) for encoding in holding for storage in STORAGES.values()]
+    fitting = [codec for codec in codecs if codec.fits and codec.bits <= bits]
     most = max((codec.bits for codec in fitting), default=0)
     return [codec for codec in fitting if codec.bits == most]

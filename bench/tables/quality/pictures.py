@@ -53,8 +53,8 @@ def _write_codecs(chosen: Iterable[measure.QualityCase], folder: Path) -> None:
         if not trip:
             continue
         name = stem(normals, CodecKey(codec.encoding.name, codec.storage.name, codec.rounding))
-        made = pictures.codec_pictures(trip.normals, trip.encoded, trip.decoded, trip.covered)
-        for kind, pixels in made.items():
+        images = pictures.codec_pictures(trip.normals, trip.encoded, trip.decoded, trip.covered)
+        for kind, pixels in images.items():
             _write_png(folder / f"{name}-{kind}.png", pixels)
         if trip.covered.size <= MAX_PIXELS:
             _write_pixels(folder / f"{name}.npz", codec, trip)
@@ -112,9 +112,9 @@ def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
         original = there.get(f"{normals}-normals.png")
         part = [row for row in rows if str(row.get("normals")) == normals]
         ranked = in_order(part).items()
-        found = [p for key, rank in ranked if (p := _pictured(there, stem(normals, key), key, rank))]
-        if original and found:
-            yield Subject(f"the normals of {normals}", "normals", partial(read_png, original), found)
+        codecs = [p for key, rank in ranked if (p := _pictured(there, stem(normals, key), key, rank))]
+        if original and codecs:
+            yield Subject(f"the normals of {normals}", "normals", partial(read_png, original), codecs)
 
 
 def _pictured(there: dict[str, Path], name: str, key: CodecKey, rank: int) -> Pictured | None:

@@ -66,10 +66,10 @@ def sphere_map(codec: Codec) -> SphereMap:
     halves, inside = _grid()
     held = 2 if codec.encoding.domain == WHOLE_SPHERE else 1
     n = Vec3(*(np.ascontiguousarray(plane) for plane in np.moveaxis(halves[:held, inside], -1, 0)))
-    found = np.full((2, *inside.shape), np.nan, np.float32)
+    degrees = np.full((2, *inside.shape), np.nan, np.float32)
     angles = _angles if has_twin(codec.encoding) else _angles_by_glsl
-    found[:held, inside] = np.asarray(angles(codec, n))
-    cells = found.reshape(2, CELLS, FINE, CELLS, FINE).transpose(0, 1, 3, 2, 4).reshape(2, CELLS, CELLS, -1)
+    degrees[:held, inside] = np.asarray(angles(codec, n))
+    cells = degrees.reshape(2, CELLS, FINE, CELLS, FINE).transpose(0, 1, 3, 2, 4).reshape(2, CELLS, CELLS, -1)
     some = ~np.isnan(cells).all(axis=-1)
     mean, largest = (np.full(some.shape, np.nan, np.float32) for _ in range(2))
     mean[some], largest[some] = np.nanmean(cells[some], axis=-1), np.nanmax(cells[some], axis=-1)
@@ -112,12 +112,12 @@ def write_maps(codecs: Iterable[Codec], folder: Path) -> None:
     """A file for each codec that can be measured. Raises UsageError where it cannot be written."""
     for codec in dict.fromkeys(codecs):
         try:
-            found = sphere_map(codec)
+            error_map = sphere_map(codec)
         except UNMEASURABLE:
             continue
         path = folder / file_name(codec.encoding.name, codec.storage.name, codec.rounding)
         with whole_file(path) as partial, partial.open("wb") as file:
-            np.savez_compressed(file, **found._asdict())
+            np.savez_compressed(file, **error_map._asdict())
 
 
 def read_map(path: Path) -> SphereMap | None:

@@ -76,13 +76,13 @@ def cases(options: QualityOptions) -> list[measure.QualityCase]:
     for line in left_out:
         leave_out(line)
     needs_rays = any(codec.encoding.domain == "view" for codec in codecs)
-    said = [*map(str, options.normals)]
+    words = [*map(str, options.normals)]
     names = options.normals
-    if DOMAIN in said:
-        names = tuple(dict.fromkeys(name for codec in codecs for name in _set_names(said, codec)))
+    if DOMAIN in words:
+        names = tuple(dict.fromkeys(name for codec in codecs for name in _set_names(words, codec)))
     normal_sets = normal_sets_named(names, count, options.seed, options.reading, needs_rays)
-    made = measure.cases(codecs, normal_sets, backends, options.worst_case, options.codes)
-    asked = [case for case in made if _is_asked(case, said)]
+    all_cases = measure.cases(codecs, normal_sets, backends, options.worst_case, options.codes)
+    asked = [case for case in all_cases if _is_asked(case, words)]
     lacking = lacking_rays((case.codec.encoding, case.normal_set) for case in asked)
     return what_is_left([case for case in asked if case.normal_set.serves(case.codec.encoding)], lacking)
 
@@ -116,15 +116,15 @@ def _is_asked(case: measure.QualityCase, said: Sequence[str]) -> bool:
 
 def steps(options: QualityOptions, outputs: QualityOutputs) -> list[Step]:
     """A step for each row."""
-    made = [_step(case, _key(case, options)) for case in cases(options)]
+    row_steps = [_step(case, _key(case, options)) for case in cases(options)]
     for folder in filter(None, (outputs.images, outputs.maps, outputs.live)):
         check_folder(folder)
-    return made
+    return row_steps
 
 
 def _step(case: measure.QualityCase, key: Row) -> Step:
     own = case.parts()
-    parts = [_step(part, key | {PART: f"{at} of {len(own)}"}) for at, part in enumerate(own, 1)]
+    parts = [_step(part, key | {PART: f"{number} of {len(own)}"}) for number, part in enumerate(own, 1)]
     return Step(key, case, case.name, len(case.normal_set.starts), parts)
 
 
@@ -155,8 +155,10 @@ def _finished(rows: Sequence[Row]) -> list[Row]:
 def _warnings(rows: Sequence[Row]) -> Iterator[str]:
     for row in rows:
         if row["angle_sup_deg"] is not None and row["angle_max_deg"] > BY_ARITHMETIC * row["angle_sup_deg"]:
-            said = f"{row['angle_max_deg']:.3g} degrees were met, {row['angle_sup_deg']:.3g} are the supremum of exact"
-            yield f"{_named(row)}: {said} arithmetic; float32 loses the rest, at {row['worst_normal']}"
+            comparison = (
+                f"{row['angle_max_deg']:.3g} degrees were met, {row['angle_sup_deg']:.3g} are the supremum of exact"
+            )
+            yield f"{_named(row)}: {comparison} arithmetic; float32 loses the rest, at {row['worst_normal']}"
 
 
 def _failures(rows: Sequence[Row]) -> Iterator[str]:
@@ -183,9 +185,9 @@ def _not_shown(rows: Sequence[Row]) -> Iterator[str]:
     """A line for each reason why rows have no figures."""
     skipped = ((_named(row, row["skipped"]), row["skipped"]) for row in rows if row["skipped"])
     for reason, names in names_by_reason(skipped).items():
-        said = ", ".join(names) if len(names) <= MOST_NAMED else f"{len(names)} rows"
+        listed = ", ".join(names) if len(names) <= MOST_NAMED else f"{len(names)} rows"
         what = "by OpenGL alone" if lacks_twin(reason) else "not shown, without figures"
-        yield f"{what}: {said} ({reason})"
+        yield f"{what}: {listed} ({reason})"
 
 
 def _verdict(rows: Sequence[Row]) -> Iterator[str]:
@@ -204,9 +206,9 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
         groups.get(_sheet_of(row, measured), []).append(row)
     for (normals, storage), part in groups.items():
         lines = beside(part)
-        said = "dB by back end" if any(f"psnr_db_{part[0]['backend']}" in line for line in lines) else AGREED
+        agreement = "dB by back end" if any(f"psnr_db_{part[0]['backend']}" in line for line in lines) else AGREED
         measured = backends_of(one_backend([row for row in part if row["angle_mean_deg"] is not None]))
-        title = f"{normals}, {storage}: {said}; angles in degrees" + (f", by {measured}" if measured else "")
+        title = f"{normals}, {storage}: {agreement}; angles in degrees" + (f", by {measured}" if measured else "")
         yield Sheet(title, lines, SUMMARY_DROPS, keys={"storage": storage, "normals": normals})
 
 
@@ -230,9 +232,9 @@ def beside(rows: Iterable[Row]) -> list[Row]:
     for column in BY_BACKEND:
         _merge(column, list(lines.values()))
     first = ("encoding", "bits", "article_db")
-    found = dict.fromkeys(column for line in lines.values() for column in line)
-    order = [c for c in first if c in found] + sorted((c for c in found if c.startswith("psnr")), key=_psnr_order)
-    order += [column for column in found if column not in order]
+    columns = dict.fromkeys(column for line in lines.values() for column in line)
+    order = [c for c in first if c in columns] + sorted((c for c in columns if c.startswith("psnr")), key=_psnr_order)
+    order += [column for column in columns if column not in order]
     kept = [column for column in order if not (ARTICLE in column and _is_beyond(column, lines.values()))]
     return [{column: line.get(column) for column in kept} for line in lines.values()]
 

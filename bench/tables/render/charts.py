@@ -16,9 +16,9 @@ IMAGE, NORMALS = "the image", "the normals"
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
     """A chart for each scene."""
     usable = having(rows, "psnr_db", "normal_psnr_db")
-    for at, scene in enumerate(dict.fromkeys(map(shown_scene, usable))):
+    for index, scene in enumerate(dict.fromkeys(map(shown_scene, usable))):
         part = [row for row in usable if shown_scene(row) == scene]
-        yield image_chart(at, scene, sorted(part, key=lambda row: -row["psnr_db"]))
+        yield image_chart(index, scene, sorted(part, key=lambda row: -row["psnr_db"]))
 
 
 def image_chart(at: int, scene: str, rows: Sequence[Row]) -> Chart:
@@ -59,7 +59,7 @@ FIELDS = ((IMAGE, "image"), (NORMALS, "normals"))
 def _finding_sentence(lines: Sequence[Row]) -> str:
     """Which codec has the best image, and whether it is the one with the best normals."""
     best, normals = lines[0], max(lines, key=lambda line: line["normals"])
-    said = f"{best['line']} has the best image, {best['image']:.1f} dB"
+    sentence = f"{best['line']} has the best image, {best['image']:.1f} dB"
     if best["normals"] == normals["normals"]:
-        return f"{said}, and the best normals"
-    return f"{said}; {normals['line']} has the best normals, {normals['normals']:.1f} dB"
+        return f"{sentence}, and the best normals"
+    return f"{sentence}; {normals['line']} has the best normals, {normals['normals']:.1f} dB"

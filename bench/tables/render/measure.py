@@ -132,8 +132,8 @@ class RenderBench(Bench[RenderCase, Drawn]):
             scene = self.scene(case.maker, setting)
             lit = scene if case.power is None else scene.with_power(case.power)
             is_last = len(frames) == case.frames - 1
-            with rendering(self.device, case.pipeline, lit, case.plan) as made:
-                frames.append(_drawn_images(made, case.pipeline, repeats if is_last else 0))
+            with rendering(self.device, case.pipeline, lit, case.plan) as rendered:
+                frames.append(_drawn_images(rendered, case.pipeline, repeats if is_last else 0))
         return frames
 
     def display(self, case: RenderCase, frames: list[Drawn]) -> Display:
@@ -202,11 +202,11 @@ def _reference_columns(reference: list[Drawn], covered: list[np.ndarray]) -> Row
 
 
 def _psnr_of_covered(pairs: list[tuple[Drawn, Drawn]], covered: list[np.ndarray]) -> float | None:
-    one, other = (
+    pixels, other = (
         np.concatenate([frame.shown[where] for frame, where in zip(frames, covered, strict=True)])
         for frames in zip(*pairs, strict=True)
     )
-    return psnr_db(squared_error(one, other)[0]) if len(one) else None
+    return psnr_db(squared_error(pixels, other)[0]) if len(pixels) else None
 
 
 def _farthest(one: Drawn, other: Drawn) -> Worst | None:
@@ -214,12 +214,12 @@ def _farthest(one: Drawn, other: Drawn) -> Worst | None:
     if one.normals is None or other.normals is None or other.kinds is None or one.normals.shape != other.normals.shape:
         return None
     covered = other.kinds >= 0
-    right, found = other.normals[covered], one.normals[covered]
+    right, normals = other.normals[covered], one.normals[covered]
     if not len(right):
         return None
-    angles = np.nan_to_num(angles_deg(right, found), nan=180.0)
-    at = int(np.argmax(angles))
-    return Worst(right[at], found[at], float(angles[at]))
+    angles = np.nan_to_num(angles_deg(right, normals), nan=180.0)
+    index = int(np.argmax(angles))
+    return Worst(right[index], normals[index], float(angles[index]))
 
 
 def _normal_error(one: Drawn, other: Drawn, has_kind: bool) -> float:

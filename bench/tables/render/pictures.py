@@ -54,10 +54,10 @@ def stem(row: Row) -> str:
 
 def write(folder: Path, row: Row, drawn: Drawn, reference: Drawn) -> None:
     """The first frame, how far it is off, and its reference, which rows of one scene share."""
-    made = {f"{stem(row)}-{kind}": pixels for kind, pixels in _named_pictures(drawn, reference).items()}
+    images = {f"{stem(row)}-{kind}": pixels for kind, pixels in _named_pictures(drawn, reference).items()}
     # Written anew each time: the folder may hold one of other settings.
-    made[f"{scene_stem(row)}-{REFERENCE}"] = pictures.picture(reference.shown)
-    for name, pixels in made.items():
+    images[f"{scene_stem(row)}-{REFERENCE}"] = pictures.picture(reference.shown)
+    for name, pixels in images.items():
         with whole_file(folder / f"{name}.png") as partial:
             pictures.write_png(partial, pixels)
 
@@ -77,13 +77,13 @@ def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
             groups.setdefault(scene_stem(row), []).append(row)
     for name, part in groups.items():
         original = there.get(f"{name}-{REFERENCE}.png")
-        found = [one for row, rank in in_order(part) if (one := _pictured_or_none(there, row, part, rank))]
-        if original and found:
-            yield Subject(_title(part[0], rows), "image", partial(read_png, original), found)
+        codecs = [pictured for row, rank in in_order(part) if (pictured := _pictured_or_none(there, row, part, rank))]
+        if original and codecs:
+            yield Subject(_title(part[0], rows), "image", partial(read_png, original), codecs)
 
 
 def _title(row: Row, rows: Sequence[Row]) -> str:
-    pipeline = f" by {row['pipeline']}" if len({one.get("pipeline") for one in rows}) > 1 else ""
+    pipeline = f" by {row['pipeline']}" if len({other.get("pipeline") for other in rows}) > 1 else ""
     return f"the image of {shown_scene(row)}{pipeline}" + ("" if row["shadow"] else " without shadows")
 
 
@@ -99,7 +99,7 @@ def _label(row: Row, part: Sequence[Row]) -> str:
     """The codec, and what else tells the row apart."""
     if row["layout"] is None:
         return str(row["pipeline"])
-    others = [name for name in ("layout", "light_buffer", "light_targets") if len({one[name] for one in part}) > 1]
+    others = [name for name in ("layout", "light_buffer", "light_targets") if len({other[name] for other in part}) > 1]
     return " ".join([CodecKey.of(row).label, *(str(row[name]) for name in others)])
 
 
@@ -111,7 +111,7 @@ def in_order(rows: Sequence[Row]) -> list[tuple[Row, int]]:
 
     ordered = sorted(rows, key=bits_and_figure)
     bits = [row.get("normal_bits") for row in ordered]
-    return [(row, bits[:at].count(bits[at])) for at, row in enumerate(ordered)]
+    return [(row, bits[:i].count(bits[i])) for i, row in enumerate(ordered)]
 
 
 def _pixels(final: Path, flip: Path | None) -> ImagePixels | None:

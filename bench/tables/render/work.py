@@ -84,11 +84,11 @@ def cases(options: RenderOptions, device: Device) -> list[RenderCase]:
         for antialiased in choose("specular antialiasing", options.specular_antialiasing, SHADOWS)
     ]
     tone_mapping = options.tone_mapping and choose_one("tone mapping", options.tone_mapping, TONE_MAPPINGS)
-    made: list[RenderCase] = []
+    all_cases: list[RenderCase] = []
     complaints: list[str] = []
     powers = [None] if options.power is None else checked_numbers("--power", options.power, float, 1, MAX_POWER)
     effects = effects_named(options.effects) if options.effects else []
-    pipelines = [pipeline_with(one, effects, complaints) for one in choose("pipeline", options.pipeline, PIPELINES)]
+    pipelines = [pipeline_with(base, effects, complaints) for base in choose("pipeline", options.pipeline, PIPELINES)]
     for maker in scenes_under(options.environment, scene_makers_named(options.scene)):
         scene = maker.make(setting)
         told: Row = {"exposure": _exposure(options.exposure, maker), "tone_mapping": tone_mapping or maker.tone_mapping}
@@ -103,10 +103,10 @@ def cases(options: RenderOptions, device: Device) -> list[RenderCase]:
                 case = RenderCase(
                     pipeline, plan, maker, setting, options.frames or maker.frames, options.samples, **told
                 )
-                made += [replace(case, power=power) for power in ([None] if scene.is_metal_rough else powers)]
+                all_cases += [replace(case, power=power) for power in ([None] if scene.is_metal_rough else powers)]
         if scene.is_metal_rough and options.power is not None:
             tell(f"{maker.name}: --power is not used: metal/rough materials have a roughness of their own")
-    return what_is_left(made, complaints)
+    return what_is_left(all_cases, complaints)
 
 
 def _as_engines_keep(plan: Plan) -> Plan:
@@ -177,12 +177,12 @@ def _warnings(rows: Sequence[Row]) -> Iterator[str]:
 
 def _most(rows: Sequence[Row], column: str) -> dict[str, float]:
     """The largest value of a column, in percent, by scene."""
-    found: dict[str, float] = {}
+    largest: dict[str, float] = {}
     for row in rows:
         scene = shown_scene(row)
         if row[column] is not None:
-            found[scene] = max(found.get(scene, 0.0), row[column])
-    return found
+            largest[scene] = max(largest.get(scene, 0.0), row[column])
+    return largest
 
 
 def _shown(done: Measured) -> Iterator[Sheet]:

@@ -16,28 +16,28 @@ def answers(rows: Sequence[Row]) -> tuple[str, ...]:
     Args:
         rows: those of the table, ranked.
     """
-    said = list(_answers_by_gpu(rows))
-    return tuple(["The fastest codes on each GPU:", *said] if len(said) > 1 else said)
+    sentences = list(_answers_by_gpu(rows))
+    return tuple(["The fastest codes on each GPU:", *sentences] if len(sentences) > 1 else sentences)
 
 
 def _answers_by_gpu(rows: Sequence[Row]) -> Iterator[str]:
     known = [row for row in rows if row["rank"] is not None]
     places = list(dict.fromkeys((row["size"], row["reads"]) for row in known))
-    said: dict[str, list[str]] = {}
+    groups: dict[str, list[str]] = {}
     for gpu in dict.fromkeys(row["gpu"] for row in known):
-        said.setdefault(_answer_text([row for row in known if row["gpu"] == gpu], places), []).append(gpu)
-    yield from (f"{_listed_text(gpus)}: {answer}." for answer, gpus in said.items())
+        groups.setdefault(_answer_text([row for row in known if row["gpu"] == gpu], places), []).append(gpu)
+    yield from (f"{_listed_text(gpus)}: {answer}." for answer, gpus in groups.items())
 
 
 def _answer_text(rows: Sequence[Row], places: Sequence[Place]) -> str:
     """The fastest codes at each place; places with the same ones together."""
-    found: dict[str, list[Place]] = {}
+    groups: dict[str, list[Place]] = {}
     for size, reads in places:
         best = [row for row in rows if (row["size"], row["reads"], row["rank"]) == (size, reads, 1)]
-        found.setdefault(_codes_text(best), []).append((size, reads))
-    if len(found) == 1:
-        return f"{next(iter(found))}{' in every case' if len(places) > 1 else ''}"
-    return "; ".join(f"{codes} {_places_text(at, places)}" for codes, at in found.items())
+        groups.setdefault(_codes_text(best), []).append((size, reads))
+    if len(groups) == 1:
+        return f"{next(iter(groups))}{' in every case' if len(places) > 1 else ''}"
+    return "; ".join(f"{codes} {_places_text(group, places)}" for codes, group in groups.items())
 
 
 def _codes_text(rows: Sequence[Row]) -> str:
@@ -51,7 +51,7 @@ def _codes_text(rows: Sequence[Row]) -> str:
 
 def _places_text(some: Sequence[Place], every: Sequence[Place]) -> str:
     """Some of the places: by the size alone, or the reads alone, where these tell them from the others."""
-    sizes, reads = (list(dict.fromkeys(one)) for one in zip(*some, strict=True))
+    sizes, reads = (list(dict.fromkeys(column)) for column in zip(*some, strict=True))
     if sum(size in sizes for size, _ in every) == len(some):
         return f"at {_listed_text(sizes)}"
     if sum(count in reads for _, count in every) == len(some):

@@ -24,7 +24,7 @@ def points(rows: Sequence[Row]) -> list[Row]:
     the first size."""
     reads, size = min(row["reads"] for row in rows), rows[0]["size"]
     names = ("gpu", "encoding", "storage", "size", "reads", "ridge", "in_cache")
-    found = {
+    codec_points = {
         (row["gpu"], row["encoding"], row["storage"]): {
             **{name: row[name] for name in names},
             "codec": f"{row['encoding']} {row['storage']}",
@@ -34,7 +34,7 @@ def points(rows: Sequence[Row]) -> list[Row]:
         for row in rows
         if (row["reads"], row["size"]) == (reads, size)
     }
-    return list(found.values())
+    return list(codec_points.values())
 
 
 def ridge_lines(found: Sequence[Row], gpu: str) -> dict[bool, list[tuple[float, float]]]:
@@ -61,27 +61,27 @@ def roofline_chart(rows: Sequence[Row]) -> Chart:
     Args:
         rows: of the roofline table: encoding, storage, gpu, reads, overdraw, instructions, bytes_per_pixel, ridge.
     """
-    found = [{**point, "where": CACHE if point["in_cache"] else MEMORY} for point in points(rows)]
-    gpus, reads = distinct(found, "gpu"), found[0]["reads"]
+    drawn_points = [{**point, "where": CACHE if point["in_cache"] else MEMORY} for point in points(rows)]
+    gpus, reads = distinct(drawn_points, "gpu"), drawn_points[0]["reads"]
     lines = [
         {"gpu": gpu, "where": CACHE if cached else MEMORY, "x": x, "y": y}
         for gpu in gpus
-        for cached, line in ridge_lines(found, gpu).items()
+        for cached, line in ridge_lines(drawn_points, gpu).items()
         for x, y in line
     ]
     tips = (("codec", "codec"), ("x", "instructions"), ("y", "bytes"), ("reads", "reads"))
     return Chart(
         name="roofline",
-        title=_finding_sentence(found),
-        subtitle=f"Bytes against instructions, {found[0]['size']}, {reads} {'read' if reads == 1 else 'reads'}",
+        title=_finding_sentence(drawn_points),
+        subtitle=f"Bytes against instructions, {drawn_points[0]['size']}, {reads} {'read' if reads == 1 else 'reads'}",
         description="Each code by the instructions and the bytes of a pixel and frame, of the fewest reads and the "
         "first size. Above the GPU's line a code's bytes take longer than its instructions, below it the instructions "
         "do. The dashed line is for codes that the cache holds. The figures are in the table.",
-        x=Axis(title="instructions of a pixel and frame", scale=Scale.COUNT, domain=(-1.0, _axis_end(found))),
-        y=Axis(title="bytes written and read", scale=Scale.LOG, domain=_bytes_axis(found)),
-        rows=tuple(found),
-        colour=Names("encoding", distinct(found, "encoding")),
-        shape=Names("storage", distinct(found, "storage")),
+        x=Axis(title="instructions of a pixel and frame", scale=Scale.COUNT, domain=(-1.0, _axis_end(drawn_points))),
+        y=Axis(title="bytes written and read", scale=Scale.LOG, domain=_bytes_axis(drawn_points)),
+        rows=tuple(drawn_points),
+        colour=Names("encoding", distinct(drawn_points, "encoding")),
+        shape=Names("storage", distinct(drawn_points, "storage")),
         dash=Names("where", (MEMORY, CACHE), looks=((), (5, 4))),
         switch=Switch("gpu", "GPU", gpus, gpus[0], has_panels=True),
         marks=(

@@ -96,29 +96,29 @@ class RooflineCase:
         """A row for each code and frame."""
         driver = next((row["driver"] for row in self._counts if row["driver"]), None)
         for codec in self.codecs:
-            found = self._works[codec]
+            work = self._works[codec]
             for frame in self.frames:
                 row = self._row(codec, frame) | {"driver": driver}
-                yield row | ({"skipped": found} if isinstance(found, str) else _figures(found, frame, self.rates))
+                yield row | ({"skipped": work} if isinstance(work, str) else _figures(work, frame, self.rates))
 
     def work(self, codec: Codec) -> Work | None:
         """What a code takes; None where it is not known."""
-        found = self._works[codec]
-        return None if isinstance(found, str) else found
+        work = self._works[codec]
+        return None if isinstance(work, str) else work
 
     @cached_property
     def _works(self) -> dict[Codec, Work | str]:
         """What each code takes, or why it is not known."""
         costs = Costs(self._counts)
         lost = next((row["skipped"] for row in self._counts if row["skipped"] and not row["encoding"]), None)
-        found: dict[Codec, Work | str] = {}
+        works: dict[Codec, Work | str] = {}
         for codec in self.codecs:
             try:
                 encode, decode = (self._operation_cost(costs, codec, operation) for operation in cost.OPERATIONS)
-                found[codec] = Work(self._bytes_per_pixel(codec), encode, decode)
+                works[codec] = Work(self._bytes_per_pixel(codec), encode, decode)
             except LeftOutError as reason:
-                found[codec] = lost or str(reason)
-        return found
+                works[codec] = lost or str(reason)
+        return works
 
     def _bytes_per_pixel(self, codec: Codec) -> float:
         return codec.bits / 8 if self.is_shared else codec.storage.texel_bytes
@@ -181,8 +181,8 @@ def from_reads(one: Work, other: Work, rates: Rates, frame: Frame) -> str:
     """
     wins, loses = [], []
     for reads in range(1, MOST_READS + 1):
-        at = Frame(frame.size, reads, frame.overdraw, frame.cache_share)
-        a, b = (max(work.times(at, rates)) for work in (one, other))
+        read_frame = Frame(frame.size, reads, frame.overdraw, frame.cache_share)
+        a, b = (max(work.times(read_frame, rates)) for work in (one, other))
         wins += [reads] if a < b * (1 - TIE) else []
         loses += [reads] if b < a * (1 - TIE) else []
     if not wins:

@@ -91,26 +91,26 @@ def gpus_named(words: Names) -> dict[str, Rates]:
 
 def _named_rates(word: str) -> tuple[str, Rates]:
     """A GPU's word and its rates: of a known GPU, or of a family with settings."""
-    said, *settings = word.split(":")
-    name = spelled("family", said, (*GPUS, *FAMILIES)) or said
+    typed, *settings = word.split(":")
+    name = spelled("family", typed, (*GPUS, *FAMILIES)) or typed
     word = ":".join([name, *settings])
-    found = [_setting(word, setting) for setting in settings]
-    changed = dict(found)
-    if len(changed) < len(found):
+    pairs = [_setting(word, setting) for setting in settings]
+    changed = dict(pairs)
+    if len(changed) < len(pairs):
         raise UsageError(f"--gpu {word}: a setting is given twice")
     if name in GPUS:
-        made = replace(GPUS[name], **changed)
+        rates = replace(GPUS[name], **changed)
     elif name in FAMILIES:
-        if missing := [one for one in ("lanes", "clock", "memory") if one not in changed]:
-            such = ":".join([word, *(f"{one}={SUCH[one]}" for one in missing)])
+        if missing := [key for key in ("lanes", "clock", "memory") if key not in changed]:
+            such = ":".join([word, *(f"{key}={SUCH[key]}" for key in missing)])
             raise UsageError(f"--gpu {word}: a GPU of a family needs {', '.join(missing)}, such as {such}")
-        made = Rates(FAMILIES[name].title, name, **changed)
+        rates = Rates(FAMILIES[name].title, name, **changed)
     else:
         listed = f"all, {', '.join(GPUS)}, or a family with its rates"
         raise UsageError(f"--gpu {word}: {unknown_name('GPU', [name], GPUS, listed)}")
-    if bool(made.cache) != bool(made.cached):
+    if bool(rates.cache) != bool(rates.cached):
         raise UsageError(f"--gpu {word}: cache, in MB, and cached, in GB/s, go together")
-    return word, made
+    return word, rates
 
 
 def _setting(word: str, setting: str) -> tuple[str, float]:

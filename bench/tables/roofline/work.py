@@ -59,7 +59,7 @@ def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
     """A table for each GPU and size, the fastest code first, of the fewest reads; the answers above the first."""
     hidden = ["encoding", "storage", "gpu", "size", "shared", "overdraw", "ridge", "family", "driver", "skipped"]
     known = [row for row in rows if row["frame_us"] is not None]
-    said = answers(rows)
+    sentences = answers(rows)
     for gpu, size in dict.fromkeys((row["gpu"], row["size"]) for row in known):
         part = [row for row in known if (row["gpu"], row["size"]) == (gpu, size)]
         ridges = {row["in_cache"]: row["ridge"] for row in part}
@@ -71,8 +71,8 @@ def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
             {"code": f"{row['encoding']} {row['storage']}"} | {name: row[name] for name in row if name not in unseen}
             for row in part
         ]
-        yield Sheet(f"{gpu}, {size}: {about}", lines, TABLE.drops(lines), said=said)
-        said = ()
+        yield Sheet(f"{gpu}, {size}: {about}", lines, TABLE.drops(lines), said=sentences)
+        sentences = ()
 
 
 def _duels(case: RooflineCase) -> Iterator[str]:
@@ -81,12 +81,14 @@ def _duels(case: RooflineCase) -> Iterator[str]:
     works = {f"{codec.encoding.name} {codec.storage.name}": case.work(codec) for codec in case.codecs}
     known = sorted(((name, work) for name, work in works.items() if work), key=lambda one: one[1].bytes)
     pairs = [pair for pair in combinations(known, 2) if pair[0][1].bytes < pair[1][1].bytes]
-    said = {(small[0], large[0]): _by_size(case, small[1], large[1]) for small, large in pairs}
-    few = said if len(said) <= MOST_PAIRS else {pair: sizes for pair, sizes in said.items() if [*sizes] != ["always"]}
-    if len(few) < len(said):
-        yield f"{case.gpu}: the smaller code is always faster in {len(said) - len(few)} of {len(said)} pairs"
+    duels = {(small[0], large[0]): _by_size(case, small[1], large[1]) for small, large in pairs}
+    few = (
+        duels if len(duels) <= MOST_PAIRS else {pair: sizes for pair, sizes in duels.items() if [*sizes] != ["always"]}
+    )
+    if len(few) < len(duels):
+        yield f"{case.gpu}: the smaller code is always faster in {len(duels) - len(few)} of {len(duels)} pairs"
     for (small, large), sizes in list(few.items())[:MOST_PAIRS]:
-        answers = (_said(answer, at if len(sizes) > 1 else []) for answer, at in sizes.items())
+        answers = (_said(answer, answer_sizes if len(sizes) > 1 else []) for answer, answer_sizes in sizes.items())
         yield f"{case.gpu}: {small} is faster than {large}: {'; '.join(answers)}"
     if len(few) > MOST_PAIRS:
         yield f"{case.gpu}: {len(few) - MOST_PAIRS} more pairs; name fewer codes to see them"
@@ -94,11 +96,11 @@ def _duels(case: RooflineCase) -> Iterator[str]:
 
 def _by_size(case: RooflineCase, one: measure.Work, other: measure.Work) -> dict[str, list[str]]:
     """The sizes by the answer that holds for them."""
-    found: dict[str, list[str]] = {}
+    groups: dict[str, list[str]] = {}
     for size, frame in {frame.size: frame for frame in case.frames}.items():
         answer = measure.from_reads(one, other, case.rates, frame)
-        found.setdefault(answer, []).append("x".join(map(str, size)))
-    return found
+        groups.setdefault(answer, []).append("x".join(map(str, size)))
+    return groups
 
 
 def _said(said: str, sizes: Sequence[str]) -> str:
@@ -109,7 +111,7 @@ def _said(said: str, sizes: Sequence[str]) -> str:
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     """A line for each code, GPUs and sizes side by side."""
     known = [row for row in rows if row["frame_us"] is not None]
-    said = answers(rows)
+    sentences = answers(rows)
     for reads in dict.fromkeys(row["reads"] for row in known):
         part = [row for row in known if row["reads"] == reads]
         lines: dict[str, Row] = {}
@@ -119,8 +121,8 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
             line[f"{row['gpu']} {row['size']}"] = row["frame_us"]
         times = "1 read" if reads == 1 else f"{reads} reads"
         title = f"microseconds that a code takes of a frame, {times} of the G-buffer"
-        yield Sheet(title, list(lines.values()), said=said)
-        said = ()
+        yield Sheet(title, list(lines.values()), said=sentences)
+        sentences = ()
 
 
 def _lacking(done: Measured) -> list[str]:

@@ -32,9 +32,9 @@ def roughness_chart(rows: Sequence[Row], thresholds: Sequence[float]) -> Chart:
     """
     worst: dict[tuple[str, float], Row] = {}
     for row in rows:
-        at = _called(row), row["roughness"]
-        if at not in worst or row["flip_p99"] > worst[at]["flip_p99"]:
-            worst[at] = row
+        key = _called(row), row["roughness"]
+        if key not in worst or row["flip_p99"] > worst[key]["flip_p99"]:
+            worst[key] = row
     points = tuple(
         {"codec": codec, "x": roughness, "y": max(row["flip_p99"], LEAST)}
         | {"what": f"{row['object']} in {row['environment']}"}

@@ -71,19 +71,19 @@ class Frames:
             scene = replace(what, view=view).scene(0.0)
             self.made.append(stack.enter_context(rendering(device, PIPELINES[PIPELINE], scene, plan)))
             self.made[-1].draw()
-        self._covered = [one.gbuffer()[0][..., 2] != 0 for one in self.made]
+        self._covered = [rendered.gbuffer()[0][..., 2] != 0 for rendered in self.made]
         self.covered = np.any(self._covered, axis=0)
 
     def light(self, roughness: float) -> np.ndarray:
         """The mean of all frames at a roughness: linear light, float64 of shape (height, width, 3), black around."""
         total = np.zeros((*self.covered.shape, 3))
-        for one, covered in zip(self.made, self._covered, strict=True):
+        for rendered, covered in zip(self.made, self._covered, strict=True):
             if OBJECTS[self._what.name].is_metal:
-                draw_again(one, roughness)
+                draw_again(rendered, roughness)
             else:
-                one.frame.show(replace(self._what, view=one.frame.scene.view).scene(roughness))
-                one.draw()
-            total += np.where(covered[..., None], one.image(), 0.0)
+                rendered.frame.show(replace(self._what, view=rendered.frame.scene.view).scene(roughness))
+                rendered.draw()
+            total += np.where(covered[..., None], rendered.image(), 0.0)
         return total / len(self.made)
 
 
@@ -121,9 +121,9 @@ def moved(view: View, size: tuple[int, int], x: float, y: float) -> View:
 
 def halton(index: int, base: int) -> float:
     """Element `index`, from 1 on, of van der Corput's sequence: its digits mirrored at the point, in (0, 1)."""
-    found, share = 0.0, 1.0
+    fraction, share = 0.0, 1.0
     while index:
         index, digit = divmod(index, base)
         share /= base
-        found += digit * share
-    return found
+        fraction += digit * share
+    return fraction

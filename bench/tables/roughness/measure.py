@@ -92,14 +92,14 @@ class Pictures:
     def figures(self, made: Frames, roughness: float, with_flip: bool) -> Row:
         """What a row says of one picture."""
         image, exact = self.image(made, roughness), self.right(len(made.made), roughness)
-        pixels, right = (one[made.covered].astype(np.float64) for one in (image, exact.reference))
+        pixels, right = (picture[made.covered].astype(np.float64) for picture in (image, exact.reference))
         bytes_off = np.abs(np.round(255 * pixels) - np.round(255 * right)).max(axis=-1)
-        found: Row = {"roughness": roughness, "psnr_db": psnr_db(float(np.mean((pixels - right) ** 2)))}
-        found |= {"off_percent": 100 * float(np.mean(bytes_off > 1)), "largest": float(bytes_off.max())}
+        row: Row = {"roughness": roughness, "psnr_db": psnr_db(float(np.mean((pixels - right) ** 2)))}
+        row |= {"off_percent": 100 * float(np.mean(bytes_off > 1)), "largest": float(bytes_off.max())}
         if with_flip:
             apart = exact.of(image)[made.covered]
-            found |= {"flip": float(apart.mean()), "flip_p99": float(np.percentile(apart, PERCENTILE))}
-        return found
+            row |= {"flip": float(apart.mean()), "flip_p99": float(np.percentile(apart, PERCENTILE))}
+        return row
 
 
 def measure(device: Device, case: RoughnessCase) -> list[Row]:
@@ -116,16 +116,16 @@ def measure(device: Device, case: RoughnessCase) -> list[Row]:
 
 
 def _rows_of(pictures: Pictures, codec: Codec, seen: Accumulation, thresholds: Sequence[float]) -> list[Row]:
-    said: Row = {"encoding": codec.encoding.name, "storage": codec.storage.name, "rounding": codec.rounding}
-    said |= {"dither": seen.dither, "frames": seen.frames, "bits": codec.bits}
+    about: Row = {"encoding": codec.encoding.name, "storage": codec.storage.name, "rounding": codec.rounding}
+    about |= {"dither": seen.dither, "frames": seen.frames, "bits": codec.bits}
     if seen.dither != NONE and codec.undithered:
-        return [said | {"skipped": f"{codec.name} is not dithered: {codec.undithered}"}]
+        return [about | {"skipped": f"{codec.name} is not dithered: {codec.undithered}"}]
     with ExitStack() as stack:
         try:
-            made = pictures.opened(stack, codec, seen)
+            frames = pictures.opened(stack, codec, seen)
         except UNMEASURABLE as error:
-            return [said | {"skipped": str(error)}]
-        return [said | row for row in _curve(pictures, made, thresholds)]
+            return [about | {"skipped": str(error)}]
+        return [about | row for row in _curve(pictures, frames, thresholds)]
 
 
 def _curve(pictures: Pictures, made: Frames, thresholds: Sequence[float]) -> list[Row]:
@@ -154,8 +154,8 @@ def _crossing(with_flip: Callable[[float], Row], rows: Sequence[Row], threshold:
         middle = sum(steps) // 2
         is_kept = with_flip(round(middle * STEP, 2))["flip_p99"] <= threshold
         steps[1 if is_kept else 0] = middle
-    found = with_flip(round(steps[1] * STEP, 2)) | {"threshold": threshold}
-    return found if low < 1 else found | {"roughness": None}
+    crossing = with_flip(round(steps[1] * STEP, 2)) | {"threshold": threshold}
+    return crossing if low < 1 else crossing | {"roughness": None}
 
 
 def in_order(rows: Sequence[Row]) -> list[Row]:

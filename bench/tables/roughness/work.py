@@ -32,7 +32,7 @@ def _steps(options: RoughnessOptions, _: RoughnessOutputs) -> list[Step]:
     device = require_device()
     seen = _seen(options)
     # The frames of a code and those of exact normals are held at once.
-    size, _samples = checked_target(options.size, 1, 2 * max(one.frames for one in seen), device)
+    size, _samples = checked_target(options.size, 1, 2 * max(accumulation.frames for accumulation in seen), device)
     thresholds = tuple(checked_numbers("--threshold", options.threshold, float, 0.001, 1.0))
     objects = tuple(choose("object", options.object, {name: name for name in OBJECTS}))
     around = _environments(options.environment)
@@ -40,8 +40,8 @@ def _steps(options: RoughnessOptions, _: RoughnessOutputs) -> list[Step]:
     metals = [name for name in objects if OBJECTS[name].is_metal]
     pairs = [(name, environment) for environment in around for name in metals]
     pairs += [(name, None) for name in objects if name not in metals]
-    made = [RoughnessCase(tuple(codecs), *pair, thresholds, size, seen) for pair in pairs]
-    return [Step(_key(case), case, case.name) for case in made]
+    cases = [RoughnessCase(tuple(codecs), *pair, thresholds, size, seen) for pair in pairs]
+    return [Step(_key(case), case, case.name) for case in cases]
 
 
 def _seen(options: RoughnessOptions) -> tuple[Accumulation, ...]:
@@ -54,18 +54,18 @@ def _seen(options: RoughnessOptions) -> tuple[Accumulation, ...]:
 
 def _environments(words: Names) -> tuple[Environment, ...]:
     """Raises UsageError for an unknown one, and for two of one name."""
-    found = tuple(environment_named(str(word)) for word in words)
-    names = [one.name for one in found]
-    if not found:
+    environments = tuple(environment_named(str(word)) for word in words)
+    names = [environment.name for environment in environments]
+    if not environments:
         raise UsageError("--environment: name at least one, such as studio")
     if twice := next((name for name in names if names.count(name) > 1), None):
         raise UsageError(f"--environment: {twice} is named twice")
-    return found
+    return environments
 
 
 def _key(case: RoughnessCase) -> Row:
     key: Row = {"codecs": [codec.name for codec in case.codecs], "object": case.object, "size": list(case.size)}
-    key |= {"seen": [[one.dither, one.frames] for one in case.seen]}
+    key |= {"seen": [[accumulation.dither, accumulation.frames] for accumulation in case.seen]}
     radiance = key_of(case.environment.radiance) if case.environment else None
     return key | {"environment": radiance, "thresholds": list(case.thresholds)}
 
@@ -84,9 +84,9 @@ def _said(rows: Sequence[Row]) -> tuple[str, ...]:
 
 
 def _verdict(rows: Sequence[Row]) -> Iterator[str]:
-    found = list(answers(rows))
+    crossings = list(answers(rows))
     for threshold, word in {0.1: "acceptable", 0.05: "invisible"}.items():
-        part = [row for row in found if row["threshold"] == threshold]
+        part = [row for row in crossings if row["threshold"] == threshold]
         for encoding in dict.fromkeys(row["encoding"] for row in part):
             where = ", ".join(_from(row) for row in part if row["encoding"] == encoding)
             yield f"{encoding}: banding is {word} (FLIP {threshold:g}) from roughness: {where}."
@@ -105,9 +105,9 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     for row in answers(rows):
         about = {name: row[name] for name in (*_said(rows), "bits")}
         line = lines.setdefault(tuple(about.values()), about)
-        at = f"{row['threshold']:g}"
-        line[f"from, at {at}"] = "none" if row["roughness"] is None else f"{row['roughness']:.2f}"
-        line[f"decided by, at {at}"] = f"{row['object']} in {row['environment']}"
+        threshold = f"{row['threshold']:g}"
+        line[f"from, at {threshold}"] = "none" if row["roughness"] is None else f"{row['roughness']:.2f}"
+        line[f"decided by, at {threshold}"] = f"{row['object']} in {row['environment']}"
     if lines:
         yield Sheet("the least roughness from which on each code carries reflections", list(lines.values()))
 

@@ -27,8 +27,8 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
     if len(counts) > 1:
         yield frames_chart(known)
     usable = [row for row in known if passes_of(row)]
-    for at, objects in enumerate(dict.fromkeys(row.get("objects") for row in usable)):
-        yield passes_chart(at, objects, [row for row in usable if row.get("objects") == objects])
+    for index, objects in enumerate(dict.fromkeys(row.get("objects") for row in usable)):
+        yield passes_chart(index, objects, [row for row in usable if row.get("objects") == objects])
 
 
 def passes_chart(at: int, objects: object, rows: Sequence[Row]) -> Chart:
@@ -73,8 +73,8 @@ def _pass_rows(row: Row, line: str) -> list[Row]:
     passes = passes_of(row)
     ends = [0.0, *accumulate(passes.values())]
     return [
-        {"pipeline": line, "pass": name, "ms": passes[name], "x": ends[at], "x2": ends[at + 1]}
-        for at, name in enumerate(passes)
+        {"pipeline": line, "pass": name, "ms": passes[name], "x": ends[i], "x2": ends[i + 1]}
+        for i, name in enumerate(passes)
     ]
 
 
@@ -139,5 +139,5 @@ def _line_name(row: Row, rows: Sequence[Row], more: Sequence[str]) -> str:
     """A pipeline's name, and what tells its rows apart."""
     same = [other for other in rows if other["pipeline"] == row["pipeline"]]
     varied = [name for name in more if len({str(other.get(name)) for other in same}) > 1]
-    said = (_shadow_text(row) if name == "shadow" else str(row.get(name)) for name in varied)
-    return " ".join([str(row["pipeline"]), *said])
+    texts = (_shadow_text(row) if name == "shadow" else str(row.get(name)) for name in varied)
+    return " ".join([str(row["pipeline"]), *texts])

@@ -44,9 +44,9 @@ def measure(device: Device, point: Point) -> Row:
     """One row: milliseconds and triangles of each pass."""
     row = TABLE.empty(STAGES) | point.key(device)
     scene = SCENES["objects"].make(point.setting)
-    with rendering(device, point.pipeline, scene, point.plan) as made:
-        timings, clock = made.timings(point.repeats)
-        triangles = made.triangles()
+    with rendering(device, point.pipeline, scene, point.plan) as rendered:
+        timings, clock = rendered.timings(point.repeats)
+        triangles = rendered.triangles()
     row |= time_columns(timings, clock) | {f"ms_{name}_spread": timing.spread for name, timing in timings.items()}
     row["ms_frame_each"] = " ".join(f"{sample:.4f}" for sample in timings["frame"].samples)
     row |= {f"triangles_{name}": count for name, count in triangles.items()}

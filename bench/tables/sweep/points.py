@@ -36,7 +36,7 @@ def points(options: SweepOptions, device: Device) -> list[Point]:
     pipelines = choose("pipeline", options.pipeline, PIPELINES)
     # Read once: a layout's own encoder is looked at, which takes seconds.
     asked = None if options.layout is None else layouts_named(options.layout)
-    made: list[Point] = []
+    all_points: list[Point] = []
     complaints: list[str] = []
     for shadows in choose("shadow", options.shadow, SHADOWS):
         for count in checked_numbers("--objects", options.objects, int, 1, MAX_OBJECTS):
@@ -49,5 +49,5 @@ def points(options: SweepOptions, device: Device) -> list[Point]:
                     for targets in choose("number of light targets", options.light_targets, TARGETS)
                 ]
                 for plan in suited(device, pipeline, plans, complaints):
-                    made.append(Point(pipeline, plan, setting, options.repeats, options.samples))
-    return what_is_left(made, complaints)
+                    all_points.append(Point(pipeline, plan, setting, options.repeats, options.samples))
+    return what_is_left(all_points, complaints)

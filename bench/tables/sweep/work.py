@@ -15,8 +15,8 @@ from .table import TABLE, SweepOptions, SweepOutputs
 
 def _steps(options: SweepOptions, _: SweepOutputs) -> list[Step]:
     device = checked_device(options.repeats, 1)
-    made = points(options, device)
-    return [Step(point.key(device), (device, point), point.name) for point in made]
+    all_points = points(options, device)
+    return [Step(point.key(device), (device, point), point.name) for point in all_points]
 
 
 def _measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:

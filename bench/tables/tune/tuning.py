@@ -81,8 +81,8 @@ class Measure:
         return (jnp.max if self._goal == "max" else jnp.mean)(errors[self._goal])
 
     def __call__(self, values: Mapping[str, float]) -> float:
-        found = float(self._call({name: jnp.float32(value) for name, value in values.items()}, *self._planes))
-        return found if math.isfinite(found) else math.inf
+        error = float(self._call({name: jnp.float32(value) for name, value in values.items()}, *self._planes))
+        return error if math.isfinite(error) else math.inf
 
 
 def search(codec: Codec, normals: Normals, goal: str) -> Values:

@@ -71,14 +71,14 @@ class Tuning:
         """Fit to one half, and measure both codecs on the other."""
         chosen, halves, goal = self.chosen, self.halves, self.options.error
         self.scales = fitted_table(chosen.codec, halves.fitting, goal) if chosen.has_table else None
-        found = fitted(chosen.codec, halves.fitting, goal, chosen.names)
-        codec = tuned_codec(chosen.codec, found, self.scales, self.table)
+        parameters = fitted(chosen.codec, halves.fitting, goal, chosen.names)
+        codec = tuned_codec(chosen.codec, parameters, self.scales, self.table)
         before, after = (Side(c, _measured(c, halves)) for c in (chosen.codec, codec))
         self.sides = before, after
         about = {"normals": halves.held_out.name, "error": goal, "seed": self.options.seed}
         about |= {"code_space": halves.held_out.code_space}
         about |= {"fitted_to": len(halves.fitting), "held_out": halves.held_out.count}
-        return list(rows(before, after, chosen, found, about))
+        return list(rows(before, after, chosen, parameters, about))
 
 
 def _steps(options: TuneOptions, outputs: TuneOutputs) -> list[Step]:
@@ -137,12 +137,12 @@ def _has_table(codec: Codec) -> bool:
 def _one(what: str, named: Callable[[Names], list[Any]], words: Names) -> Any:
     """Return the one that words name. Raises UsageError; what it lists of the known ones is what can be tuned."""
     try:
-        found = named(words)
+        choices = named(words)
     except UsageError as error:
         raise UsageError(str(error).replace("known: all, ", "known: ")) from None
-    if len(found) != 1:
-        raise UsageError(f"one {what} at a time is tuned, not {len(found)}")
-    return found[0]
+    if len(choices) != 1:
+        raise UsageError(f"one {what} at a time is tuned, not {len(choices)}")
+    return choices[0]
 
 
 def _halves(chosen: Chosen, options: TuneOptions) -> Halves:
@@ -151,9 +151,9 @@ def _halves(chosen: Chosen, options: TuneOptions) -> Halves:
     count = checked_count(options.count)
 
     def named(words: Names) -> list[NormalSet]:
-        found = normal_sets_named(words, count, options.seed, options.reading, needs_rays)
-        check_rays(found, needs_rays)
-        return found
+        normal_sets = normal_sets_named(words, count, options.seed, options.reading, needs_rays)
+        check_rays(normal_sets, needs_rays)
+        return normal_sets
 
     return halves_of(_one("normal set", named, options.normals), options.seed, by_tiles=chosen.has_table)
 
@@ -214,15 +214,15 @@ def _gain(figure: str, published: float, tuned: float) -> Row:
 def _say_use(before: Side, after: Side, figure: str, table: Path | None, normals: Names) -> None:
     gain = _gain(figure, *(side.row[figure] for side in (before, after)))
     if gain["gain"] <= NOTHING_DB:
-        said = (
+        advice = (
             f"nothing is gained on the held-out half ({gain['gain']:.2g} {gain['unit']}): stay with what is published"
         )
     elif after.codec.encoding.look_up and not table and after.codec.encoding.tables != before.codec.encoding.tables:
-        said = "keep the look-up with --table FILE.npy to measure it elsewhere"
+        advice = "keep the look-up with --table FILE.npy to measure it elsewhere"
     else:
         names = ["--encoding", after.codec.encoding.name, "--storage", after.codec.storage.name]
-        said = f"elsewhere: normalbench quality {command_line([*names, '--normals', text_of(normals)])}"
-    tell(f"{said}")
+        advice = f"elsewhere: normalbench quality {command_line([*names, '--normals', text_of(normals)])}"
+    tell(f"{advice}")
 
 
 def _summary(found: Sequence[Row]) -> Iterator[Sheet]:

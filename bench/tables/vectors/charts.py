@@ -81,10 +81,10 @@ def vector_lines(rows: Sequence[Row]) -> dict[str, list[Row]]:
 def _finding_sentence(rows: Sequence[Row]) -> str:
     """Which code of each number of bits loses the least at the least speed."""
     least = min(row["speed"] for row in rows)
-    said = []
+    phrases = []
     for bits in sorted({row["bits"] for row in rows}):
         part = [row for row in rows if (row["bits"], row["speed"]) == (bits, least)]
         if part:
             best = min(part, key=lambda row: row["error_mean_px"])
-            said.append(f"{CodecKey.of(best).label} of {bits} bits ({best['error_mean_px']:.2g})")
-    return f"At {least:g} pixels a frame these lose least, in pixels: {', '.join(said)}"
+            phrases.append(f"{CodecKey.of(best).label} of {bits} bits ({best['error_mean_px']:.2g})")
+    return f"At {least:g} pixels a frame these lose least, in pixels: {', '.join(phrases)}"

@@ -109,10 +109,10 @@ def measure(case: MotionVectorCase) -> list[Row]:
             rest = still(np.zeros((1, NUMBERS), np.float32))
             both = {"still_px": _length_px(rest, case.paths.size), "least_px": _least_speed_px(still, rest, case)}
             trip = _noisy_trip(stack, case) if case.codec.is_dithered else exact
-            found = [_figures(case, speed, trip, rest) for speed in case.speeds]
+            all_figures = [_figures(case, speed, trip, rest) for speed in case.speeds]
     except UNMEASURABLE as error:
         return [row | {"skipped": str(error)} for row in rows]
-    return [row | both | figures | how for row, figures in zip(rows, found, strict=True)]
+    return [row | both | figures | how for row, figures in zip(rows, all_figures, strict=True)]
 
 
 def _noisy_trip(stack: ExitStack, case: MotionVectorCase) -> Trip:
@@ -159,11 +159,11 @@ def _figures(case: MotionVectorCase, speed: float, trip: Trip, rest: np.ndarray)
     """
     total, largest, lost, clipped, square = 0.0, 0.0, 0, 0, 0.0
     for motions in case.paths.chunks(speed):
-        found = _through(trip, motions)
-        apart = (found.astype(np.float64) - motions) * case.paths.size
+        decoded = _through(trip, motions)
+        apart = (decoded.astype(np.float64) - motions) * case.paths.size
         errors = np.hypot(apart[..., 0], apart[..., 1])
         total, largest = total + errors.sum(), max(largest, errors.max())
-        lost += np.count_nonzero((found == rest[0]).all(axis=-1))
+        lost += np.count_nonzero((decoded == rest[0]).all(axis=-1))
         clipped += np.count_nonzero((abs(motions) > np.float32(case.largest)).any(axis=-1))
         square += (apart.sum(axis=0) ** 2).sum()
     count = FRAMES * case.paths.count

@@ -56,5 +56,5 @@ def decode_rg11(blocks: np.ndarray, is_signed: bool = False) -> np.ndarray:
     Returns:
         float32 of shape (count, 16, 2): in [0, 1], or in [-1, 1] where it is signed.
     """
-    halves = (eac_r11(blocks[:, at : at + 8], is_signed) for at in (0, 8))
+    halves = (eac_r11(blocks[:, start : start + 8], is_signed) for start in (0, 8))
     return np.stack([half / (SIGNED_ONE if is_signed else ONE) for half in halves], axis=2).astype(np.float32)

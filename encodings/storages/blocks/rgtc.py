@@ -52,6 +52,6 @@ def decode_bc5(blocks: np.ndarray, is_signed: bool = False) -> np.ndarray:
     Returns:
         red and green, float32 of shape (count, 16, 2): in [0, 1], or in [-1, 1] where it is signed.
     """
-    one = PARTS * (SIGNED_ONE if is_signed else ONE)
-    halves = (bc4_parts(np.ascontiguousarray(blocks[:, at : at + 8]), is_signed) for at in (0, 8))
-    return np.stack([parts / one for parts in halves], axis=2).astype(np.float32)
+    scale = PARTS * (SIGNED_ONE if is_signed else ONE)
+    halves = (bc4_parts(np.ascontiguousarray(blocks[:, start : start + 8]), is_signed) for start in (0, 8))
+    return np.stack([parts / scale for parts in halves], axis=2).astype(np.float32)

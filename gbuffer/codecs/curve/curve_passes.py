@@ -61,8 +61,8 @@ class CurvePasses(Passes):
         Raises:
             FormatError: the device cannot render to the storage's format.
         """
-        (found,) = self._through([STORAGES["rgba32f"]], quantities=quantities)
-        return found[..., 0]
+        (decoded,) = self._through([STORAGES["rgba32f"]], quantities=quantities)
+        return decoded[..., 0]
 
 
 def exact_curves(device: Device, encoding: CurveEncoding, largest: float, given: np.ndarray) -> np.ndarray:
@@ -76,5 +76,5 @@ def exact_curves(device: Device, encoding: CurveEncoding, largest: float, given:
         the quantities' numbers and the numbers' quantities, likewise.
     """
     names = {"CURVE_ENCODING": encoding.glsl}
-    (found,) = exact(device, "curve_parity.comp", _curve_defines(encoding), names, [given], 1, range=largest)
-    return found
+    (output,) = exact(device, "curve_parity.comp", _curve_defines(encoding), names, [given], 1, range=largest)
+    return output

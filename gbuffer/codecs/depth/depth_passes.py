@@ -187,4 +187,4 @@ def exact_values(device: Device, encoding: DepthEncoding, camera: Camera, points
     defines, names = depth_defines(encoding), {"DEPTH_ENCODING": encoding.glsl}
     seen = _camera_uniforms(camera, encoding)
     values, *positions = exact(device, "depth_parity.comp", defines, names, [points], 4, **seen)
-    return values[:, :2], *(found[:, :3] for found in positions)
+    return values[:, :2], *(position[:, :3] for position in positions)

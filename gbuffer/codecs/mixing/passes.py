@@ -116,22 +116,24 @@ class MixPasses:
     def _pass_array(self, shader: str) -> VertexArray:
         """The pass of a fragment shader, which is compiled once."""
         if shader not in self._passes:
-            made = self._device.fragment_pass(shader, self._defines, self._names)
-            self._passes[shader] = self._device.owned(self._stack, made)
+            vertex_array = self._device.fragment_pass(shader, self._defines, self._names)
+            self._passes[shader] = self._device.owned(self._stack, vertex_array)
         return self._passes[shader]
 
     def _targets(self, size: tuple[int, int], depths: str, texels: str, samples: int = 1) -> Textures:
         """Targets of a code, by what shaders call them."""
         device = self._device
-        made = {depths if name else texels: device.target(size, form, samples) for name, form in self._formats.items()}
-        return {name: device.owned(self._stack, texture) for name, texture in made.items()}
+        targets = {
+            depths if name else texels: device.target(size, form, samples) for name, form in self._formats.items()
+        }
+        return {name: device.owned(self._stack, texture) for name, texture in targets.items()}
 
     def _encoded_textures(self, normals: np.ndarray, views: np.ndarray) -> Textures:
         height, width, _ = normals.shape
-        made = self._targets((width, height), "signed_depths", "texels")
+        targets = self._targets((width, height), "signed_depths", "texels")
         with self._given_textures(normals=normals, views=views) as given:
-            self._device.render(self._pass_array("encode.frag"), list(made.values()), **given, **self._tables)
-        return made
+            self._device.render(self._pass_array("encode.frag"), list(targets.values()), **given, **self._tables)
+        return targets
 
     @contextmanager
     def _given_textures(self, **arrays: np.ndarray) -> Iterator[Textures]:
@@ -144,9 +146,9 @@ class MixPasses:
         device, passed = self._device, self._pass_array(shader)
         set_uniforms(passed.program, {"level": 0, **uniforms})
         with ExitStack() as stack:
-            made = [device.owned(stack, device.target(size, STORAGES["rgba32f"])) for _ in range(2)]
-            device.render(passed, made, **{**self._views, **given}, **self._tables)
-            normals, numbers = (read_pixels(texture) for texture in made)
+            targets = [device.owned(stack, device.target(size, STORAGES["rgba32f"])) for _ in range(2)]
+            device.render(passed, targets, **{**self._views, **given}, **self._tables)
+            normals, numbers = (read_pixels(texture) for texture in targets)
         return Decoded(normals[..., :3], numbers)
 
     def texels(self) -> Decoded:
@@ -173,12 +175,12 @@ class MixPasses:
 
     def _sampled(self) -> Textures:
         """The samples of each pixel, as textures by what shaders call them."""
-        made = self._targets(self._size, "signed_samples", "samples", self.samples)
+        textures = self._targets(self._size, "signed_samples", "samples", self.samples)
         counts = self.meetings.counts[..., None].astype(np.float32)
         with self._given_textures(normals=self.meetings.firsts, others=self.meetings.seconds, counts=counts) as given:
-            targets, passed = list(made.values()), self._pass_array("mix_samples.frag")
+            targets, passed = list(textures.values()), self._pass_array("mix_samples.frag")
             self._device.render(passed, targets, **given, **self._views, **self._tables)
-        return made
+        return textures
 
     def resolved(self) -> Decoded:
         """The first two normals of each patch in the samples of a pixel, whose codes the device averages."""
@@ -212,12 +214,12 @@ class MixPasses:
         pair = (self.meetings.firsts, self.meetings.seconds)
         base, over = (self._encoded_textures(normals, self.meetings.views) for normals in pair)
         over = {name.replace("texels", "decals").replace("depths", "decals"): t for name, t in over.items()}
-        made = self._targets(self._size, "signed_depths", "texels")
+        targets = self._targets(self._size, "signed_depths", "texels")
         alphas = np.repeat(self.meetings.alphas[:, None, None], self._size[0], 1).astype(np.float32)
         with self._given_textures(alphas=alphas) as given:
             textures = {**base, **over, **given, **self._views, **self._tables}
-            self._device.render(self._pass_array("mix_blend.frag"), list(made.values()), **textures)
-        return self._decoded_pass("mix_texel.frag", self._size, made, stride=1)
+            self._device.render(self._pass_array("mix_blend.frag"), list(targets.values()), **textures)
+        return self._decoded_pass("mix_texel.frag", self._size, targets, stride=1)
 
     def upsampled(self) -> Decoded:
         """The first four texels of each patch by the discontinuity-sensitive filter; no numbers."""

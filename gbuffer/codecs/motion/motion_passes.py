@@ -61,8 +61,8 @@ class MotionPasses(Passes):
         """
         for program in (self._encode.program, self._decode.program):
             set_uniforms(program, {"range": largest})
-        (found,) = self._through([STORAGES["rgba32f"]], motions=motions)
-        return found[..., :2]
+        (decoded,) = self._through([STORAGES["rgba32f"]], motions=motions)
+        return decoded[..., :2]
 
 
 def exact_motions(device: Device, encoding: MotionEncoding, largest: float, given: np.ndarray) -> np.ndarray:
@@ -75,5 +75,5 @@ def exact_motions(device: Device, encoding: MotionEncoding, largest: float, give
         the motion's code and the code's motion, likewise.
     """
     defines, names = motion_defines(encoding, True), {"MOTION_ENCODING": encoding.glsl}
-    (found,) = exact(device, "motion_parity.comp", defines, names, [given], 1, range=largest)
-    return found
+    (output,) = exact(device, "motion_parity.comp", defines, names, [given], 1, range=largest)
+    return output

@@ -60,5 +60,5 @@ def tried(
     arrays = [given, np.concatenate([more[:, :3], np.full((len(given), 1), codes is not None)], axis=1)]
     arrays.append(np.zeros_like(given) if codes is None else codes)
     named = {"OWN_CODE": glsl}
-    made, *back, encoded, decoded = exact(device, "own_trial.comp", defines, named, arrays, 6, asked_turns=FEW)
-    return Tried(made, back[:results], encoded[:, 0] != 1, decoded[:, 0] != 1)
+    encoder_codes, *back, encoded, decoded = exact(device, "own_trial.comp", defines, named, arrays, 6, asked_turns=FEW)
+    return Tried(encoder_codes, back[:results], encoded[:, 0] != 1, decoded[:, 0] != 1)

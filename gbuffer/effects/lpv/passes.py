@@ -77,8 +77,12 @@ class Injection:
         number, all_of_them = self._volumes.texels, range(self._volumes.cascades)
         for index, light in enumerate(self._canvas.frame.scene_buffers.lights):
             if light.kind == "sun":
-                for at, cascade in enumerate(self._lattice.cascades):
-                    yield index, sun_sight(light, cascade, self._lattice.box, number), range(at, at + 1)
+                for cascade_index, cascade in enumerate(self._lattice.cascades):
+                    yield (
+                        index,
+                        sun_sight(light, cascade, self._lattice.box, number),
+                        range(cascade_index, cascade_index + 1),
+                    )
             elif light.kind == "spot":
                 yield index, spot_sight(light), all_of_them
 
@@ -147,11 +151,11 @@ class Propagation:
 
     def _draw(self, covers) -> None:
         self._canvas.device.state(None)
-        for at in range(self._slices):
-            self._target.use(at=at)
-            if at == 0:
+        for slice_index in range(self._slices):
+            self._target.use(at=slice_index)
+            if slice_index == 0:
                 self._canvas.prepare(covers.program)
-            covers.program["slice"] = at
+            covers.program["slice"] = slice_index
             covers.render(vertices=3)
 
 

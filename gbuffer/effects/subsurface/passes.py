@@ -156,16 +156,16 @@ def separable(scatter: Scatter) -> tuple[Pass, ...]:
 
 def gaussians(scatter: Scatter, pairs: int) -> tuple[Pass, ...]:
     """Rows and columns for each Gaussian, each from the one before, and their sum in the last pass."""
-    sum_of, levels, made = GAUSSIANS[pairs], SKIN_GAUSSIANS[: pairs - 1], []
+    sum_of, levels, passes = GAUSSIANS[pairs], SKIN_GAUSSIANS[: pairs - 1], []
     begun = (SKIN_LIGHT, *levels)
     for number, (variance, light) in enumerate(zip(sum_of.increments.tolist(), begun, strict=True), 1):
         kernel = gaussian_kernel(variance, scatter.samples)
         if number < pairs:
-            made += _pair(f"_{number}", scatter, kernel, light, levels[number - 1])
+            passes += _pair(f"_{number}", scatter, kernel, light, levels[number - 1])
         else:
             shares = {"GAUSSIANS": pairs, "SHARES": listed(sum_of.weights)}
-            made += _pair(f"_{number}", scatter, kernel, light, SCATTERED, begun, shares)
-    return tuple(made)
+            passes += _pair(f"_{number}", scatter, kernel, light, SCATTERED, begun, shares)
+    return tuple(passes)
 
 
 def burley(scatter: Scatter, seed: int) -> tuple[Pass, ...]:

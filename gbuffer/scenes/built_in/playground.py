@@ -47,10 +47,10 @@ def meshes() -> list[Mesh]:
     ball = sphere(1.0, slices=32, stacks=32)
     slab = box(10.0, 0.1, 10.0)
     return [
-        *(pot.placed(np.eye(3), at) for at in TEAPOTS),
-        *(ball.placed(np.eye(3) * size, at) for at, size in SPHERES),
-        *(slab.placed(3.0 * rotation(0.0, pitch, 0.0), at) for at, pitch in BOXES),
-        *(lamp_arm().placed(rotation(*turn), at) for at, turn in ARMS),
+        *(pot.placed(np.eye(3), position) for position in TEAPOTS),
+        *(ball.placed(np.eye(3) * size, position) for position, size in SPHERES),
+        *(slab.placed(3.0 * rotation(0.0, pitch, 0.0), position) for position, pitch in BOXES),
+        *(lamp_arm().placed(rotation(*turn), position) for position, turn in ARMS),
     ]
 
 

@@ -94,7 +94,7 @@ def _rough_metal(roughness: np.ndarray, metalness: np.ndarray | None = None) -> 
 def _hues() -> np.ndarray:
     """All hues along u, from black to white along v; uint16 of shape (SIZE, SIZE, 4)."""
     hue, value = _ramp(0.0, 6.0), _ramp(0.0, 1.0).T
-    pure = np.stack([np.clip(np.abs((hue - at) % 6 - 3) - 1, 0, 1) for at in (0.0, 2.0, 4.0)], axis=-1)
+    pure = np.stack([np.clip(np.abs((hue - phase) % 6 - 3) - 1, 0, 1) for phase in (0.0, 2.0, 4.0)], axis=-1)
     # Dark to the hue, and on to white.
     mixed = pure * np.minimum(2 * value, 1)[..., None]
     mixed += (1 - mixed) * np.maximum(2 * value - 1, 0)[..., None]

@@ -56,12 +56,12 @@ def read_gltf(path: Path) -> MeshFile:
             mesh = gltf.entry("meshes", index, "a node")
             if index not in meshes:
                 meshes[index] = list(_primitives(gltf, mesh, f"meshes[{index}]", materials, notes))
-            pieces += [Piece(made, model, material) for made, material in meshes[index]]
+            pieces += [Piece(part, model, material) for part, material in meshes[index]]
     view = next((v for node, model in nodes if (v := _camera(gltf, node, model, notes))), None)
     kept = checked_pieces(path, pieces, notes)
     lights = lights_of(gltf, nodes, kept, notes)
-    said = tuple(dict.fromkeys([*notes, *read.notes]))
-    return MeshFile(path, kept, materials, two_sided, view, said, lights)
+    unique_notes = tuple(dict.fromkeys([*notes, *read.notes]))
+    return MeshFile(path, kept, materials, two_sided, view, unique_notes, lights)
 
 
 def gltf_meshes(path: Path) -> list[Stored]:
@@ -216,28 +216,28 @@ def _primitive(gltf: Gltf, primitive: Object, mode: int, material: MetalRough, w
     if len(stored.corners) > MAX_TRIANGLES:
         many = f"has {len(stored.corners)} triangles; the most is {MAX_TRIANGLES}"
         raise gltf.error(where, many, "export fewer objects")
-    made, said = mesh_of(gltf.path, stored)
-    notes += said
+    mesh, mesh_notes = mesh_of(gltf.path, stored)
+    notes += mesh_notes
     notes += _lacking_uv(material, stored.uv, stored.second_uv)
     normal_map = material.normal_map
-    return made if normal_map is None or made.authored is not None else laid_by(made, placed_uv(made, normal_map))
+    return mesh if normal_map is None or mesh.authored is not None else laid_by(mesh, placed_uv(mesh, normal_map))
 
 
 def _lacking_uv(material: MetalRough, *sets: np.ndarray | None) -> list[str]:
     """What is said of the sets of uv that a material's maps lie by and a mesh has not."""
     lacking = {m.uv_set for m in material.maps if m is not None and sets[m.uv_set] is None}
-    said = ("their textures are looked up at one point", "TEXCOORD_0 stands in")
-    return [f"there are meshes without TEXCOORD_{one}: {said[one]}" for one in sorted(lacking)]
+    remarks = ("their textures are looked up at one point", "TEXCOORD_0 stands in")
+    return [f"there are meshes without TEXCOORD_{uv_set}: {remarks[uv_set]}" for uv_set in sorted(lacking)]
 
 
 def _stored(gltf: Gltf, primitive: Object, mode: int, where: str) -> Stored:
     """What a primitive says; its points, where it has no triangles."""
-    corners, found = _stored_numbers(gltf, primitive, mode, where)
-    normals, uv, second = (found.get(name) for name in ("NORMAL", "TEXCOORD_0", "TEXCOORD_1"))
+    corners, arrays = _stored_numbers(gltf, primitive, mode, where)
+    normals, uv, second = (arrays.get(name) for name in ("NORMAL", "TEXCOORD_0", "TEXCOORD_1"))
     # Tangents without normals say nothing (glTF 2.0, 3.7.2.1).
-    tangents = found["TANGENT"] * ALONG_V if normals is not None and "TANGENT" in found else None
+    tangents = arrays["TANGENT"] * ALONG_V if normals is not None and "TANGENT" in arrays else None
     roundings = () if normals is None else _roundings(gltf, primitive["attributes"]["NORMAL"], where)
-    return Stored(where, found["POSITION"], corners, normals, uv, tangents, second, roundings)
+    return Stored(where, arrays["POSITION"], corners, normals, uv, tangents, second, roundings)
 
 
 def _roundings(gltf: Gltf, index: object, where: str) -> tuple[Rounding, ...]:
@@ -258,19 +258,19 @@ def _stored_numbers(gltf: Gltf, primitive: Object, mode: int, where: str) -> tup
     packed_triangles, packed = None, {}
     if extension and (gltf.requires(DRACO) or "bufferView" not in position):
         packed_triangles, packed = draco_primitive(gltf, primitive, where)
-    found = {}
+    arrays = {}
     for name, width in {"POSITION": 3, **ATTRIBUTES}.items():
         if name in packed and name in attributes:
-            found[name] = _unpacked(gltf, attributes[name], packed[name], width, f"{where}.{name}")
+            arrays[name] = _unpacked(gltf, attributes[name], packed[name], width, f"{where}.{name}")
         elif name in attributes:
-            found[name] = gltf.accessor(attributes[name], width, f"{where}.{name}")
-        if len(found.get(name, found["POSITION"])) != len(found["POSITION"]):
-            raise gltf.error(f"{where}.{name}", f"are {len(found[name])} for {len(found['POSITION'])} positions")
-    count = len(found["POSITION"])
+            arrays[name] = gltf.accessor(attributes[name], width, f"{where}.{name}")
+        if len(arrays.get(name, arrays["POSITION"])) != len(arrays["POSITION"]):
+            raise gltf.error(f"{where}.{name}", f"are {len(arrays[name])} for {len(arrays['POSITION'])} positions")
+    count = len(arrays["POSITION"])
     if packed_triangles is not None:
-        return checked_indices(gltf.path, packed_triangles, count, f"{where}.{DRACO}"), found
+        return checked_indices(gltf.path, packed_triangles, count, f"{where}.{DRACO}"), arrays
     corners = gltf.indices(primitive["indices"], f"{where}.indices") if "indices" in primitive else np.arange(count)
-    return _triangles(checked_indices(gltf.path, corners, count, f"{where}.indices"), mode), found
+    return _triangles(checked_indices(gltf.path, corners, count, f"{where}.indices"), mode), arrays
 
 
 def _unpacked(gltf: Gltf, index: object, stored: np.ndarray, width: int, place: str) -> np.ndarray:

@@ -83,13 +83,13 @@ class Gltf:
         if version != 2 or not 20 <= length <= len(data):
             raise self.error("its header", f"says version {version}, {length} bytes; the file has {len(data)}")
         chunks: dict[int, bytes] = {}
-        at = 12
-        while at + 8 <= length:
-            size, kind = struct.unpack_from("<II", data, at)
-            if at + 8 + size > length:
-                raise self.error(f"the chunk at byte {at}", "is cut off")
-            chunks.setdefault(kind, data[at + 8 : at + 8 + size])
-            at += 8 + size + -size % 4
+        offset = 12
+        while offset + 8 <= length:
+            size, kind = struct.unpack_from("<II", data, offset)
+            if offset + 8 + size > length:
+                raise self.error(f"the chunk at byte {offset}", "is cut off")
+            chunks.setdefault(kind, data[offset + 8 : offset + 8 + size])
+            offset += 8 + size + -size % 4
         self._binary = chunks.get(GLB_BINARY)
         if GLB_JSON not in chunks:
             raise self.error("the file", "has no JSON chunk")
@@ -108,10 +108,10 @@ class Gltf:
 
     def list_of(self, holder: Object, key: str, place: str) -> list[Any]:
         """A list that may be missing."""
-        found = holder.get(key, [])
-        if not isinstance(found, list):
+        entries = holder.get(key, [])
+        if not isinstance(entries, list):
             raise self.error(f"{place}.{key}", "is no list")
-        return found
+        return entries
 
     def entry(self, kind: str, index: object, place: str) -> Object:
         """An object of one of the document's lists. Raises SceneFileError where there is none of that index."""
@@ -124,10 +124,10 @@ class Gltf:
 
     def child(self, holder: Object, key: str, place: str) -> Object:
         """An object within another, empty where it is missing."""
-        found = holder.get(key, {})
-        if not isinstance(found, dict):
+        child = holder.get(key, {})
+        if not isinstance(child, dict):
             raise self.error(f"{place}.{key}", "is not an object")
-        return found
+        return child
 
     def extension(self, holder: Object, name: str, place: str) -> Object:
         """An extension of an object, empty where it has none of that name."""
@@ -185,12 +185,12 @@ class Gltf:
             raise self.error(place, f"are {count}; the most is {MAX_COUNT}", "export fewer objects")
         if "bufferView" in accessor:
             start = self.whole(accessor, "byteOffset", place, 0)
-            found = self._view_elements(accessor["bufferView"], start, kind, count, width, place)
+            elements = self._view_elements(accessor["bufferView"], start, kind, count, width, place)
         else:
-            found = np.zeros((count, width), kind)
+            elements = np.zeros((count, width), kind)
         if "sparse" in accessor:
-            found = self._sparse_elements(self.child(accessor, "sparse", place), found, place)
-        return meant_numbers(found, accessor.get("normalized") is True)
+            elements = self._sparse_elements(self.child(accessor, "sparse", place), elements, place)
+        return meant_numbers(elements, accessor.get("normalized") is True)
 
     def _sparse_elements(self, sparse: Object, found: np.ndarray, place: str) -> np.ndarray:
         """Some of an accessor's elements replaced."""
@@ -273,20 +273,20 @@ class Gltf:
     @cached_property
     def notes(self) -> list[str]:
         """What the file has that is not drawn."""
-        found = []
+        notes = []
         meshes = _dicts(self.json.get("meshes"))
         primitives = [primitive for mesh in meshes for primitive in _dicts(mesh.get("primitives"))]
         if self.json.get("skins"):
-            found.append("skins are not applied: meshes stand as they were bound")
+            notes.append("skins are not applied: meshes stand as they were bound")
         if any("targets" in p for p in primitives):
-            found.append("morph targets are not applied")
+            notes.append("morph targets are not applied")
         if any("COLOR_0" in _dict(p.get("attributes")) for p in primitives):
-            found.append("vertex colours are not read")
+            notes.append("vertex colours are not read")
         named = {*self._names("extensionsUsed"), *self._names("extensionsRequired")}
-        found += [
+        notes += [
             f"{name} is not drawn" for name in sorted(named) if name.startswith("KHR_materials_") and name not in DRAWN
         ]
-        return found
+        return notes
 
     def _names(self, key: str) -> list[str]:
         return [name for name in self.list_of(self.json, key, "the file") if isinstance(name, str)]
@@ -304,10 +304,10 @@ def meant_numbers(stored: np.ndarray, is_normalised: bool) -> np.ndarray:
     """Whole numbers that stand for [0, 1] or [-1, 1] as such; others as they are; float64."""
     # A NaN of the signalling kind is one all the same, and is found where numbers are checked.
     with np.errstate(invalid="ignore"):
-        found = stored.astype(np.float64)
+        numbers = stored.astype(np.float64)
     if not is_normalised or stored.dtype.kind == "f":
-        return found
-    return np.maximum(found / np.iinfo(stored.dtype).max, -1.0)
+        return numbers
+    return np.maximum(numbers / np.iinfo(stored.dtype).max, -1.0)
 
 
 def _is_number(value: object) -> bool:

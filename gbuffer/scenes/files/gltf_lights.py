@@ -35,12 +35,12 @@ def lights_of(
     if not named:
         return ()
     corners = np.concatenate([_corners(piece) for piece in pieces])
-    made = (_light(gltf, extension.get("light"), model, corners, notes) for extension, model in named)
-    found = [light for light in made if light]
-    lamps = [light for light in found if light.kind != "sun"]
+    candidates = (_light(gltf, extension.get("light"), model, corners, notes) for extension, model in named)
+    lights = [light for light in candidates if light]
+    lamps = [light for light in lights if light.kind != "sun"]
     if lamps:
         notes.append(ROUNDED_OFF)
-    suns = sorted((light for light in found if light.kind == "sun"), key=lambda sun: -sum(sun.colour))
+    suns = sorted((light for light in lights if light.kind == "sun"), key=lambda sun: -sum(sun.colour))
     if len(suns) > 1:
         notes.append(f"of {len(suns)} directional lights the brightest is drawn")
     return (*suns[:1], *lamps)

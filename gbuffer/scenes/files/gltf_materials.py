@@ -120,9 +120,9 @@ class Materials:
         if uv_set > 1:
             self.notes.append(f"{place} lies by TEXCOORD_{uv_set}: 0 and 1 are read, and it is left out")
             return None
-        found = self._texels(image, place, kind)
-        is_srgb = kind != "numbers" and found.dtype == np.uint8
-        return Map(found, is_srgb, self._wrap(texture, place), uv_set, self._placed(moved, place))
+        pixels = self._texels(image, place, kind)
+        is_srgb = kind != "numbers" and pixels.dtype == np.uint8
+        return Map(pixels, is_srgb, self._wrap(texture, place), uv_set, self._placed(moved, place))
 
     def _image(self, texture: Object) -> object:
         """Which image a texture shows, None where it has none that is read."""

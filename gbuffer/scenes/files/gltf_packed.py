@@ -59,10 +59,10 @@ def unpacked_view(gltf: Gltf, packed: Object, data: memoryview, most: int, place
     package = _package(gltf, "meshoptimizer", place)
     try:
         if mode == "ATTRIBUTES":
-            found = package.decode_vertex_buffer(count, stride, data, np.dtype((np.void, stride))).view(np.uint8)
-            bits = _octahedral_bits(found, count, stride) if name == "oct" else None
-            made = getattr(package, f"decode_filter_{name}")(found, count, stride) if name else found
-            return made.tobytes(), bits
+            decoded = package.decode_vertex_buffer(count, stride, data, np.dtype((np.void, stride))).view(np.uint8)
+            bits = _octahedral_bits(decoded, count, stride) if name == "oct" else None
+            elements = getattr(package, f"decode_filter_{name}")(decoded, count, stride) if name else decoded
+            return elements.tobytes(), bits
         decode = package.decode_index_buffer if mode == "TRIANGLES" else package.decode_index_sequence
         return decode(count, 4, data).astype(f"<u{stride}").tobytes(), None
     except (ValueError, RuntimeError) as error:
@@ -96,12 +96,12 @@ def draco_primitive(gltf: Gltf, primitive: Object, place: str) -> tuple[np.ndarr
         known = {attribute["unique_id"]: np.atleast_2d(attribute["data"]) for attribute in mesh.attributes}
     except Exception as error:  # the package has errors of several kinds
         raise gltf.error(place, f"cannot be unpacked by {DRACO}") from error
-    found = {}
+    attributes = {}
     for name, number in gltf.child(extension, "attributes", f"{place}.{DRACO}").items():
         if type(number) is not int or number not in known:
             raise gltf.error(f"{place}.{DRACO}", f"has no attribute {number!r}, which {name[:40]} names")
-        found[name] = known[number]
-    return triangles, found
+        attributes[name] = known[number]
+    return triangles, attributes
 
 
 def _check_draco_size(gltf: Gltf, data: bytes, place: str) -> None:
@@ -113,12 +113,12 @@ def _check_draco_size(gltf: Gltf, data: bytes, place: str) -> None:
         if flags & HAS_METADATA:
             raise gltf.error(f"{place}.{DRACO}", "has metadata", "export without it")
         # Edgebreaker first says which of its ways it goes, and has vertices before triangles.
-        at = DRACO_HEAD.size + (method == EDGEBREAKER)
-        one, at = _varint(data, at)
-        other, _ = _varint(data, at)
+        offset = DRACO_HEAD.size + (method == EDGEBREAKER)
+        first, offset = _varint(data, offset)
+        other, _ = _varint(data, offset)
     except (struct.error, IndexError) as error:
         raise gltf.error(f"{place}.{DRACO}", "is cut off") from error
-    triangles, vertices = (other, one) if method == EDGEBREAKER else (one, other)
+    triangles, vertices = (other, first) if method == EDGEBREAKER else (first, other)
     if triangles > MAX_TRIANGLES or vertices > MAX_VERTICES:
         raise gltf.error(
             f"{place}.{DRACO}", f"says {triangles} triangles of {vertices} vertices", "export fewer objects"

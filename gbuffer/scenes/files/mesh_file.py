@@ -153,8 +153,10 @@ def mesh_of(path: Path, stored: Stored) -> tuple[Mesh, list[str]]:
     notes = [] if normals is not None else ["there are meshes without normals: smooth ones were made"]
     given = np.zeros_like(positions) if normals is None else np.asarray(normals, np.float64)
     has_normals = normals is not None
-    normals, made = _completed_normals(checked_numbers(path, given, f"{place}: the normal"), positions, triangles)
-    if made and has_normals:
+    normals, smooth_count = _completed_normals(
+        checked_numbers(path, given, f"{place}: the normal"), positions, triangles
+    )
+    if smooth_count and has_normals:
         notes.append("there are normals of no length: smooth ones stand in")
     uv, second_uv = (
         None if given is None else checked_numbers(path, np.asarray(given, np.float64), f"{place}: the uv")

@@ -132,9 +132,9 @@ def _take_face(obj: _Obj, corners: list[int]) -> None:
     obj.triangles += len(corners) - 2
     if obj.triangles > MAX_TRIANGLES:
         raise ValueError(f"more than {MAX_TRIANGLES} (2^22) triangles")
-    found = obj.corners.setdefault(obj.material, [])
+    indices = obj.corners.setdefault(obj.material, [])
     for second, third in itertools.pairwise(corners[1:]):
-        found += (corners[0], second, third)
+        indices += (corners[0], second, third)
 
 
 def _new_corner(obj: _Obj, text: str) -> int:
@@ -143,8 +143,8 @@ def _new_corner(obj: _Obj, text: str) -> int:
     words = text.split("/")
     if len(words) > len(KINDS) or not words[0]:
         raise ValueError("a corner is position/uv/normal")
-    found = [_checked_index(word, len(obj.data[kind])) for word, kind in zip(words, KINDS, strict=False)]
-    position, uv, normal = found + [-1] * (len(KINDS) - len(found))
+    indices = [_checked_index(word, len(obj.data[kind])) for word, kind in zip(words, KINDS, strict=False)]
+    position, uv, normal = indices + [-1] * (len(KINDS) - len(indices))
     obj.vertices.append((position, uv, normal))
     # What a negative index means changes from line to line.
     if "-" not in text:
@@ -178,7 +178,7 @@ def _table(rows: list[tuple[float, ...]], width: int) -> np.ndarray:
 
 def _materials(path: Path, libraries: list[str], notes: list[str]) -> dict[str, Material]:
     """The materials of MTL files beside the OBJ; a missing one is noted."""
-    found: dict[str, Material] = {}
+    materials: dict[str, Material] = {}
     for name in dict.fromkeys(libraries):
         try:
             data = resource(path, name, "mtllib")
@@ -187,34 +187,34 @@ def _materials(path: Path, libraries: list[str], notes: list[str]) -> dict[str, 
                 raise
             notes.append(f"{name} is not there; its materials are grey")
             continue
-        found |= _read_mtl(path, name, data, notes)
-    return found
+        materials |= _read_mtl(path, name, data, notes)
+    return materials
 
 
 def _read_mtl(path: Path, name: str, data: bytes, notes: list[str]) -> dict[str, Material]:
-    found: dict[str, Material] = {}
+    materials: dict[str, Material] = {}
     current = ""
     for number, words in _lines(data):
         try:
             match words:
                 case ["newmtl", *rest]:
                     current = " ".join(rest)
-                    found[current] = Material()
+                    materials[current] = Material()
                 case [word, *numbers] if word in COLOURS and current:
                     colour = tuple(
                         min(_checked_number(n), 1.0) for n in (numbers * 3 if len(numbers) == 1 else numbers)[:3]
                     )
-                    found[current] = replace(found[current], **{COLOURS[word]: colour})
+                    materials[current] = replace(materials[current], **{COLOURS[word]: colour})
                 case [word, value] if word in NUMBERS and current:
                     low, high = LIMITS[NUMBERS[word]]
-                    found[current] = replace(
-                        found[current], **{NUMBERS[word]: min(max(_checked_number(value), low), high)}
+                    materials[current] = replace(
+                        materials[current], **{NUMBERS[word]: min(max(_checked_number(value), low), high)}
                     )
                 case [word, *_] if word.lower().startswith(("map_", "bump", "norm", "disp", "decal", "refl")):
                     notes.append("textures are not read: colours alone")
         except ValueError as error:
             raise SceneFileError(f"{path}: {name}, line {number}: {error}; export it again") from error
-    return found
+    return materials
 
 
 def _checked_number(text: str) -> float:

@@ -88,14 +88,14 @@ def read_cloud(path: Path) -> Stored:
 def _normals(vertex: Table, types: dict[str, str]) -> tuple[np.ndarray | None, tuple[Rounding, ...]]:
     """Normals as they are meant: whole numbers with a sign stand for [-1, 1] around 0, those without one from end to
     end; and what they are rounded to."""
-    found, kinds = _columns(vertex, NORMAL), {types[name] for name in NORMAL if name in types}
+    normals, kinds = _columns(vertex, NORMAL), {types[name] for name in NORMAL if name in types}
     kind = np.dtype(kinds.pop() if len(kinds) == 1 else "f8")
-    if found is None or kind.kind == "f":
-        return found, ()
+    if normals is None or kind.kind == "f":
+        return normals, ()
     full = np.iinfo(kind).max
     if kind.kind == "i":
-        return np.maximum(found / full, -1.0), (Rounding(full),)
-    return found / full * 2 - 1, (Rounding(full / 2),)
+        return np.maximum(normals / full, -1.0), (Rounding(full),)
+    return normals / full * 2 - 1, (Rounding(full / 2),)
 
 
 def _tables(path: Path) -> tuple[dict[str, Table], dict[str, dict[str, str]]]:
@@ -106,12 +106,12 @@ def _tables(path: Path) -> tuple[dict[str, Table], dict[str, dict[str, str]]]:
     if not order and len(data) > MAX_TEXT_BYTES:
         raise SceneFileError(f"{path}: {len(data)} bytes of text; the most is {MAX_TEXT_BYTES}: export it in binary")
     tokens = data[start:].split() if not order else []
-    at = 0 if not order else start
+    offset = 0 if not order else start
     for element in elements:
         if order:
-            tables[element.name], at = _binary(path, data, at, element, order)
+            tables[element.name], offset = _binary(path, data, offset, element, order)
         else:
-            tables[element.name], at = _ascii(path, tokens, at, element)
+            tables[element.name], offset = _ascii(path, tokens, offset, element)
     return tables, {element.name: {p.name: p.type for p in element.properties} for element in elements}
 
 
@@ -279,7 +279,7 @@ def _mesh(path: Path, tables: dict[str, Table], types: dict[str, dict[str, str]]
             f"{path}: vertices with x, y, z and faces with vertex_indices are read, or points with nx, ny, nz; export "
             "one of them"
         )
-    uv = next((found for names in UV if (found := _columns(vertex, names)) is not None), None)
+    uv = next((columns for names in UV if (columns := _columns(vertex, names)) is not None), None)
     triangles = _fans(path, faces)
     checked_size(path, len(positions), len(triangles), "faces")
     normals, roundings = _normals(vertex, types["vertex"])
@@ -293,9 +293,9 @@ def _fans(path: Path, faces: np.ndarray | list[np.ndarray]) -> np.ndarray:
             raise SceneFileError(f"{path}: faces are lists of vertices; export it again")
         faces = faces.astype(np.float64)
         fans = [np.stack([faces[:, 0], faces[:, k], faces[:, k + 1]], axis=1) for k in range(1, faces.shape[1] - 1)]
-        found = np.stack(fans, axis=1).reshape(-1, 3) if fans else np.zeros((0, 3))
+        triangles = np.stack(fans, axis=1).reshape(-1, 3) if fans else np.zeros((0, 3))
     else:
-        found = np.array([(f[0], f[k], f[k + 1]) for f in faces for k in range(1, len(f) - 1)], np.float64)
-    if not np.all(np.abs(found) < 2**32):
+        triangles = np.array([(f[0], f[k], f[k + 1]) for f in faces for k in range(1, len(f) - 1)], np.float64)
+    if not np.all(np.abs(triangles) < 2**32):
         raise SceneFileError(f"{path}: a face names a vertex that is not a number; export it again")
-    return found.astype(np.int64).reshape(-1, 3)
+    return triangles.astype(np.int64).reshape(-1, 3)

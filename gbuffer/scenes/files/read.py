@@ -160,12 +160,12 @@ def seen(file: MeshFile, size: tuple[int, int]) -> SeenMesh:
     drawn = [mesh if file.two_sided[p.material] else facing(mesh) for p, mesh in zip(file.pieces, pieces, strict=True)]
     camera = Camera(*size, view.fov, view.near, view.far)
     made_of = [(mesh, file.materials[p.material]) for mesh, p in zip(drawn, file.pieces, strict=True)]
-    found = rasterise(joined(drawn), camera, cut_out(made_of))
-    mapped = mapped_normals(found, camera, made_of)
+    rendered = rasterise(joined(drawn), camera, cut_out(made_of))
+    mapped = mapped_normals(rendered, camera, made_of)
     rougher = coarser(made_of)
     off = None
-    if rougher and found.covered.any():
-        other = mapped_normals(found, camera, rougher)[found.covered].astype(np.float64)
-        apart = np.linalg.norm(mapped[found.covered] - other, axis=1)
+    if rougher and rendered.covered.any():
+        other = mapped_normals(rendered, camera, rougher)[rendered.covered].astype(np.float64)
+        apart = np.linalg.norm(mapped[rendered.covered] - other, axis=1)
         off = float(np.degrees(2 * np.arcsin(np.minimum(apart / 2, 1))).mean()) / COARSENED
-    return SeenMesh(mapped, found.positions, found.covered, found.triangle, off)
+    return SeenMesh(mapped, rendered.positions, rendered.covered, rendered.triangle, off)

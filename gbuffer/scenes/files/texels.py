@@ -51,10 +51,10 @@ def texels(data: bytes) -> np.ndarray:
     data = _bare(data)
     with _opened(data) as picture:
         try:
-            found = np.asarray(picture.convert("RGBA"))
+            pixels = np.asarray(picture.convert("RGBA"))
         except Exception as error:  # Pillow has errors of many kinds for damaged files
             raise PictureError(DAMAGED) from error
-    return _deep_texels(data) if data.startswith(PNG) and data[DEPTH] == 16 else found
+    return _deep_texels(data) if data.startswith(PNG) and data[DEPTH] == 16 else pixels
 
 
 def _opened(data: bytes) -> Image:
@@ -85,11 +85,11 @@ def _deep_texels(data: bytes) -> np.ndarray:
         # As it is stored: colours are not multiplied by alpha.
         wishes.attribute("oiio:UnassociatedAlpha", 1)
         file = oiio.ImageInput.open(str(path), wishes)
-        found = None if file is None else file.read_image("uint16")
-    if found is None:
+        pixels = None if file is None else file.read_image("uint16")
+    if pixels is None:
         oiio.geterror()  # else the library prints it at exit
         raise PictureError(DAMAGED)
-    return _widened(np.asarray(found))
+    return _widened(np.asarray(pixels))
 
 
 def _bare(data: bytes) -> bytes:
@@ -99,12 +99,12 @@ def _bare(data: bytes) -> bytes:
     """
     if not data.startswith(PNG):
         return data
-    kept, at = [PNG], len(PNG)
-    while at + 8 <= len(data):
-        length, kind = struct.unpack_from(">I4s", data, at)
+    kept, offset = [PNG], len(PNG)
+    while offset + 8 <= len(data):
+        length, kind = struct.unpack_from(">I4s", data, offset)
         if kind in NEEDED:
-            kept.append(data[at : at + 12 + length])
-        at += 12 + length
+            kept.append(data[offset : offset + 12 + length])
+        offset += 12 + length
     return b"".join(kept)
 
 

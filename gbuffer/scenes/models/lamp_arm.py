@@ -104,7 +104,7 @@ def swept(path: np.ndarray, radii: tuple[float, ...], sides: int) -> Mesh:
     angle = _around(sides)[:, None]
     circle = np.cos(angle) * up[:, None] + np.sin(angle) * np.cross(tangents, up)[:, None]
     rings = path[:, None] + np.array(radii)[:, None, None] * circle
-    first, last = (np.broadcast_to(path[at], rings[at].shape) for at in (0, -1))
+    first, last = (np.broadcast_to(path[end], rings[end].shape) for end in (0, -1))
     return joined([surface(rings), surface(np.stack([first, rings[0]])), surface(np.stack([rings[-1], last]))])
 
 

@@ -107,12 +107,12 @@ else:
         """Whether a group has this user's name, is the first one of this user and of nobody else, and lists no other
         member."""
         try:
-            person, found = pwd.getpwuid(os.geteuid()), grp.getgrgid(group)
+            person, group_entry = pwd.getpwuid(os.geteuid()), grp.getgrgid(group)
         except KeyError:
             return False
-        if person.pw_gid != group or found.gr_name != person.pw_name:
+        if person.pw_gid != group or group_entry.gr_name != person.pw_name:
             return False
-        members = {other.pw_name for other in pwd.getpwall() if other.pw_gid == group} | {*found.gr_mem}
+        members = {other.pw_name for other in pwd.getpwall() if other.pw_gid == group} | {*group_entry.gr_mem}
         return members <= {person.pw_name}
 
     def forbids_execution(folder: Path) -> bool:
@@ -133,7 +133,7 @@ def c_function(name: str) -> Callable[..., Any] | None:
 def state_of(path: Path) -> list[int] | None:
     """Return the size and the time of a file or folder; None if it is gone."""
     try:
-        found = path.stat()
+        status = path.stat()
     except OSError:
         return None
-    return [found.st_size, found.st_mtime_ns]
+    return [status.st_size, status.st_mtime_ns]

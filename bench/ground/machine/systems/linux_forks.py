@@ -55,10 +55,10 @@ def finished(module: str, words: list[str], seconds: float) -> subprocess.Comple
             status = _ended(module, words, (out, err), seconds)
         except OSError:
             return children.finished(command, seconds)
-        said = [children.text_of(file) for file in (out, err)]
+        outputs = [children.text_of(file) for file in (out, err)]
     if status is None:
-        raise subprocess.TimeoutExpired(command, seconds, *said)
-    return subprocess.CompletedProcess(command, status, *said)
+        raise subprocess.TimeoutExpired(command, seconds, *outputs)
+    return subprocess.CompletedProcess(command, status, *outputs)
 
 
 def _ended(module: str, words: list[str], files: tuple[IO[bytes], IO[bytes]], seconds: float) -> int | None:

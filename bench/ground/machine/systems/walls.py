@@ -38,7 +38,7 @@ class Wall:
     def __or__(self, other: Wall) -> Wall:
         """A wall that leaves what either leaves."""
         kinds = zip(*((wall.reads, wall.writes, wall.executes) for wall in (self, other)), strict=True)
-        return Wall(*(tuple(dict.fromkeys((*one, *more))) for one, more in kinds))
+        return Wall(*(tuple(dict.fromkeys((*own, *more))) for own, more in kinds))
 
     def around(self, words: Sequence[str]) -> list[str]:
         """A command behind this wall; its first word becomes the path of a program. See `landlock.command`."""
@@ -75,7 +75,7 @@ def of_c_compiler(tool: str) -> Wall:
     """For a C or C++ compiler, which compiles and links: its parts, headers and libraries, as it names them itself."""
     parts = [shutil.which(_said(tool, f"-print-prog-name={name}")) for name in PARTS]
     lines = [line.partition(":") for line in _said(tool, "-print-search-dirs").splitlines()]
-    places = [place for name, _, said in lines if name != "programs" for place in said.strip(" =").split(os.pathsep)]
+    places = [place for name, _, text in lines if name != "programs" for place in text.strip(" =").split(os.pathsep)]
     wall = of_tool(shutil.which(tool) or tool) | Wall((*HEADERS, *_spared(map(Path, places))))
     for part in filter(None, parts):
         wall |= of_program(part)
@@ -92,8 +92,8 @@ def of_python() -> Wall:
 def _spared(paths: Iterable[Path]) -> tuple[str, ...]:
     """Paths without those that hold the home folder as a whole."""
     home = Path.home().resolve()
-    found = dict.fromkeys(str(path.resolve()) for path in paths if path.is_absolute() and path.exists())
-    return tuple(path for path in found if not home.is_relative_to(path))
+    resolved = dict.fromkeys(str(path.resolve()) for path in paths if path.is_absolute() and path.exists())
+    return tuple(path for path in resolved if not home.is_relative_to(path))
 
 
 def _said(tool: str, option: str) -> str:

@@ -51,11 +51,11 @@ def _decoded(codec: LightCodec, code: Vec4, _: Any) -> tuple[Any, ...]:
 
 
 def _defines(codec: LightCodec) -> dict[str, object]:
-    found = defines(codec.encoding, "", "vec4")
+    macros = defines(codec.encoding, "", "vec4")
     if codec.has_alpha:
-        return found
-    colours = {f"COLOUR_{name}": found[name] for name in ("ENCODE", "DECODE")}
-    return found | colours | {"ENCODE": "colour_encode", "DECODE": "colour_decode"}
+        return macros
+    colours = {f"COLOUR_{name}": macros[name] for name in ("ENCODE", "DECODE")}
+    return macros | colours | {"ENCODE": "colour_encode", "DECODE": "colour_decode"}
 
 
 def _limit(codec: LightCodec) -> float:
@@ -74,7 +74,7 @@ def _errors(given: np.ndarray, back: np.ndarray) -> np.ndarray:
 
 def _is_ours(codec: LightCodec) -> bool:
     """Over another range it has another name, and the same file."""
-    return codec.encoding.glsl in {one.glsl for one in LIGHT_ENCODINGS.values()}
+    return codec.encoding.glsl in {encoding.glsl for encoding in LIGHT_ENCODINGS.values()}
 
 
 KIND = CodeKind(

@@ -62,9 +62,9 @@ def _by_device(codec: Codec, n: np.ndarray, view: np.ndarray) -> tuple[np.ndarra
     """Stored codes and decoded normals by OpenGL, of an encoder that is there in GLSL alone."""
     pixels = (np.pad(array, ((0, 0), (0, 1))).reshape(SIDE, -1, 4) for array in (n, view))
     with CodecPasses(device(), codec) as passes:
-        found = passes.round_trip(*pixels)
+        trip = passes.round_trip(*pixels)
     size = codec.encoding.components + codec.encoding.sign_bits
-    return found.codes.reshape(len(n), 4)[:, :size].copy(), found.normals.reshape(len(n), 3)
+    return trip.codes.reshape(len(n), 4)[:, :size].copy(), trip.normals.reshape(len(n), 3)
 
 
 def _vectors(rows: Any) -> Vec3:

@@ -103,8 +103,8 @@ def compilers_wall(tool: str, place: Path) -> Wall:
     """
     walls.require()
     path = str(tools.path_of(tool))
-    if said := _failure_behind_wall(tool, path):
-        raise MissingError(said)
+    if failure := _failure_behind_wall(tool, path):
+        raise MissingError(failure)
     return walls.of_c_compiler(path) | Wall(writes=(str(place),))
 
 
@@ -155,8 +155,8 @@ def called(program: Path, path: Path, interface: Interface) -> Run:
             raise MissingError(
                 f"C cannot be run: {where} runs no programs; set TMPDIR to a folder that does"
             ) from error
-        made, words = (np.fromfile(place / name, kind) for name, kind in (("made.bin", "<f4"), ("words.bin", "<u4")))
-        return ran_of(made.reshape(MADE * count, 4), words.reshape(count, 4), interface)
+        rows, words = (np.fromfile(place / name, kind) for name, kind in (("made.bin", "<f4"), ("words.bin", "<u4")))
+        return ran_of(rows.reshape(MADE * count, 4), words.reshape(count, 4), interface)
 
     return run
 

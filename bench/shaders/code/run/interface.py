@@ -149,7 +149,7 @@ class Runner:
         """
         with self.prepared(Path(path), interface) as run:
             parts = [run(n[block], view[block], texels[block]) for block in blocks(len(n))]
-        return Ran(*(np.concatenate(found) for found in zip(*parts, strict=True)))
+        return Ran(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
 
 
 def blocks(count: int) -> Iterator[slice]:

@@ -57,12 +57,12 @@ def dispatched(gl: Device, compute: Any, given: np.ndarray) -> tuple[np.ndarray,
         return np.zeros((0, 4), np.float32), np.zeros((0, 4), np.uint32)
     with ExitStack() as stack:
         sizes = (MADE * count * 16, count * 16)
-        made = [gl.owned(stack, gl.context.buffer(reserve=size)) for size in sizes]
+        outputs = [gl.owned(stack, gl.context.buffer(reserve=size)) for size in sizes]
         source = gl.owned(stack, gl.context.buffer(given))
-        for binding, buffer in enumerate([source, *made]):
+        for binding, buffer in enumerate([source, *outputs]):
             buffer.bind_to_storage_buffer(binding)
         compute.run(group_x=-(-count // GROUP))
-        rows, words = (np.frombuffer(b.read(size), np.uint32) for b, size in zip(made, sizes, strict=True))
+        rows, words = (np.frombuffer(b.read(size), np.uint32) for b, size in zip(outputs, sizes, strict=True))
     return rows.view(np.float32), words
 
 

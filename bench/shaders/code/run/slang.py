@@ -21,8 +21,8 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
     with folder() as place:
         files = {"code.slang": judged_text(source.text, "slang", source)}
         options = ("-target", "glsl", "-stage", "compute", "-entry", "main")
-        made = compile_with(tools.SLANG, ["code.slang", *options], place, files, source.explain)
-        glsl = {"code.comp": judged_text(made, "glsl")}
+        glsl_text = compile_with(tools.SLANG, ["code.slang", *options], place, files, source.explain)
+        glsl = {"code.comp": judged_text(glsl_text, "glsl")}
         compile_with(tools.GLSLANG, ["-V", "--target-env", "vulkan1.1", "-o", MODULE, "code.comp"], place, glsl)
         text = glsl_of_module(place)
     with opengl.prepared(opengl.compiled(text, str), interface) as run:

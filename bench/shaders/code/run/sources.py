@@ -42,8 +42,8 @@ class EmittedSource(Source):
 @contextmanager
 def folder() -> Iterator[Path]:
     """An empty folder, gone afterwards."""
-    with tempfile.TemporaryDirectory(prefix="normalbench-") as made:
-        yield Path(made)
+    with tempfile.TemporaryDirectory(prefix="normalbench-") as path:
+        yield Path(path)
 
 
 def run_apart(path: Path, command: Sequence[str], wall: Wall | None = None) -> None:
@@ -98,6 +98,6 @@ def first_complaint(log: str) -> str:
     is a line of its own: ` --> FILE:LINE:COLUMN`."""
     lines = [line.strip() for line in log.splitlines() if re.search(r"\w", line)]
     errors = [line for line in lines if re.search(r"\berror\b", line, re.I)]
-    said = (errors or lines or ["it failed without a word"])[0].removeprefix("ERROR: ")
+    complaint = (errors or lines or ["it failed without a word"])[0].removeprefix("ERROR: ")
     place = re.search(r"--> (\S+:\d+):\d+", log)
-    return f"{place[1]}: {said}"[:400] if place and errors else said[:400]
+    return f"{place[1]}: {complaint}"[:400] if place and errors else complaint[:400]

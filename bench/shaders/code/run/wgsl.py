@@ -34,15 +34,15 @@ ROW = 16  # bytes: four numbers
 def device() -> Any:
     """The first device, by wgpu. Raises MissingError, which says what to install."""
     try:
-        found = adapters()
+        gpus = adapters()
     except ImportError as error:
         raise MissingError(f"WGSL needs wgpu ({error}); {INSTALL}") from error
-    if not found:
+    if not gpus:
         raise MissingError(NO_DRIVER)
     # Tables may be larger than what every device has.
-    limits = found[0].limits
+    limits = gpus[0].limits
     asked = ("max-buffer-size", "max-storage-buffer-binding-size", "max-texture-dimension-2d")
-    return found[0].request_device_sync(required_limits={name: limits[name] for name in asked})
+    return gpus[0].request_device_sync(required_limits={name: limits[name] for name in asked})
 
 
 def device_name() -> str:
@@ -62,8 +62,8 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
     def run(n: np.ndarray, view: np.ndarray, texels: np.ndarray) -> Ran:
         given = rows_of(n, view, texels)
         count = len(given) // GIVEN
-        made, words = program(given, count, [MADE * count * ROW, count * ROW])
-        return ran_of(made.view(np.float32).reshape(-1, 4), words.reshape(-1, 4), interface)
+        rows, words = program(given, count, [MADE * count * ROW, count * ROW])
+        return ran_of(rows.view(np.float32).reshape(-1, 4), words.reshape(-1, 4), interface)
 
     yield run
 
@@ -88,9 +88,11 @@ class Program:
         self._gpu, seen = gpu, wgpu.ShaderStage.COMPUTE
         kinds = ("read-only-storage", *["storage"] * results)
         chosen, kind = [_texture(gpu, tables[each]) for each in sorted(tables)], {"sample_type": "unfilterable-float"}
-        textures = [{"binding": at, "visibility": seen, "texture": kind} for at in range(len(chosen))]
-        buffers = [{"binding": at, "visibility": seen, "buffer": {"type": kind}} for at, kind in enumerate(kinds)]
-        bound = [{"binding": at, "resource": texture.create_view()} for at, texture in enumerate(chosen)]
+        textures = [{"binding": binding, "visibility": seen, "texture": kind} for binding in range(len(chosen))]
+        buffers = [
+            {"binding": binding, "visibility": seen, "buffer": {"type": kind}} for binding, kind in enumerate(kinds)
+        ]
+        bound = [{"binding": binding, "resource": texture.create_view()} for binding, texture in enumerate(chosen)]
         layouts = [gpu.create_bind_group_layout(entries=entries) for entries in (textures, buffers)]
         self._tables = gpu.create_bind_group(layout=layouts[0], entries=bound)
         try:
@@ -110,7 +112,7 @@ class Program:
         usage = wgpu.BufferUsage.STORAGE | wgpu.BufferUsage.COPY_SRC
         buffers = [self._gpu.create_buffer_with_data(data=given, usage=usage)]
         buffers += [self._gpu.create_buffer(size=size, usage=usage) for size in sizes]
-        bound = [{"binding": at, "resource": {"buffer": buffer}} for at, buffer in enumerate(buffers)]
+        bound = [{"binding": binding, "resource": {"buffer": buffer}} for binding, buffer in enumerate(buffers)]
         group = self._gpu.create_bind_group(layout=self._pipeline.get_bind_group_layout(1), entries=bound)
         commands = self._gpu.create_command_encoder()
         compute = commands.begin_compute_pass()

@@ -82,8 +82,8 @@ class GBufferCode:
 @cache
 def _template() -> Template:
     loader = FileSystemLoader(TEMPLATE.parent)
-    made = Environment(loader=loader, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    return made.get_template(TEMPLATE.name)
+    environment = Environment(loader=loader, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    return environment.get_template(TEMPLATE.name)
 
 
 def gbuffer_code(layout: Layout, language: str, prefix: str = "") -> GBufferCode:
@@ -94,15 +94,15 @@ def gbuffer_code(layout: Layout, language: str, prefix: str = "") -> GBufferCode
         ShaderError: its GLSL cannot be read.
     """
     texts, prefix = Texts(Contents(layout)), prefix or PREFIX
-    made = layout.encoding.tables()
-    tables = {table_name(name, prefix, layout.encoding.prefix): table for name, table in made.items()}
+    own_tables = layout.encoding.tables()
+    tables = {table_name(name, prefix, layout.encoding.prefix): table for name, table in own_tables.items()}
     texels = {name: texels_of(table) for name, table in tables.items()}
     try:
         program = _program(texts, prefix)
         body = LANGUAGES[language].writer(prefix, texels, identifier(layout.name)).program(program)
     except TranslationError as error:
         raise UsageError(f"layout {layout.name}: {error}") from error
-    settings = tuple(one.name for one in program.function(f"{prefix}_pack").parameters[1:])
+    settings = tuple(parameter.name for parameter in program.function(f"{prefix}_pack").parameters[1:])
     return GBufferCode(layout, language, prefix, folded(body), texts, settings, tables)
 
 
@@ -135,10 +135,10 @@ def _shorten(program: Program, prefix: str) -> None:
     """Call functions of curves and of depth by short names: PREFIX_to_square_root, PREFIX_encode_depth."""
     names = {}
     for function in program.functions:
-        found = re.fullmatch(rf"{prefix}_(\w+?)_({'|'.join((*SHORT, *OF_DEPTH))})", function.name)
-        if found:
-            is_depth = found[2] in OF_DEPTH
-            names[function.name] = f"{prefix}_{found[2]}" if is_depth else f"{prefix}_{SHORT[found[2]]}_{found[1]}"
+        match = re.fullmatch(rf"{prefix}_(\w+?)_({'|'.join((*SHORT, *OF_DEPTH))})", function.name)
+        if match:
+            is_depth = match[2] in OF_DEPTH
+            names[function.name] = f"{prefix}_{match[2]}" if is_depth else f"{prefix}_{SHORT[match[2]]}_{match[1]}"
     for function in program.functions:
         for call in (node for node in inside(function.body) if isinstance(node, Call) and node.is_own):
             call.name = names.get(call.name, call.name)

@@ -28,8 +28,8 @@ def target_leaves(texts: Texts) -> list[Leaf]:
 
 
 def _leaves(named: Iterable[tuple[str, str]]) -> list[Leaf]:
-    found = []
+    leaves = []
     for name, kind in named:
         paths = [f"{name}.{axis}" for axis in "xyzw"[: size_of(kind)]] if size_of(kind) > 1 else [name]
-        found += [Leaf(path, scalar_of(kind) == "uint") for path in paths]
-    return found
+        leaves += [Leaf(path, scalar_of(kind) == "uint") for path in paths]
+    return leaves

@@ -50,7 +50,7 @@ def head(code: GBufferCode, command: str, verified: str) -> list[str]:
 def table(contents: Contents) -> list[str]:
     """The layout's words in columns."""
     rows = [TITLES, *(_row(contents, word) for word in contents.words)]
-    widths = [max(len(row[at]) for row in rows) for at in range(len(TITLES))]
+    widths = [max(len(row[column]) for row in rows) for column in range(len(TITLES))]
     lines = ("  ".join(text.ljust(width) for text, width in zip(row, widths, strict=True)) for row in rows)
     return [f"{KEPT}{line.rstrip()}" for line in lines]
 

@@ -56,8 +56,8 @@ def _operation(
         "KERNEL_FAR": FAR,
         "KERNEL_FROM": given[0],
         "KERNEL_TO": made[0],
-        "KERNEL_LOADS": " ".join(_load(at, leaf) for at, leaf in enumerate(given[1])),
-        "KERNEL_STORES": " ".join(_store(at, leaf) for at, leaf in enumerate(made[1])),
+        "KERNEL_LOADS": " ".join(_load(i, leaf) for i, leaf in enumerate(given[1])),
+        "KERNEL_STORES": " ".join(_store(i, leaf) for i, leaf in enumerate(made[1])),
     }
     tables = texts.contents.layout.encoding.tables
     return Operation(FILE, len(given[1]), BESIDE, len(made[1]), defines | own, files, tables, is_portable=False)
@@ -75,7 +75,7 @@ def _store(at: int, leaf: Leaf) -> str:
 
 def _held(texts: Texts) -> list[Leaf]:
     """The channels in which something lies: what is written to the others is a constant."""
-    places = [(at, channel) for at, one in enumerate(texts.targets) for channel in range(size_of(one.kind))]
+    places = [(i, channel) for i, target in enumerate(texts.targets) for channel in range(size_of(target.kind))]
     return [leaf for leaf, place in zip(target_leaves(texts), places, strict=True) if _holds(texts.contents, *place)]
 
 

@@ -21,7 +21,7 @@ def ways_of(layout: Layout) -> tuple[int, ...]:
     homes = {word.target for word in layout.words if word.component.startswith("normal.")}
     way = 0 if layout.rounding == "nearest" else ROUNDINGS.index(layout.rounding) + 1
     plain = (target.storage.is_integer or target.storage.curved for target in layout.targets)
-    return tuple(0 if is_plain else way * (at in homes) for at, is_plain in enumerate(plain))
+    return tuple(0 if is_plain else way * (i in homes) for i, is_plain in enumerate(plain))
 
 
 @dataclass(frozen=True)
@@ -115,9 +115,9 @@ class Number:
         if self.is_carrier:
             return f"uint(floor({x} * {scale}.0 + 0.5))"
         if self._is_around_zero:
-            one = f"{scale // 2}.0"
+            half = f"{scale // 2}.0"
             held = f"{x} * 0.5 + 0.5" if self._is_unit else x
-            return f"uint(roundEven(clamp({held}, -1.0, 1.0) * {one}) + {one})"
+            return f"uint(roundEven(clamp({held}, -1.0, 1.0) * {half}) + {half})"
         widen, bias = PACKINGS[self.layout.packing] if self._is_packed_as_said else PACKINGS["nearest"]
         part = f"clamp({self._unit_in.format(x=x)}, 0.0, 1.0)"
         whole = f"floor({part} * {scale + widen}{f' + {bias}' if bias else ''})"
@@ -132,8 +132,8 @@ class Number:
         if self.is_carrier:
             return f"float({integer}) / {self._scale}.0 * 2.0 - 1.0"
         if self._is_around_zero:
-            one = f"{self._scale // 2}.0"
-            value = f"(float({integer}) - {one}) * (1.0 / {one})"
+            half = f"{self._scale // 2}.0"
+            value = f"(float({integer}) - {half}) * (1.0 / {half})"
             return f"{value} * 2.0 - 1.0" if self._is_unit else value
         return self._unit_out.format(x=f"float({integer}) / {self._scale}.0")
 

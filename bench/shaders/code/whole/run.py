@@ -54,7 +54,7 @@ def run(code: GBufferCode, rows: np.ndarray, settings: np.ndarray) -> np.ndarray
         NoDeviceError: there is no GL device.
     """
     given = np.concatenate([rows, *(settings[:, PLACES[name]] for name in code.settings)], axis=1)
-    parts = [RUNS[code.language](code, given[at : at + BLOCK]) for at in range(0, len(rows), BLOCK)]
+    parts = [RUNS[code.language](code, given[start : start + BLOCK]) for start in range(0, len(rows), BLOCK)]
     return np.concatenate(parts)
 
 
@@ -64,23 +64,25 @@ def _made(code: GBufferCode) -> int:
 
 
 def _wrapped(name: str, code: GBufferCode) -> str:
-    made = Environment(loader=FileSystemLoader(HERE), undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    environment = Environment(
+        loader=FileSystemLoader(HERE), undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
     surface, targets = surface_leaves(code.texts), target_leaves(code.texts)
     count, (settings, given) = _made(code), _settings_text(code)
     about = {"code": code.body, "prefix": code.prefix, "settings": settings, "given": given, "made": count}
-    return made.get_template(name).render(about, surface=surface, targets=targets)
+    return environment.get_template(name).render(about, surface=surface, targets=targets)
 
 
 def _settings_text(code: GBufferCode) -> tuple[str, int]:
     """The arguments behind the first one of both functions, and how many numbers a row has with them."""
     number, vector = ARGUMENTS.get(code.language, ("", ""))
-    text, at = "", _made(code)
+    text, offset = "", _made(code)
     for name in code.settings:
         size = PLACES[name].stop - PLACES[name].start
-        numbers = ", ".join(number.format(at + one) for one in range(size))
+        numbers = ", ".join(number.format(offset + i) for i in range(size))
         text += f", {vector.format(prefix=code.prefix, numbers=numbers) if size > 1 else numbers}"
-        at += size
-    return text, at
+        offset += size
+    return text, offset
 
 
 def dispatched(compute: Any, rows: np.ndarray, width: int) -> np.ndarray:
@@ -88,11 +90,11 @@ def dispatched(compute: Any, rows: np.ndarray, width: int) -> np.ndarray:
     gl, count = device(), len(rows)
     with ExitStack() as stack:
         given = gl.owned(stack, gl.context.buffer(np.ascontiguousarray(rows)))
-        made = gl.owned(stack, gl.context.buffer(reserve=count * width * 4))
-        for binding, buffer in enumerate((given, made)):
+        output = gl.owned(stack, gl.context.buffer(reserve=count * width * 4))
+        for binding, buffer in enumerate((given, output)):
             buffer.bind_to_storage_buffer(binding)
         compute.run(group_x=-(-count // GROUP))
-        return np.frombuffer(made.read(), np.uint32).reshape(count, width)
+        return np.frombuffer(output.read(), np.uint32).reshape(count, width)
 
 
 def _run_text(text: str, code: GBufferCode, rows: np.ndarray) -> np.ndarray:
@@ -115,8 +117,8 @@ def _wgsl(code: GBufferCode, rows: np.ndarray) -> np.ndarray:
     text = judged_text(_wrapped("run_wgsl.j2", code), "wgsl")
     program = wgsl.Program(wgsl.device(), code.name, text, code.tables, 1)
     data = np.ascontiguousarray(rows)
-    (made,) = program(data, len(rows), [len(rows) * _made(code) * data.itemsize])
-    return made.reshape(len(rows), -1)
+    (output,) = program(data, len(rows), [len(rows) * _made(code) * data.itemsize])
+    return output.reshape(len(rows), -1)
 
 
 def _c(code: GBufferCode, rows: np.ndarray) -> np.ndarray:

@@ -20,7 +20,7 @@ from ..emit import LANGUAGES
 NUMBERS = {**dict.fromkeys(COLOURS, ("vec3", "rgb")), MOTION: ("vec2", "xy")}
 WHOLE_NUMBERS = ("shading_model", "instance")
 # What no field is called, so that it has the same name in every language.
-WORDS_OF_LANGUAGES = BUILTINS.union(*(one.writer.reserved for one in LANGUAGES.values()))
+WORDS_OF_LANGUAGES = BUILTINS.union(*(language.writer.reserved for language in LANGUAGES.values()))
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class Contents:
     def words(self) -> tuple[Word, ...]:
         """Every word, those of `other` among them, in the order of the targets."""
         name, targets = self.layout.name, self.layout.targets
-        return tuple(word for at, target in enumerate(targets) for word in all_placed(name, at, target))
+        return tuple(word for i, target in enumerate(targets) for word in all_placed(name, i, target))
 
     @cached_property
     def fields(self) -> tuple[Field, ...]:
@@ -68,13 +68,13 @@ class Contents:
         return (Field("normal", "vec3", ()), *self._material_fields(), *self._other_fields())
 
     def _material_fields(self) -> Iterator[Field]:
-        found = {word.component: word for word in self.words if word.component != OTHER}
+        by_component = {word.component: word for word in self.words if word.component != OTHER}
         for first in dict.fromkeys(map(quantity_of, COMPONENTS)):
             kind, numbers = NUMBERS.get(first, ("uint" if first in WHOLE_NUMBERS else "float", ""))
             parts = _components(first, numbers)
-            if first == "normal" or parts[0] not in found:
+            if first == "normal" or parts[0] not in by_component:
                 continue
-            words = tuple(found[part] for part in parts)
+            words = tuple(by_component[part] for part in parts)
             yield Field(self._name(first), kind, parts, words, words[0].kept)
 
     def _name(self, component: str) -> str:
@@ -87,7 +87,7 @@ class Contents:
     def _other_fields(self) -> Iterator[Field]:
         others = [word for word in self.words if word.component == OTHER]
         labels = [word.label for word in others]
-        taken = {one.name for one in self._material_fields()} | {"normal", OTHER}
+        taken = {field.name for field in self._material_fields()} | {"normal", OTHER}
         for number, word in enumerate(others, 1):
             storage = self.layout.targets[word.target].storage
             is_whole = word.bits or (storage.kind == "unorm" and word.first >= storage.curved)
@@ -119,9 +119,9 @@ def _unwritten(layout: Layout) -> str:
 
 
 def _unwritten_other(layout: Layout) -> str:
-    for at, target in enumerate(layout.targets):
+    for index, target in enumerate(layout.targets):
         equal = target.storage.field_bits
-        for word in all_placed(layout.name, at, target):
+        for word in all_placed(layout.name, index, target):
             if word.component == OTHER and word.bits and word.first + word.bits > equal:
                 return f"other:{word.bits} within {target.format}, whose first {equal} bits hold fields"
     return ""

@@ -75,14 +75,14 @@ def _bits(contents: Contents, field: Field) -> int:
 
 def _normals(contents: Contents, random: np.random.Generator, view: np.ndarray) -> np.ndarray:
     """Unit normals, those along axes and next to them first."""
-    made = random.normal(size=view.shape)
-    made /= np.linalg.norm(made, axis=1, keepdims=True)
+    normals = random.normal(size=view.shape)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     hard = directions()[: len(view) // 2]
-    made[: len(hard)] = hard
+    normals[: len(hard)] = hard
     encoding = contents.layout.encoding
     if encoding.domain == "view":
-        return np.where((made * view).sum(axis=1, keepdims=True) > 0, -made, made)
+        return np.where((normals * view).sum(axis=1, keepdims=True) > 0, -normals, normals)
     if encoding.domain != "sphere":
         axis = "xyz".index(getattr(encoding, "axis", "z") or "z")
-        made[:, axis] = np.abs(made[:, axis]) * (getattr(encoding, "sign", 1) or 1)
-    return made
+        normals[:, axis] = np.abs(normals[:, axis]) * (getattr(encoding, "sign", 1) or 1)
+    return normals

@@ -53,8 +53,8 @@ class Texts:
         kinds = {1: "uint", 2: "uvec2", 4: "uvec4"}
         storages = [target.storage for target in self._layout.targets]
         return [
-            TargetText(f"target_{at}", kinds[storage.channels] if storage.is_integer else "vec4")
-            for at, storage in enumerate(storages)
+            TargetText(f"target_{i}", kinds[storage.channels] if storage.is_integer else "vec4")
+            for i, storage in enumerate(storages)
         ]
 
     # A surface to its targets.
@@ -67,8 +67,8 @@ class Texts:
                 yield from self._depth_number(field.words[0], names)
             elif Number(self._layout, field.words[0]).is_carrier:
                 yield self._carried(field.words[0], names)
-        for at, target in enumerate(self.targets):
-            yield from self._packed_target(at, target, names)
+        for index, target in enumerate(self.targets):
+            yield from self._packed_target(index, target, names)
 
     def _coded(self, field: Field, names: dict[str, str]) -> Iterator[str]:
         """Lines that put a field on its curve; each component's text is added to `names`."""
@@ -80,7 +80,7 @@ class Texts:
         elif code_is_whole(field.kept):
             yield self._whole_code(field)
             components = _components_of(field)
-            names |= {one: f"{field.name}.{AXES[at]}" for at, one in enumerate(components)}
+            names |= {name: f"{field.name}.{AXES[i]}" for i, name in enumerate(components)}
         else:
             encoding, limit = field.kept.encoding, glsl_value(field.kept.range)
             for component, part in zip(field.components, parts, strict=True):
@@ -106,9 +106,9 @@ class Texts:
 
     def _carried(self, word: Word, names: dict[str, str]) -> str:
         name = f"signed_{_local(word.component)}"
-        made = Number(self._layout, word).carried_text(names[word.component], names[self._sign])
+        code = Number(self._layout, word).carried_text(names[word.component], names[self._sign])
         names[word.component] = name
-        return f"float {name} = {made};"
+        return f"float {name} = {code};"
 
     def _whole_code(self, field: Field) -> str:
         assert field.kept
@@ -139,8 +139,8 @@ class Texts:
         own = next((word for word in words if not word.bits and word.first == channel), None)
         if own:
             text = names.get(own.component) or f"s.{self._other_name(own)}"
-            made = Number(self._layout, own).channel_text(text, self._is_float(own))
-            return ([], made) if len(made) <= SHORT or made.isidentifier() else ([f"float {name} = {made};"], name)
+            code = Number(self._layout, own).channel_text(text, self._is_float(own))
+            return ([], code) if len(code) <= SHORT or code.isidentifier() else ([f"float {name} = {code};"], name)
         storage = self._layout.targets[at].storage
         size = storage.bits[channel]
         joined = packed_texts([(p, self._integer_name(p.word)) for p in parts_of(words, channel, storage)], size)
@@ -155,8 +155,8 @@ class Texts:
 
     def _unpacking(self) -> Iterator[str]:
         names: dict[Word, str] = {}
-        for at in range(len(self.targets)):
-            yield from self._taken_words(at, names)
+        for index in range(len(self.targets)):
+            yield from self._taken_words(index, names)
         signs: dict[str, str] = {}
         for word in names:
             yield from self._signed_lines(word, names, signs)
@@ -185,12 +185,12 @@ class Texts:
         words = [word for word in self.contents.words if word.target == at]
         held = {}
         for channel in range(storage.channels):
-            found = list(parts_of(words, channel, storage))
+            parts = list(parts_of(words, channel, storage))
             text = f"t.target_{at}" + (f".{AXES[channel]}" if storage.channels > 1 or not storage.is_integer else "")
-            if found and not storage.is_integer:
+            if parts and not storage.is_integer:
                 yield f"uint bits_{at}_{AXES[channel]} = uint({text} * {float(storage.scale(channel))} + 0.5);"
                 text = f"bits_{at}_{AXES[channel]}"
-            for part in found:
+            for part in parts:
                 held.setdefault(part.word, []).append((part, text))
         for word in words:
             number = Number(self._layout, word)
@@ -201,10 +201,10 @@ class Texts:
                 names[word] = number.channel_value(f"t.target_{at}.{AXES[word.first]}", self._is_float(word))
 
     def _normal_lines(self, names: dict[Word, str], signs: dict[str, str]) -> Iterator[str]:
-        found = {word.component: names[word] for word in names if word.component.startswith("normal.")} | signs
+        by_component = {word.component: names[word] for word in names if word.component.startswith("normal.")} | signs
         axes = "xyz"[: self._layout.encoding.components + self._layout.encoding.sign_bits]
         for axis in axes:
-            yield f"float code_{axis} = {found[f'normal.{axis}']};"
+            yield f"float code_{axis} = {by_component[f'normal.{axis}']};"
         code = ", ".join(f"code_{axis}" for axis in axes)
         yield f"vec3 normal = DECODE(CODE({code}), view);"
 
@@ -240,8 +240,8 @@ class Texts:
 
     def _words_of(self, field: Field) -> list[Word]:
         """The words of a field: of a code of light one more than the field has numbers."""
-        found = {word.component: word for word in self.contents.words}
-        return [found[component] for component in _components_of(field)]
+        by_component = {word.component: word for word in self.contents.words}
+        return [by_component[component] for component in _components_of(field)]
 
     def _other_name(self, word: Word) -> str:
         return next(field.name for field in self.contents.fields if field.words == (word,))

@@ -102,8 +102,8 @@ class Expected:
         self._program = opengl.compiled(_reference_text(layout), str)
         rows = np.zeros((len(given), NORMAL + len(COMPONENTS) + CHANNELS * len(layout.targets)), np.uint32)
         rows[:, : NORMAL + len(COMPONENTS)] = self._numbers()
-        made = self._made(rows)[:, : CHANNELS * len(layout.targets)]
-        self.stored = stored_texels(layout, made.reshape(len(given), -1, CHANNELS))
+        texels = self._made(rows)[:, : CHANNELS * len(layout.targets)]
+        self.stored = stored_texels(layout, texels.reshape(len(given), -1, CHANNELS))
         self._add_others()
         rows[:, NORMAL + len(COMPONENTS) :] = self.stored.reshape(len(given), -1)
         self.surfaces = self._surfaces(self._made(rows)[:, CHANNELS * len(layout.targets) :])
@@ -111,31 +111,31 @@ class Expected:
 
     def _made(self, rows: np.ndarray) -> np.ndarray:
         given = np.concatenate([rows, self._besides], axis=1)
-        parts = [given[at : at + BLOCK] for at in range(0, len(rows), BLOCK)]
+        parts = [given[start : start + BLOCK] for start in range(0, len(rows), BLOCK)]
         with ExitStack() as stack:
             bind(self._program, uploaded(device(), stack, self.contents.layout.encoding.tables()))
             return np.concatenate([dispatched(self._program, part, rows.shape[1]) for part in parts])
 
     def _columns(self) -> dict[str, int]:
         """Where each component's number lies in the rows of surfaces."""
-        found, at = {}, NORMAL
+        columns, column = {}, NORMAL
         for field in self.contents.fields[1:]:
             for component in field.components:
-                found[component] = at
-                at += 1
-        return found
+                columns[component] = column
+                column += 1
+        return columns
 
     def _numbers(self) -> np.ndarray:
         """The normal and the numbers that the renderer is given: whole ones as floats."""
-        found = np.zeros((len(self._given), NORMAL + len(COMPONENTS)), np.float32)
-        found[:, :NORMAL] = self._given[:, :NORMAL].view(np.float32)
-        kinds = {one: field.kind for field in self.contents.fields for one in field.components}
-        for component, at in self._columns().items():
+        numbers = np.zeros((len(self._given), NORMAL + len(COMPONENTS)), np.float32)
+        numbers[:, :NORMAL] = self._given[:, :NORMAL].view(np.float32)
+        kinds = {name: field.kind for field in self.contents.fields for name in field.components}
+        for component, index in self._columns().items():
             if component in COMPONENTS:
-                column = np.ascontiguousarray(self._given[:, at])
+                column = np.ascontiguousarray(self._given[:, index])
                 number = column.astype(np.float32) if kinds[component] == "uint" else column.view(np.float32)
-                found[:, NORMAL + COMPONENTS.index(component)] = number
-        return found.view(np.uint32)
+                numbers[:, NORMAL + COMPONENTS.index(component)] = number
+        return numbers.view(np.uint32)
 
     def _add_others(self) -> None:
         """What the renderer does not keep, put where the layout has it."""
@@ -147,24 +147,24 @@ class Expected:
 
     def _surfaces(self, made: np.ndarray) -> np.ndarray:
         """Surfaces of a normal and the renderer's numbers; others as they were given, floats as the format has them."""
-        found = self._given.copy()
+        expected = self._given.copy()
         for field in self.contents.fields:
             if field.kind == "float" and field.words[0].component == OTHER:
                 word = field.words[0]
-                found[:, self._columns()[field.name]] = self.stored[:, word.target, word.first]
-        found[:, :NORMAL] = made[:, :NORMAL]
-        kinds = {one: field.kind for field in self.contents.fields for one in field.components}
-        for component, at in self._columns().items():
+                expected[:, self._columns()[field.name]] = self.stored[:, word.target, word.first]
+        expected[:, :NORMAL] = made[:, :NORMAL]
+        kinds = {name: field.kind for field in self.contents.fields for name in field.components}
+        for component, column in self._columns().items():
             if component in COMPONENTS:
                 number = np.ascontiguousarray(made[:, NORMAL + COMPONENTS.index(component)])
                 is_whole = kinds[component] == "uint"
-                found[:, at] = (number.view(np.float32) + 0.5).astype(np.uint32) if is_whole else number
-        return found
+                expected[:, column] = (number.view(np.float32) + 0.5).astype(np.uint32) if is_whole else number
+        return expected
 
     def read(self, code: GBufferCode) -> np.ndarray:
         """What targets read, in the order of the structure: uint32 of shape (count, numbers)."""
         places = (leaf.path.removeprefix("target_").partition(".") for leaf in target_leaves(code.texts))
-        return np.stack([self.stored[:, int(at), "xyzw".index(axis or "x")] for at, _, axis in places], axis=1)
+        return np.stack([self.stored[:, int(target), "xyzw".index(axis or "x")] for target, _, axis in places], axis=1)
 
 
 def _reference_text(layout: Layout) -> str:
@@ -177,24 +177,24 @@ def _reference_text(layout: Layout) -> str:
 
 def written_texels(code: GBufferCode, packed: np.ndarray) -> np.ndarray:
     """What a file writes to targets, as the renderer has it: uint32 of shape (count, targets, 4)."""
-    found = np.zeros((len(packed), len(code.texts.targets), CHANNELS), np.uint32)
+    texels = np.zeros((len(packed), len(code.texts.targets), CHANNELS), np.uint32)
     for column, leaf in enumerate(target_leaves(code.texts)):
-        at, _, axis = leaf.path.removeprefix("target_").partition(".")
-        found[:, int(at), "xyzw".index(axis or "x")] = packed[:, column]
-    return found
+        target, _, axis = leaf.path.removeprefix("target_").partition(".")
+        texels[:, int(target), "xyzw".index(axis or "x")] = packed[:, column]
+    return texels
 
 
 def stored_texels(layout: Layout, texels: np.ndarray) -> np.ndarray:
     """Texels as targets hold them and give them back: what the formats' own conversion makes of them."""
-    found = np.zeros_like(texels)
-    for at, target in enumerate(layout.targets):
+    stored = np.zeros_like(texels)
+    for index, target in enumerate(layout.targets):
         for channel in range(target.storage.channels):
-            word = np.ascontiguousarray(texels[:, at, channel])
+            word = np.ascontiguousarray(texels[:, index, channel])
             if not target.storage.is_integer:
                 number = store_texel(jnp.asarray(word.view(np.float32)), target.storage, channel)
                 word = np.asarray(number, np.float32).view(np.uint32)
-            found[:, at, channel] = word
-    return found
+            stored[:, index, channel] = word
+    return stored
 
 
 def _put(layout: Layout, word: Word, value: np.ndarray, is_float: bool, stored: np.ndarray) -> None:
@@ -255,11 +255,11 @@ def _steps(layout: Layout, word: Word, stored: np.ndarray) -> np.ndarray:
             return _float_steps(number, storage.bits[word.first])
         curved = np.asarray(to_srgb(jnp.asarray(number))) if word.first < storage.curved else number
         return np.rint(curved.astype(np.float64) * storage.scale(word.first)).astype(np.int64)
-    found = np.zeros(len(texels), np.uint32)
+    integers = np.zeros(len(texels), np.uint32)
     for channel in range(storage.channels):
         held = np.ascontiguousarray(texels[:, channel])
         held = held if storage.is_integer else np.rint(held.view(np.float32) * storage.scale(channel)).astype(np.uint32)
         for part in parts_of([word], channel, storage):
             moved = held >> np.uint32(part.shift) if part.shift >= 0 else held << np.uint32(-part.shift)
-            found |= moved & np.uint32(2**word.bits - 1)
-    return found.astype(np.int64)
+            integers |= moved & np.uint32(2**word.bits - 1)
+    return integers.astype(np.int64)

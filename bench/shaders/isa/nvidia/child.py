@@ -88,11 +88,11 @@ def _listed(compiled: dict[str, Kernel], architecture: str, lister: Path) -> Ite
 def statistics(kernel: Kernel, assembly: str) -> dict[str, int]:
     """A kernel's figures, under the names that the columns of `cost` are made of."""
     count = len(sass.instructions(assembly))
-    found = {"Instructions": count, "Registers": kernel.registers, "Code size": count * sass.SIZE}
-    found |= {"Stall cycles": sass.stall_cycles(assembly)}
+    figures = {"Instructions": count, "Registers": kernel.registers, "Code size": count * sass.SIZE}
+    figures |= {"Stall cycles": sass.stall_cycles(assembly)}
     # What lies on a stack is spilled, or an array: only nothing is told from something.
-    found |= {"Spill Count": 0, "Fill Count": 0} if kernel.stack == 0 else {}
-    return {name: figure for name, figure in found.items() if figure is not None}
+    figures |= {"Spill Count": 0, "Fill Count": 0} if kernel.stack == 0 else {}
+    return {name: figure for name, figure in figures.items() if figure is not None}
 
 
 if __name__ == "__main__":

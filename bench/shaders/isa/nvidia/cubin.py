@@ -49,15 +49,15 @@ def _sections(data: bytes) -> Iterator[tuple[bytes, bytes]]:
     headers = [SECTION.unpack_from(data, start + i * size) for i in range(count)]
     strings = headers[names][4]
     for name, _, _, _, place, length, *_ in headers:
-        at = strings + name
-        yield data[at : data.index(b"\0", at)], data[place : place + length]
+        offset = strings + name
+        yield data[offset : data.index(b"\0", offset)], data[place : place + length]
 
 
 def _attributes(data: bytes) -> Iterator[tuple[int, int]]:
     """(number, figure) of each attribute of two words."""
-    at = 0
-    while at < len(data):
-        kind, number, size = struct.unpack_from("<BBH", data, at)
+    offset = 0
+    while offset < len(data):
+        kind, number, size = struct.unpack_from("<BBH", data, offset)
         if kind == SIZED and size == 8:
-            yield number, struct.unpack_from("<II", data, at + 4)[1]
-        at += 4 + (size if kind == SIZED else 0)
+            yield number, struct.unpack_from("<II", data, offset + 4)[1]
+        offset += 4 + (size if kind == SIZED else 0)

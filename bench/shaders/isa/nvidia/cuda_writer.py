@@ -65,8 +65,8 @@ class CudaWriter(Writer):
     def _simple_text(self, statement: Statement) -> str:
         match statement:
             case Assign(Swizzle(kind, inner, names) as target, mark, value) if len(names) > 1:
-                made = value if mark == "=" else Binary(kind, mark[:-1], target, value)
-                return f"assign<{_field_indices(names)}>({self._text(inner)}, {self._text(made)})"
+                new_value = value if mark == "=" else Binary(kind, mark[:-1], target, value)
+                return f"assign<{_field_indices(names)}>({self._text(inner)}, {self._text(new_value)})"
         return super()._simple_text(statement)
 
     def _text_and_level(self, value: Expression) -> tuple[str, int]:

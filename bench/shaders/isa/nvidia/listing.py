@@ -29,29 +29,29 @@ def listings(codes: Sequence[bytes], architecture: str, program: Path) -> list[s
         except (OSError, subprocess.TimeoutExpired) as error:
             raise DriverError(f"nvdisasm: {error}") from error
     if done.returncode:
-        said = [line for line in done.stderr.splitlines() if line.strip()]
-        raise DriverError(f"nvdisasm ended with status {done.returncode}: {said[0][:200] if said else 'no word'}")
+        errors = [line for line in done.stderr.splitlines() if line.strip()]
+        raise DriverError(f"nvdisasm ended with status {done.returncode}: {errors[0][:200] if errors else 'no word'}")
     return _parted(done.stdout.splitlines(), [len(code) for code in codes])
 
 
 def _parted(lines: Sequence[str], sizes: Sequence[int]) -> list[str]:
     """The lines of each kernel; sizes in bytes."""
-    starts = [sum(sizes[:at]) for at in range(len(sizes) + 1)]
-    found: list[list[str]] = [[] for _ in sizes]
-    at, is_inside = 0, False
+    starts = [sum(sizes[:i]) for i in range(len(sizes) + 1)]
+    parts: list[list[str]] = [[] for _ in sizes]
+    index, is_inside = 0, False
     for line in lines:
         if match := _PLACE.match(line):
             place, is_inside = int(match[1], 16), True
-            while place >= starts[at + 1]:
-                at += 1
-            line = _relative_line(line, place, starts[at])
+            while place >= starts[index + 1]:
+                index += 1
+            line = _relative_line(line, place, starts[index])
         if is_inside:
-            found[at].append(line)
+            parts[index].append(line)
     if any(
-        sum(bool(_PLACE.match(line)) for line in some) * SIZE != size for some, size in zip(found, sizes, strict=True)
+        sum(bool(_PLACE.match(line)) for line in some) * SIZE != size for some, size in zip(parts, sizes, strict=True)
     ):
         raise DriverError("nvdisasm did not list all that it was given")
-    return ["\n".join(some) + "\n" for some in found]
+    return ["\n".join(some) + "\n" for some in parts]
 
 
 def _relative_line(line: str, place: int, start: int) -> str:

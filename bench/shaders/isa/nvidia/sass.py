@@ -62,26 +62,26 @@ class Instruction(NamedTuple):
 
 def every(assembly: str) -> list[Instruction]:
     """All instructions of a listing, in order, padding included."""
-    found: list[Instruction] = []
+    listed: list[Instruction] = []
     for line in assembly.splitlines():
         if match := _INSTRUCTION.match(line):
-            found.append(Instruction(int(match[1], 16), bool(match[2]), match[3], match[4], 0))
-        elif (match := _SECOND_WORD.match(line)) and found:
-            found[-1] = found[-1]._replace(control=int(match[1], 16))
-    return found
+            listed.append(Instruction(int(match[1], 16), bool(match[2]), match[3], match[4], 0))
+        elif (match := _SECOND_WORD.match(line)) and listed:
+            listed[-1] = listed[-1]._replace(control=int(match[1], 16))
+    return listed
 
 
 def instructions(assembly: str) -> list[Instruction]:
     """All but the padding: the NOPs behind the jump to itself that every kernel ends with."""
-    found = every(assembly)
-    while found and found[-1].name == "NOP":
-        found.pop()
-    return found
+    listed = every(assembly)
+    while listed and listed[-1].name == "NOP":
+        listed.pop()
+    return listed
 
 
 def names(assembly: str) -> list[str]:
     """The name of each instruction, in order."""
-    return [one.name for one in instructions(assembly)]
+    return [instruction.name for instruction in instructions(assembly)]
 
 
 def kinds(assembly: str, total: int, _: str = "") -> dict[str, int] | None:
@@ -116,7 +116,7 @@ def kinds_in_order(assembly: str, _: str) -> list[str]:
 
 def loops(assembly: str) -> list[range]:
     """The instructions of each loop, by their places: from where a jump goes back to, to that jump."""
-    jumps_back = ((one.place, distance) for one, _, distance in _jumps(assembly) if distance < 0)
+    jumps_back = ((instruction.place, distance) for instruction, _, distance in _jumps(assembly) if distance < 0)
     return [range((place + distance) // SIZE, place // SIZE + 1) for place, distance in jumps_back]
 
 
@@ -131,14 +131,18 @@ def jumps(assembly: str) -> tuple[int, int]:
 
 def _jumps(assembly: str) -> Iterator[tuple[Instruction, bool, int]]:
     """Each jump, whether there is a condition, and how many bytes it goes ahead."""
-    for one in instructions(assembly):
-        if one.name in ("BRA", "JMP") and (target := _TARGET.search(one.operands)):
-            is_conditional = one.is_predicated or bool(_CONDITION.match(one.operands))
-            yield one, is_conditional, int(target[1], 16) - one.place
+    for instruction in instructions(assembly):
+        if instruction.name in ("BRA", "JMP") and (target := _TARGET.search(instruction.operands)):
+            is_conditional = instruction.is_predicated or bool(_CONDITION.match(instruction.operands))
+            yield instruction, is_conditional, int(target[1], 16) - instruction.place
 
 
 def stall_cycles(assembly: str) -> int | None:
     """The cycles that the compiler has a warp wait after each instruction, added up along the code; None where the
     listing has no second words."""
-    found = instructions(assembly)
-    return sum(one.control >> _STALL & 15 for one in found) if all(one.control for one in found) else None
+    listed = instructions(assembly)
+    return (
+        sum(instruction.control >> _STALL & 15 for instruction in listed)
+        if all(instruction.control for instruction in listed)
+        else None
+    )

@@ -46,8 +46,8 @@ def functions_of(operation: Operation) -> str:
             program = reduced(read_glsl(source.text), {"kernel_operation": "operation"}, PREFIX, PREFIX)
             return {"text": CudaWriter(PREFIX, {}).program(program)}
         except TranslationError as error:
-            said = source.explain(re.sub(r"^(\d+):\d+: ", r"0:\1: ", str(error)))
-            raise ShaderError(f"{said}; NVIDIA's compiler is given CUDA, in which that is not written") from error
+            message = source.explain(re.sub(r"^(\d+):\d+: ", r"0:\1: ", str(error)))
+            raise ShaderError(f"{message}; NVIDIA's compiler is given CUDA, in which that is not written") from error
 
     key = kept.key_of("cuda", source.text, *(path.read_text(encoding="utf-8") for path in _own_files()))
     return kept.kept(key, make)["text"]

@@ -33,8 +33,8 @@ def library() -> Path | None:
 
 def disassembler() -> Path | None:
     """The program nvdisasm."""
-    found = (shutil.which("nvdisasm", path=str(folder / "bin")) for folder in _folders())
-    named = next(filter(None, found), None) or shutil.which("nvdisasm")
+    programs = (shutil.which("nvdisasm", path=str(folder / "bin")) for folder in _folders())
+    named = next(filter(None, programs), None) or shutil.which("nvdisasm")
     return Path(named) if named else None
 
 
@@ -48,8 +48,8 @@ def _folders() -> Iterator[Path]:
 
 def _libraries(folder: Path) -> list[Path]:
     # The shortest name is the one that programs link to.
-    found = (path for path in folder.glob("libnvrtc.so*") if LIBRARY.match(path.name))
-    return sorted(found, key=lambda path: (len(path.name), path.name))
+    paths = (path for path in folder.glob("libnvrtc.so*") if LIBRARY.match(path.name))
+    return sorted(paths, key=lambda path: (len(path.name), path.name))
 
 
 def missing() -> str:
@@ -76,8 +76,8 @@ def identity() -> str:
 def title(number: str) -> str:
     """Both and their versions; `number` is what NVRTC says of itself. Raises MissingDriverError."""
     compiler, lister = found()
-    said = f"NVRTC {_package_version(compiler) or number} (CUDA's compiler, not the graphics driver's)"
-    return f"{said}, nvdisasm {_version(lister)}"
+    compiler_title = f"NVRTC {_package_version(compiler) or number} (CUDA's compiler, not the graphics driver's)"
+    return f"{compiler_title}, nvdisasm {_version(lister)}"
 
 
 @cache

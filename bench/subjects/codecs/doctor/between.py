@@ -79,11 +79,11 @@ FOLDS = (NOTHING, Step("the other one's fold, whose .xy is .yx,", _other_fold))
 @cache
 def _orders(size: int) -> tuple[Step, ...]:
     """Every way to swap and to negate the numbers of a code, the shortest to say first."""
-    made = []
+    orders = []
     for order in itertools.permutations(range(size)):
         for signs in itertools.product((1, -1), repeat=size):
-            made.append(Step(_order_text(order, signs), _order_change(order, signs)))
-    return tuple(sorted(made, key=lambda step: len(step.said)))
+            orders.append(Step(_order_text(order, signs), _order_change(order, signs)))
+    return tuple(sorted(orders, key=lambda step: len(step.said)))
 
 
 def _order_change(order: Sequence[int], signs: Sequence[int]) -> Change:
@@ -91,10 +91,10 @@ def _order_change(order: Sequence[int], signs: Sequence[int]) -> Change:
 
 
 def _order_text(order: Sequence[int], signs: Sequence[int]) -> str:
-    moved = [at for at in range(len(order)) if order[at] != at]
-    names = "its numbers" if len(order) == len(moved) else f"numbers {' and '.join(str(at + 1) for at in moved)}"
-    swapped = [f"{names} swapped, c.{''.join(AXES[at] for at in order)}"] if moved else []
-    negated = [str(at + 1) for at in range(len(signs)) if signs[at] < 0]
+    moved = [i for i in range(len(order)) if order[i] != i]
+    names = "its numbers" if len(order) == len(moved) else f"numbers {' and '.join(str(i + 1) for i in moved)}"
+    swapped = [f"{names} swapped, c.{''.join(AXES[i] for i in order)}"] if moved else []
+    negated = [str(i + 1) for i in range(len(signs)) if signs[i] < 0]
     numbers = f"number{'s' * (len(negated) > 1)} {' and '.join(negated)} negated"
     return " and ".join([*swapped, *([numbers] if negated else [])])
 
@@ -104,8 +104,8 @@ def steps(size: int) -> tuple[Step, ...]:
     """Return every Step to try between an encoder and a decoder whose code has `size` numbers, the plainest first, but
     the one that changes nothing."""
     kinds = (RANGES, _orders(size), TURNS, FOLDS) if size == 2 else (RANGES, _orders(size))
-    made = [_one_after_another(parts) for parts in itertools.product(*kinds)]
-    return tuple(sorted(made, key=lambda step: (step.said.count(THEN), len(step.said))))[1:]
+    combined_steps = [_one_after_another(parts) for parts in itertools.product(*kinds)]
+    return tuple(sorted(combined_steps, key=lambda step: (step.said.count(THEN), len(step.said))))[1:]
 
 
 def _one_after_another(parts: Sequence[Step]) -> Step:
@@ -129,13 +129,13 @@ def step_between(trip: Trip, probe: Probe) -> tuple[Step, Domain] | None:
     A decoder that normalises takes codes of several ranges: the widest one that a storage holds is named.
     """
     few = trip.of(np.arange(len(trip.n) - TRIED, len(trip.n)))
-    tried, found = steps(probe.size), []
+    tried, candidates = steps(probe.size), []
     for step, decoded in zip(tried, decoded_after(probe, few.codes, tried), strict=True):
         with np.errstate(invalid="ignore"):
             domain = guessed(Trip(few.n, few.view, few.codes, decoded), SAME_DEG)
         if domain.name:
-            found.append((step, domain))
-    return min(found, key=lambda one: _unlikely(one[0], few.codes), default=None)
+            candidates.append((step, domain))
+    return min(candidates, key=lambda one: _unlikely(one[0], few.codes), default=None)
 
 
 def _unlikely(step: Step, codes: np.ndarray) -> tuple[int, bool, float]:
@@ -162,7 +162,7 @@ def turns() -> Iterator[tuple[tuple[int, ...], tuple[int, ...]]]:
 
 def axes_said(order: Sequence[int], signs: Sequence[int]) -> str:
     """Axes in another order, or with another sign, in words."""
-    moved = [AXES[at] for at in range(3) if order[at] != at]
-    reversed_ = [AXES[at] for at in range(3) if signs[at] < 0]
-    said = [f"{' and '.join(moved)} swapped" if len(moved) == 2 else "x, y and z in another order"] if moved else []
-    return " and ".join([*said, *([f"{' and '.join(reversed_)} reversed"] if reversed_ else [])])
+    moved = [AXES[axis] for axis in range(3) if order[axis] != axis]
+    reversed_ = [AXES[axis] for axis in range(3) if signs[axis] < 0]
+    parts = [f"{' and '.join(moved)} swapped" if len(moved) == 2 else "x, y and z in another order"] if moved else []
+    return " and ".join([*parts, *([f"{' and '.join(reversed_)} reversed"] if reversed_ else [])])

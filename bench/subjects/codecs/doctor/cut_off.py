@@ -67,8 +67,8 @@ def _patches(centres: np.ndarray, probe: Probe, radius: float) -> Iterator[np.nd
 
 def _planes(n: np.ndarray) -> np.ndarray:
     """Two directions across each of some directions: (count, 2, 3)."""
-    one = unit(np.cross(n, np.eye(3)[np.argmin(np.abs(n), axis=1)]))
-    return np.stack([one, np.cross(n, one)], axis=1)
+    tangent = unit(np.cross(n, np.eye(3)[np.argmin(np.abs(n), axis=1)]))
+    return np.stack([tangent, np.cross(n, tangent)], axis=1)
 
 
 def _squared_shift(shifts: np.ndarray) -> float:

@@ -68,17 +68,17 @@ def diagnosed(probe: Probe, gl: Device, name: str = "") -> Diagnosis:
     if not is_nearly_whole and (not whole or meant not in (None, *whole)):
         broken = meant.held(trip).hole if meant else trip.hole
         return Diagnosis(meant or SPHERE, folds.mistakes(probe), broken)
-    found = _finite_diagnosis(kept, probe, gl, meant)
-    if found.domain in whole:
-        return replace(found, hole=trip.hole)
-    hole = found.domain.held(trip).hole
+    diagnosis = _finite_diagnosis(kept, probe, gl, meant)
+    if diagnosis.domain in whole:
+        return replace(diagnosis, hole=trip.hole)
+    hole = diagnosis.domain.held(trip).hole
     if is_nearly_whole:
         # Its author may rely on these directions as well. A mistake that makes them is named in place of what follows
         # from it.
-        wrong = [line for line in folds.mistakes(probe) if line not in found.wrong] + found.wrong
-        return replace(found, wrong=[hole, *wrong] if wrong else [f"{hole}; all other directions come back"])
-    if found.wrong or found.domain != SPHERE:
-        return replace(found, broken=hole)
+        wrong = [line for line in folds.mistakes(probe) if line not in diagnosis.wrong] + diagnosis.wrong
+        return replace(diagnosis, wrong=[hole, *wrong] if wrong else [f"{hole}; all other directions come back"])
+    if diagnosis.wrong or diagnosis.domain != SPHERE:
+        return replace(diagnosis, broken=hole)
     return Diagnosis(whole[0], [], hole=trip.hole)
 
 
@@ -92,8 +92,8 @@ def _finite_diagnosis(trip: Trip, probe: Probe, gl: Device, meant: Domain | None
     within = NEARLY_DEG if probe.is_packed else _same_within_deg(trip)
     domain = meant or guessed(trip, within)
     wider = None if meant else _nearly_back(trip, domain)
-    if wider and (found := list(nearly.mistakes(wider.held(trip), probe))):
-        return _near_diagnosis(trip, probe, wider, found)
+    if wider and (mistakes := list(nearly.mistakes(wider.held(trip), probe))):
+        return _near_diagnosis(trip, probe, wider, mistakes)
     if domain.name == HEMISPHERE and not meant and (half := list(_half_faults(trip, probe, domain))):
         return Diagnosis(SPHERE, [*half, *_of_held(domain.held(trip), probe)])
     if domain.name and not _is_lost(trip, domain, within):
@@ -136,18 +136,18 @@ def _of_pair(trip: Trip, probe: Probe, domain: Domain, is_meant: bool) -> list[s
 
 def _of_held(held: Trip, probe: Probe) -> list[str]:
     """What is wrong, in lines, with directions that the code holds."""
-    found = list(_inexact(held, probe)) if np.median(held.angles()) > EXACT_DEG else []
+    mistakes = list(_inexact(held, probe)) if np.median(held.angles()) > EXACT_DEG else []
     # What is scaled or shifted is far off where the map is steep, which says nothing more.
-    seams = [] if found else [*exact.seam(held, probe), *exact.poles(held)]
-    return [*found, *seams, *exact.lengths(held)]
+    seams = [] if mistakes else [*exact.seam(held, probe), *exact.poles(held)]
+    return [*mistakes, *seams, *exact.lengths(held)]
 
 
 def _inexact(held: Trip, probe: Probe) -> Iterator[str]:
     """Why directions come back nearly. The steps of a code that is packed are not those of its halves."""
-    found = [] if probe.is_packed else list(nearly.mistakes(held, probe))
+    mistakes = [] if probe.is_packed else list(nearly.mistakes(held, probe))
     rounds_itself = probe.is_packed or nearly.lattice_of(held.codes)
-    found = found or (list(nearly.scaled_angles(held)) if rounds_itself else [])
-    yield from found or (cut_off(held, probe) if rounds_itself else ())
+    mistakes = mistakes or (list(nearly.scaled_angles(held)) if rounds_itself else [])
+    yield from mistakes or (cut_off(held, probe) if rounds_itself else ())
 
 
 def _half_faults(trip: Trip, probe: Probe, half: Domain) -> Iterator[str]:
@@ -158,7 +158,7 @@ def _half_faults(trip: Trip, probe: Probe, half: Domain) -> Iterator[str]:
         return
     if mistakes := folds.mistakes(probe):
         which = f"{sides.share}directions with {half.lost_text}"
-        yield from (f"{said}: {which} are lost, {gone.worst}" for said in mistakes)
+        yield from (f"{mistake}: {which} are lost, {gone.worst}" for mistake in mistakes)
     elif line := lost(sides, half):
         why = "; ".join([*unread(probe, trip.codes), line])
         yield f"{why}; {gone.worst}"
@@ -176,21 +176,21 @@ def _elsewhere_text(half: Domain, gone: Trip) -> str:
 def _of_none(trip: Trip, probe: Probe, gl: Device, given: Domain) -> Diagnosis:
     """Of functions that are no pair, or not one on the domain that a user gives."""
     nearby = given if given.name else guessed(trip, NEARLY_DEG)
-    if given.name and (found := list(nearly.mistakes(given.held(trip), probe))):
-        return _near_diagnosis(trip, probe, given, found)
+    if given.name and (mistakes := list(nearly.mistakes(given.held(trip), probe))):
+        return _near_diagnosis(trip, probe, given, mistakes)
     likely = nearby if nearby.name else _likely_domain(trip)
     held, ranges = likely.held(trip), list(exact.ranges(trip, likely, probe))
     # What is clipped comes back elsewhere, whatever else is right.
-    is_clipped = any(exact.CLIPPED in said for said in ranges)
+    is_clipped = any(exact.CLIPPED in line for line in ranges)
     scaled = _scale_text(trip, held, probe) if is_clipped and not _is_back_unclipped(held, probe) else ""
     if scaled:
         ranges, why = [], [f"{_apart_text(held, likely)}; {scaled}"]
     else:
         why = [] if is_clipped else [_why(trip, held, probe, gl, likely)]
     # What a wrong code decodes to may have any length, and what stands between the two changes the range.
-    lengths = [] if any(NO_PAIR in said for said in why) else exact.lengths(held)
-    if any(MAKES_ONE in said for said in why):
-        ranges = [said for said in ranges if exact.UNUSED not in said]
+    lengths = [] if any(NO_PAIR in line for line in why) else exact.lengths(held)
+    if any(MAKES_ONE in line for line in why):
+        ranges = [line for line in ranges if exact.UNUSED not in line]
     return Diagnosis(given if given.name else SPHERE, [*why, *unread(probe, trip.codes), *lengths, *ranges])
 
 
@@ -205,8 +205,8 @@ def _scale_text(trip: Trip, held: Trip, probe: Probe) -> str:
     begin = nearly.start(held, probe)
     decoded = probe.decode(begin.of(trip.codes).astype(np.float32))
     domain = guessed(replace(trip, decoded=decoded), NEARLY_DEG)
-    found = list(nearly.mistakes(domain.held(trip) if domain.name else held, probe, begin))
-    return found[0] if found else ""
+    mistakes = list(nearly.mistakes(domain.held(trip) if domain.name else held, probe, begin))
+    return mistakes[0] if mistakes else ""
 
 
 def _apart_text(held: Trip, likely: Domain) -> str:

@@ -66,10 +66,10 @@ class Domain:
 
     def measured(self, encoding: Encoding) -> Encoding:
         """An encoding of this domain as tables measure it: a hemisphere's axis is their z."""
-        made = replace(encoding, domain=self.name or SPHERE.name)
+        unturned = replace(encoding, domain=self.name or SPHERE.name)
         # Where z becomes its y, components move one place back: by the turn whose pole is x.
         turn = {0: "y", 1: "x", 2: "z"}[self.axis]
-        return replace(made.turned(turn, self.side), own=made) if self.is_turned else made
+        return replace(unturned.turned(turn, self.side), own=unturned) if self.is_turned else unturned
 
 
 # How far from the rim of a hemisphere its other half begins.
@@ -95,7 +95,7 @@ def guessed(trip: Trip, within: float) -> Domain:
 
 def finite(trip: Trip) -> list[Domain]:
     """The domains where every direction that is tried is finite; empty where none is."""
-    return [one for one in IN_TURN if trip.is_finite[one.holds(trip)].all()]
+    return [domain for domain in IN_TURN if trip.is_finite[domain.holds(trip)].all()]
 
 
 def asked(name: str, trip: Trip, among: Collection[Domain] = IN_TURN) -> Domain:

@@ -47,13 +47,13 @@ def is_unit(codes: np.ndarray, share: float = NEARLY_FULL) -> bool:
     beyond = (codes < -ROUNDED) | (codes > 1 + ROUNDED)
     is_in = (beyond.mean(axis=0) < NEXT_TO_A_POLE) & (low > -FARTHER) & (high < 1 + FARTHER)
     fills = high - low > share
-    return bool(is_in.all() and fills.any() and all(fills[at] or len(values(codes, at)) for at in range(len(fills))))
+    return bool(is_in.all() and fills.any() and all(fills[i] or len(values(codes, i)) for i in range(len(fills))))
 
 
 def values(codes: np.ndarray, number: int) -> np.ndarray:
     """The values of a number that has few, such as the face of a cube, ascending; empty where it has more."""
-    found = np.unique(np.round(codes[:, number], 4))
-    return found if len(found) <= FEW_VALUES else found[:0]
+    levels = np.unique(np.round(codes[:, number], 4))
+    return levels if len(levels) <= FEW_VALUES else levels[:0]
 
 
 def lost(trip: Trip, within: float = SAME_DEG) -> str:
@@ -113,17 +113,18 @@ def poles(trip: Trip) -> Iterator[str]:
         is_unusual = np.median(around.angles()) > UNUSUAL * np.median(trip.angles())
         if is_unusual and np.median(lost) > POLE_SHARE and around.angles().max() < SAME_DEG:
             sign = "+" if side > 0 else "-"
-            at = int(np.argmax(lost))
-            said = f"directions {beside[near][at]:.2g} degrees from it come back {around.angles()[at]:.2g} degrees off"
-            yield f"the pole {sign}{AXES[axis]} loses its neighbourhood: {said}; {around.example(at)}"
+            worst = int(np.argmax(lost))
+            near_deg, off_deg = beside[near][worst], around.angles()[worst]
+            loss = f"directions {near_deg:.2g} degrees from it come back {off_deg:.2g} degrees off"
+            yield f"the pole {sign}{AXES[axis]} loses its neighbourhood: {loss}; {around.example(worst)}"
 
 
 def lengths(trip: Trip) -> Iterator[str]:
-    found = np.linalg.norm(trip.decoded.astype(np.float64), axis=1)
-    if np.abs(found - 1).max() > LENGTH:
-        at = int(np.argmax(np.abs(found - 1)))
-        said = f"decode gives lengths from {found.min():.3g} to {found.max():.3g}; normalize() is missing"
-        yield f"{said}: {trip.example(at)}"
+    norms = np.linalg.norm(trip.decoded.astype(np.float64), axis=1)
+    if np.abs(norms - 1).max() > LENGTH:
+        worst = int(np.argmax(np.abs(norms - 1)))
+        message = f"decode gives lengths from {norms.min():.3g} to {norms.max():.3g}; normalize() is missing"
+        yield f"{message}: {trip.example(worst)}"
 
 
 def ranges(trip: Trip, domain: Domain, probe: Probe) -> Iterator[str]:
@@ -134,19 +135,19 @@ def ranges(trip: Trip, domain: Domain, probe: Probe) -> Iterator[str]:
     clipped = np.clip(trip.codes, -1, 1)
     low, high = clipped.min(axis=0), clipped.max(axis=0)
     size = trip.codes.shape[1]
-    constant = [at for at in range(size) if high[at] - low[at] < 1e-4]
-    for at in constant:
-        yield f"number {at + 1} of the code carries nothing: it is always {probe.own(low[at]):.3g}"
-    others = [at for at in range(size) if at not in constant]
-    for at in others:
-        if (np.abs(held.codes[:, at]) > 1 + BEYOND).mean() > FEW:
-            worst = int(np.argmax(np.abs(held.codes[:, at])))
-            reached = probe.own(float(held.codes[worst, at]))
-            reach = f"number {at + 1} of the code is {reached:.4g} for {vector(held.n[worst])}"
+    constant = [i for i in range(size) if high[i] - low[i] < 1e-4]
+    for number in constant:
+        yield f"number {number + 1} of the code carries nothing: it is always {probe.own(low[number]):.3g}"
+    others = [i for i in range(size) if i not in constant]
+    for number in others:
+        if (np.abs(held.codes[:, number]) > 1 + BEYOND).mean() > FEW:
+            worst = int(np.argmax(np.abs(held.codes[:, number])))
+            reached = probe.own(float(held.codes[worst, number]))
+            reach = f"number {number + 1} of the code is {reached:.4g} for {vector(held.n[worst])}"
             yield f"{reach}: {CLIPPED} {probe.range}"
-        elif (used := (high[at] - low[at]) / 2) < USED and not len(values(trip.codes, at)):
-            between = f"{probe.own(low[at]):.3g} to {probe.own(high[at]):.3g}"
-            yield f"number {at + 1} of the code is {between}: {100 * (1 - used):.0f} {UNUSED}"
+        elif (used := (high[number] - low[number]) / 2) < USED and not len(values(trip.codes, number)):
+            between = f"{probe.own(low[number]):.3g} to {probe.own(high[number]):.3g}"
+            yield f"number {number + 1} of the code is {between}: {100 * (1 - used):.0f} {UNUSED}"
 
 
 def bits_used(codes: np.ndarray) -> int:
@@ -169,8 +170,8 @@ def spared(trip: Trip, probe: Probe) -> Iterator[str]:
         used = bits_used(trip.codes)
         yield from [f"{used} of the 32 bits of the code are used"] if used < 32 else ()
         return
-    for at in range(probe.size):
-        found = values(trip.codes, at)
-        if len(found) > 1 and (found[-1] - found[0]) / 2 < USED:
-            some = f"{len(found)} values from {probe.own(found[0]):.3g} to {probe.own(found[-1]):.3g}"
-            yield f"number {at + 1} of the code has {some}; the rest of {probe.range} is unused"
+    for number in range(probe.size):
+        levels = values(trip.codes, number)
+        if len(levels) > 1 and (levels[-1] - levels[0]) / 2 < USED:
+            some = f"{len(levels)} values from {probe.own(levels[0]):.3g} to {probe.own(levels[-1]):.3g}"
+            yield f"number {number + 1} of the code has {some}; the rest of {probe.range} is unused"

@@ -166,8 +166,8 @@ class Found:
         if right[0] & right[1]:
             return
         for name, side, other in (("encode", self.encoder, right[1]), ("decode", self.decoder, right[0])):
-            if said := next((said for said, axes in side.items() if said and axes & other), ""):
-                yield f"{name} is octahedral, but {said}"
+            if mistake := next((text for text, axes in side.items() if text and axes & other), ""):
+                yield f"{name} is octahedral, but {mistake}"
 
 
 def mistakes(probe: Probe) -> list[str]:
@@ -187,12 +187,12 @@ def found(probe: Probe) -> Found:
     is_point = np.asarray((np.abs(points) <= 1).all(axis=2))
 
     def encoded(model: Side) -> np.ndarray:
-        made = model(turned.reshape(-1, 3)).reshape(*turned.shape[:2], 2)
-        return np.stack([axes.code(p) for axes, p in zip(frames(), made, strict=True)])
+        model_codes = model(turned.reshape(-1, 3)).reshape(*turned.shape[:2], 2)
+        return np.stack([axes.code(p) for axes, p in zip(frames(), model_codes, strict=True)])
 
     def decoded(model: Side) -> np.ndarray:
-        made = model(points.reshape(-1, 2)).reshape(*points.shape[:2], 3)
-        return np.stack([m @ axes.matrix for axes, m in zip(frames(), made, strict=True)])
+        model_normals = model(points.reshape(-1, 2)).reshape(*points.shape[:2], 3)
+        return np.stack([m @ axes.matrix for axes, m in zip(frames(), model_normals, strict=True)])
 
     everywhere = np.full(turned.shape[:2], True)
     return Found(
@@ -203,10 +203,10 @@ def found(probe: Probe) -> Found:
 
 def _matching_axes(models: Mapping[str, Sequence[Side]], alike: Callable[[Side], np.ndarray]) -> dict[str, set[int]]:
     matched = {
-        said: set(np.flatnonzero(np.any([alike(model) for model in variants], axis=0)).tolist())
-        for said, variants in models.items()
+        mistake: set(np.flatnonzero(np.any([alike(model) for model in variants], axis=0)).tolist())
+        for mistake, variants in models.items()
     }
-    return {said: axes for said, axes in matched.items() if axes}
+    return {mistake: axes for mistake, axes in matched.items() if axes}
 
 
 def _alike(made: np.ndarray, own: np.ndarray, counts: np.ndarray) -> np.ndarray:

@@ -77,21 +77,21 @@ def lost(sides: Sides, half: Domain) -> str:
     if sides.encoder_knows and not sides.decoder_reaches:
         return f"decode loses {which}: encode gives them codes of their own, and no code decodes to most of them"
     if sides.decoder_reaches and not sides.encoder_knows:
-        said = "it gives them codes of other directions, though decode reaches them from codes that it does not use"
-        return f"encode loses {which}: {said}"
+        reason = "it gives them codes of other directions, though decode reaches them from codes that it does not use"
+        return f"encode loses {which}: {reason}"
     return ""
 
 
 def unread(probe: Probe, codes: np.ndarray) -> Iterator[str]:
     """Numbers that the encoder fills and the decoder does not read."""
     before = probe.decode(np.clip(codes, -1, 1))
-    for at in range(probe.size):
-        if np.ptp(np.clip(codes[:, at], -1, 1)) < SAME_CODE:
+    for number in range(probe.size):
+        if np.ptp(np.clip(codes[:, number], -1, 1)) < SAME_CODE:
             continue
         changed = np.clip(codes, -1, 1).copy()
-        changed[:, at] = np.random.default_rng(at).permutation(changed[:, at])
+        changed[:, number] = np.random.default_rng(number).permutation(changed[:, number])
         if np.array_equal(probe.decode(changed), before):
-            yield f"decode does not read number {at + 1} of the code, which encode fills"
+            yield f"decode does not read number {number + 1} of the code, which encode fills"
 
 
 def unused(trip: Trip, probe: Probe) -> Iterator[str]:

@@ -56,8 +56,8 @@ def likeness(gl: Device, probe: Probe, domain: Domain) -> Likeness:
 def names_alone(gl: Device, probe: Probe, is_encoder: bool) -> tuple[str, ...]:
     """The encodings of the catalogue that one function alone is of: of all directions, else of those with z >= 0."""
     for domain in (SPHERE, HALVES[0]):
-        found = likeness(gl, probe, domain)
-        if names := found.encoder if is_encoder else found.decoder:
+        resemblance = likeness(gl, probe, domain)
+        if names := resemblance.encoder if is_encoder else resemblance.decoder:
             return names
     return ()
 
@@ -99,15 +99,15 @@ def _is_linear_fit(own: np.ndarray, codes: np.ndarray) -> bool:
 def _decoders(probe: Probe, codes: Mapping[str, np.ndarray], turned: np.ndarray) -> tuple[str, ...]:
     """The encodings whose codes a user's decoder takes, but for a range, a turn and axes."""
     changes = _code_steps(probe.size)
-    made = []
+    names = []
     for name, its in codes.items():
         held = _held_mask(ENCODINGS[name], turned)
         # In axes of which the encoding holds the directions.
-        at = int(np.argmax(held.sum(axis=1)))
-        back = decoded_after(probe, its[at], changes)
-        if held[at].any() and any(_is_decoded_back(one, turned, held[at]) for one in back):
-            made.append(name)
-    return tuple(made)
+        axes_index = int(np.argmax(held.sum(axis=1)))
+        back = decoded_after(probe, its[axes_index], changes)
+        if held[axes_index].any() and any(_is_decoded_back(decoded, turned, held[axes_index]) for decoded in back):
+            names.append(name)
+    return tuple(names)
 
 
 def _is_decoded_back(decoded: np.ndarray, turned: np.ndarray, held: np.ndarray) -> bool:

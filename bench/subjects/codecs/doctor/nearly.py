@@ -71,7 +71,7 @@ class Lattice:
 
     def is_of(self, storage: Storage, size: int) -> bool:
         """Whether the first channels of a storage have these steps, as many as a code has numbers."""
-        scales = {storage.scale(at) for at in range(min(size, storage.channels))}
+        scales = {storage.scale(channel) for channel in range(min(size, storage.channels))}
         return storage.kind == ("unorm" if self.is_unit else "snorm") and scales == {self.steps}
 
     def whole(self, codes: np.ndarray) -> np.ndarray:
@@ -87,10 +87,10 @@ class Lattice:
 def lattice_of(codes: np.ndarray) -> Lattice | None:
     """The coarsest steps that all codes lie on; None where they lie on none."""
     for bits in BITS:
-        for found in (Lattice(bits, True), Lattice(bits, False), Lattice(bits, True, True)):
-            whole = found.whole(codes.astype(np.float64))
+        for lattice in (Lattice(bits, True), Lattice(bits, False), Lattice(bits, True, True)):
+            whole = lattice.whole(codes.astype(np.float64))
             if (np.abs(whole - np.rint(whole)) < WHOLE).mean() > 0.999 and len(np.unique(np.rint(whole))) > 8:
-                return found
+                return lattice
     return None
 
 
@@ -119,7 +119,7 @@ def start(trip: Trip, probe: Probe) -> Start:
     scales = np.geomspace(1 / FARTHEST, FARTHEST, SCALES)
     tried = [Start(float(scale), about) for about in (0.0, 0.5) for scale in scales]
     few = trip.of(np.arange(max(len(trip.n) - FEW, 0), len(trip.n)))
-    given = np.concatenate([one.of(few.codes).astype(np.float32) for one in tried])
+    given = np.concatenate([begin.of(few.codes).astype(np.float32) for begin in tried])
     back = np.split(probe.decode(given), len(tried))
     return min(zip(tried, back, strict=True), key=lambda one: float(np.median(angles_deg(few.n, one[1]))))[0]
 
@@ -136,19 +136,19 @@ def _towards(n: np.ndarray, codes: np.ndarray, probe: Probe) -> np.ndarray:
     """The step of each code that the decoder's slope says."""
     size = codes.shape[1]
     # Of what float32 makes of a code, so that a difference is one of codes that are.
-    at = codes.astype(np.float32)
+    rounded_codes = codes.astype(np.float32)
     shifts = [np.float32(sign * STEP) * np.eye(size, dtype=np.float32)[i] for i in range(size) for sign in (1, -1)]
-    given = [at, *((at + shift).astype(np.float32) for shift in shifts)]
-    back = [unit(one) for one in np.split(probe.decode(np.concatenate(given)), len(given))]
+    given = [rounded_codes, *((rounded_codes + shift).astype(np.float32) for shift in shifts)]
+    back = [unit(decoded) for decoded in np.split(probe.decode(np.concatenate(given)), len(given))]
     gaps = [(given[1 + 2 * i] - given[2 + 2 * i])[:, i : i + 1] for i in range(size)]
     # Beside a code beyond float32's digits lies the code itself.
     with np.errstate(divide="ignore", invalid="ignore"):
         slope = np.stack([(back[1 + 2 * i] - back[2 + 2 * i]) / gaps[i] for i in range(size)], axis=2)
     flat = ~(np.isfinite(slope).all(axis=(1, 2)))
     slope[flat] = 0.0
-    made = np.einsum("nij,nj->ni", np.linalg.pinv(slope, rcond=1e-3), n - back[0])
-    made[flat] = np.nan
-    return made - (codes - at)
+    steps = np.einsum("nij,nj->ni", np.linalg.pinv(slope, rcond=1e-3), n - back[0])
+    steps[flat] = np.nan
+    return steps - (codes - rounded_codes)
 
 
 def _fit(at: int, given: np.ndarray, wanted_codes: np.ndarray, begin: Start) -> Fit:
@@ -173,15 +173,15 @@ def mistakes(trip: Trip, probe: Probe, begin: Start = UNCHANGED) -> Iterator[str
     """
     lattice = lattice_of(trip.codes)
     x, y = trip.codes.astype(np.float64), wanted(trip, probe, begin)
-    moving = [at for at in range(probe.size) if np.nanmax(np.abs(y[:, at] - x[:, at]), initial=0.0) > 0]
+    moving = [i for i in range(probe.size) if np.nanmax(np.abs(y[:, i] - x[:, i]), initial=0.0) > 0]
     if not moving:
         return
     if lattice:
         yield from _of_lattice(x[:, moving], y[:, moving], lattice)
         return
-    fits, better = [_fit(at, x, y, begin) for at in moving], trip.codes.copy()
-    for at, fit in zip(moving, fits, strict=True):
-        better[:, at] = x[:, at] * fit.scale + fit.shift
+    fits, better = [_fit(i, x, y, begin) for i in moving], trip.codes.copy()
+    for number, fit in zip(moving, fits, strict=True):
+        better[:, number] = x[:, number] * fit.scale + fit.shift
     after = Trip(trip.n, trip.view, better, probe.decode(better)).angles()
     if FEWER * np.median(after) < np.median(trip.angles()):
         yield from _rounding_sentences(fits, trip, probe)
@@ -216,14 +216,14 @@ def _half_step(shift: float) -> int:
 def _scale_said(fits: list[Fit], scale: np.ndarray, shift: np.ndarray, probe: Probe) -> str:
     """Scales in words: one of all numbers, or each by itself with its shift, those left out that are right."""
     if max(np.ptp(scale), np.ptp(shift)) <= ALIKE * np.abs(scale - 1).max():
-        one = float(scale.mean())
-        return f"{_fraction(one)} times the code that decode takes{_fixed_point_text(one, float(shift.mean()), probe)}"
+        mean_scale = float(scale.mean())
+        fixed_point = _fixed_point_text(mean_scale, float(shift.mean()), probe)
+        return f"{_fraction(mean_scale)} times the code that decode takes{fixed_point}"
     off = np.abs(scale - 1) > ALIKE * np.abs(scale - 1).max()
-    said = [
-        f"{scale[at]:.3g} times number {fits[at].number}{_shift_said(scale[at], shift[at])}"
-        for at in np.flatnonzero(off)
+    parts = [
+        f"{scale[i]:.3g} times number {fits[i].number}{_shift_said(scale[i], shift[i])}" for i in np.flatnonzero(off)
     ]
-    return f"{' and '.join(said)} of the code that decode takes"
+    return f"{' and '.join(parts)} of the code that decode takes"
 
 
 def _fixed_point_text(scale: float, shift: float, probe: Probe) -> str:
@@ -253,11 +253,11 @@ def _shift_said(scale: float, shift: float) -> str:
 def _fraction(scale: float) -> str:
     """A scale as a fraction of the integers that stand for 1, where it is one: 254/255."""
     fractions = {}
-    for steps in (one for bits in BITS for one in (2**bits - 1, 2**bits, 2 ** (bits - 1) - 1)):
+    for steps in (count for bits in BITS for count in (2**bits - 1, 2**bits, 2 ** (bits - 1) - 1)):
         fractions |= {f"{steps - 1}/{steps}": 1 - 1 / steps, f"{steps}/{steps - 1}": steps / (steps - 1)}
     # Of two that float32 does not tell apart the first, whose integers stand for 1.
-    said, value = min(fractions.items(), key=lambda one: round(abs(one[1] - scale) / UNTOLD))
-    return said if abs(value - scale) < OF_A_FRACTION * abs(value - 1) else f"{scale:.5g}"
+    fraction, value = min(fractions.items(), key=lambda one: round(abs(one[1] - scale) / UNTOLD))
+    return fraction if abs(value - scale) < OF_A_FRACTION * abs(value - 1) else f"{scale:.5g}"
 
 
 def _of_lattice(x: np.ndarray, y: np.ndarray, lattice: Lattice) -> Iterator[str]:
@@ -279,7 +279,7 @@ def _of_lattice(x: np.ndarray, y: np.ndarray, lattice: Lattice) -> Iterator[str]
 
 def _lattice_scale(x: np.ndarray, off: np.ndarray, lattice: Lattice) -> Iterator[str]:
     """Of codes that are rounded to steps of another size than they are divided by: 254 for 255."""
-    slopes = [_slope(x[:, at], off[:, at]) for at in range(x.shape[1])]
+    slopes = [_slope(x[:, i], off[:, i]) for i in range(x.shape[1])]
     # One step too many or too few from end to end.
     steps = np.array(slopes) * (2.0 if lattice.is_unit else 1.0)
     if (np.abs(np.abs(steps) - 1) < 0.2).all() and np.ptp(np.sign(steps)) == 0:

@@ -88,10 +88,10 @@ class Trip:
     @property
     def hole(self) -> str:
         """The first direction where a function is not finite, in words; empty where there is none."""
-        for what, found in (("encode", self.codes), ("decode", self.decoded)):
-            at = np.flatnonzero(~np.isfinite(found).all(axis=1))
-            if len(at):
-                return f"{what} of {vector(self.n[at[0]])} is {vector(found[at[0]])}, no number"
+        for what, numbers in (("encode", self.codes), ("decode", self.decoded)):
+            indices = np.flatnonzero(~np.isfinite(numbers).all(axis=1))
+            if len(indices):
+                return f"{what} of {vector(self.n[indices[0]])} is {vector(numbers[indices[0]])}, no number"
         return ""
 
     def angles(self) -> np.ndarray:

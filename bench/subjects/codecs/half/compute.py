@@ -30,13 +30,13 @@ def half_device() -> Any:
     try:
         from wgpu.utils import device
 
-        found = [adapter for adapter in adapters() if FEATURE in adapter.features]
+        half_adapters = [adapter for adapter in adapters() if FEATURE in adapter.features]
     except ImportError as error:
         raise MissingError(f"half arithmetic by glsl needs wgpu ({error}); pip install wgpu") from error
-    if not found:
-        said = f"install one ({how_to_install('mesa-vulkan-drivers')})"
-        raise MissingError(f"half arithmetic by glsl needs a {API} driver with 16-bit floats; {said}")
-    device.preconfigure_default_device("normalbench", adapter=found[0], required_features={FEATURE})
+    if not half_adapters:
+        advice = f"install one ({how_to_install('mesa-vulkan-drivers')})"
+        raise MissingError(f"half arithmetic by glsl needs a {API} driver with 16-bit floats; {advice}")
+    device.preconfigure_default_device("normalbench", adapter=half_adapters[0], required_features={FEATURE})
     return device.get_default_device()
 
 
@@ -49,8 +49,8 @@ def name() -> str:
 @cache
 def keeps_digits() -> bool:
     """Whether a step's result may have more digits than a half, until it is stored."""
-    one, two = (np.full((GROUP, 4), 1 + 2.0**-power, np.float32) for power in (10, 9))
-    return bool(computed(Source(EXCESS), one, two).any())
+    first, two = (np.full((GROUP, 4), 1 + 2.0**-power, np.float32) for power in (10, 9))
+    return bool(computed(Source(EXCESS), first, two).any())
 
 
 def computed(source: Source, given: np.ndarray, views: np.ndarray) -> np.ndarray:
@@ -65,9 +65,9 @@ def computed(source: Source, given: np.ndarray, views: np.ndarray) -> np.ndarray
 
     half_device()
     binary = compiled(source, "comp", counted=False).binary
-    inputs = {at: np.ascontiguousarray(array, np.float32) for at, array in enumerate((given, views))}
+    inputs = {binding: np.ascontiguousarray(array, np.float32) for binding, array in enumerate((given, views))}
     try:
-        made = compute_with_buffers(inputs, {2: (given.size, "f")}, binary, n=-(-len(given) // GROUP))
+        outputs = compute_with_buffers(inputs, {2: (given.size, "f")}, binary, n=-(-len(given) // GROUP))
     except Exception as error:  # whatever the driver raises
         raise FormatError(f"{half_device().adapter.info['device']}: {' '.join(str(error).split())[:300]}") from error
-    return np.frombuffer(made[2], np.float32).reshape(given.shape)
+    return np.frombuffer(outputs[2], np.float32).reshape(given.shape)

@@ -39,8 +39,8 @@ def half_operation(encoding: Encoding, operation: str) -> Operation:
     if encoding.is_precise:
         raise ShaderError(f"{encoding.name}: precise rounding is not counted in half arithmetic")
     size = encoding.components + encoding.sign_bits
-    given, made = (3, size) if operation == "encode" else (size, 3)
+    given, output_size = (3, size) if operation == "encode" else (size, 3)
     own = encoding_defines(encoding, as_half=True), {"ENCODING": encoding.glsl}
     return HalfOperation(
-        HERE / f"kernel_half_{operation}.glsl", given, 3, made, *own, encoding.tables, is_portable=False
+        HERE / f"kernel_half_{operation}.glsl", given, 3, output_size, *own, encoding.tables, is_portable=False
     )

@@ -37,10 +37,10 @@ from .named import kind_of as kind_of_file
 
 def depth_storages_named(names: Names) -> list[DepthStorage]:
     """Return storages of depths by their names, or by their bits: unorm:20. Raises UsageError."""
-    said = storages_said(map(str, names), {*DEPTH_STORAGES, *OTHER_WORDS["depth storage"]})
-    by_bits = ((word, storage and depth_storage_of(storage)) for word, storage in said.items())
+    storages = storages_said(map(str, names), {*DEPTH_STORAGES, *OTHER_WORDS["depth storage"]})
+    by_bits = ((word, storage and depth_storage_of(storage)) for word, storage in storages.items())
     known = {**DEPTH_STORAGES, **{word: storage for word, storage in by_bits if storage}}
-    return list(dict.fromkeys(choose("depth storage", said, known)))
+    return list(dict.fromkeys(choose("depth storage", storages, known)))
 
 
 def curve_codec(encoding: CurveEncoding, storage: Storage, rounding: str) -> CurveCodec:
@@ -95,14 +95,14 @@ def _kind_of_word(word: str) -> Kind:
     """The kind of one name. Raises UsageError where several kinds have it."""
     if names_an_encoder(word):
         return _kind_of_file(UserFile(str(file_of(word))))
-    found = [kind for kind in NAMED.values() if _has(kind, word)]
-    if len(found) > 1 and NORMAL not in found:
-        several = ", ".join(kind.word for kind in found)
-        raise UsageError(f"{word}: codes of {several} have this name; say which with --of, as in --of {found[0].word}")
+    kinds = [kind for kind in NAMED.values() if _has(kind, word)]
+    if len(kinds) > 1 and NORMAL not in kinds:
+        several = ", ".join(kind.word for kind in kinds)
+        raise UsageError(f"{word}: codes of {several} have this name; say which with --of, as in --of {kinds[0].word}")
     others = list(dict.fromkeys(name for kind in MADE for name in BY_KIND[kind]))
-    if not found and meant(word, others) and not meant(word, BY_KIND[NORMAL]):
+    if not kinds and meant(word, others) and not meant(word, BY_KIND[NORMAL]):
         raise unknown_name("encoding", [word], others)
-    return found[0] if found else NORMAL
+    return kinds[0] if kinds else NORMAL
 
 
 def _kind_of_file(file: UserFile) -> Kind:
@@ -139,7 +139,7 @@ def codecs_of_kind(
     over_bytes = [encoding for encoding, _ in chosen if isinstance(encoding, DepthEncoding) and encoding.bytes]
     if over_bytes and storages:
         raise UsageError(f"{over_bytes[0].name}: its code lies in bytes, as it makes them; leave out --storage")
-    made = (
+    codecs = (
         codec if largest is None else replace(codec, range=largest)
         for encoding, largest in chosen
         if encoding not in over_bytes
@@ -148,7 +148,7 @@ def codecs_of_kind(
         for codec in [codec_of(encoding, storage, rounding)]
     )
     in_bytes = (codec for encoding in over_bytes for rounding in roundings for codec in _in_bytes(encoding, rounding))
-    return list(dict.fromkeys([*made, *in_bytes]))
+    return list(dict.fromkeys([*codecs, *in_bytes]))
 
 
 def _in_bytes(code: DepthEncoding, rounding: str) -> Iterator[DepthCodec]:

@@ -48,8 +48,8 @@ def _depth_facts(own: Own, gl: Device) -> dict[str, Any]:
     planes = (NEAR, FAR)
     if not own.settings:
         depths = Values(rows(np.geomspace(NEAREST, FARTHEST, COUNT)), rows(np.zeros(COUNT)))
-        found = own.tried(gl, depths.given, depths.more)
-        planes = longest(depths.given[:, 0], _depth_errors(depths, found) < DEPTH_NEARLY) or planes
+        trial = own.tried(gl, depths.given, depths.more)
+        planes = longest(depths.given[:, 0], _depth_errors(depths, trial) < DEPTH_NEARLY) or planes
     facts = {"planes": planes}
     values = _depths(Own(own.file, own.made, facts))
     codes = own.tried(gl, values.given, values.more).codes[:, 0]
@@ -64,18 +64,18 @@ def _faults_of_bytes(own: Own, gl: Device) -> Iterator[str]:
     """What is wrong with a code over bytes: a digit that it lacks, or a number that is no whole byte."""
     values, size = _depths(own), own.made.components
     x = values.given[:, 0].astype(np.float64)
-    found = own.tried(gl, values.given, values.more)
-    if np.abs(found.back[0][:, 0] - x).max() > DEPTH_NEARLY:
-        same = (digits for digits in range(1, size + 1) if _is_lost(found.back[0][:, 0], x, digits))
+    trial = own.tried(gl, values.given, values.more)
+    if np.abs(trial.back[0][:, 0] - x).max() > DEPTH_NEARLY:
+        same = (digits for digits in range(1, size + 1) if _is_lost(trial.back[0][:, 0], x, digits))
         if digits := next(same, 0):
             yield LOST.format(256**digits, "byte is" if digits == 1 else f"{digits} bytes are")
         return
-    bytes_of = np.rint(np.clip(found.codes, 0, 1) * 255) / 255
+    bytes_of = np.rint(np.clip(trial.codes, 0, 1) * 255) / 255
     steps = 2.0 ** min(8 * size, 24)
     errors = []
     # One number after the other is rounded, the others stay.
     for channel in [*range(size), slice(0, size)]:
-        codes = found.codes.copy()
+        codes = trial.codes.copy()
         codes[:, channel] = bytes_of[:, channel]
         back = own.tried(gl, values.given, values.more, codes).back[0][:, 0]
         errors.append(float(np.abs(back - x).max() * steps))

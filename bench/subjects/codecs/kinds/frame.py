@@ -63,7 +63,7 @@ def _frame_errors(values: Values, found: Tried) -> np.ndarray:
     """The larger of the angles that normals and tangents are off by."""
     of_rotation = len(found.back) < len(RESULTS)
     (n, t), (n_back, t_back) = (
-        _axes(one, other, of_rotation) for one, other in ((values.given, values.more), found.back[:2])
+        _axes(first, other, of_rotation) for first, other in ((values.given, values.more), found.back[:2])
     )
     with np.errstate(invalid="ignore"):
         return np.maximum(angles_deg(n, n_back), angles_deg(t, t_back))
@@ -72,13 +72,13 @@ def _frame_errors(values: Values, found: Tried) -> np.ndarray:
 def _frame_facts(own: Own, gl: Device) -> dict[str, Any]:
     """`is_unit`, `levels`, how many values each number has, and a line of hands that are lost."""
     values = _frames(own)
-    found = own.tried(gl, values.given, values.more)
-    codes = found.codes[:, : own.made.components]
+    trial = own.tried(gl, values.given, values.more)
+    codes = trial.codes[:, : own.made.components]
     finite = codes[np.isfinite(codes).all(axis=1)]
     is_in_unit = bool(len(finite)) and is_unit(finite, OF_A_HALF)
     levels = [_level_count(finite[:, i] * 2 - 1 if is_in_unit else finite[:, i]) for i in range(codes.shape[1])]
     facts = {"is_unit": is_in_unit, "levels": levels}
-    return facts | _of_hands(own, values, found)
+    return facts | _of_hands(own, values, trial)
 
 
 def _level_count(numbers: np.ndarray) -> int:
@@ -96,7 +96,7 @@ def _of_hands(own: Own, values: Values, found: Tried) -> dict[str, Any]:
     if not gives and own.size("tangent")[1] < 4:
         return {"notes": [NO_HAND], "has_hand": False}
     if gives == ["bitangent"]:
-        n, t, b = (one[:, :3] for one in found.back)
+        n, t, b = (vectors[:, :3] for vectors in found.back)
         hand = np.sum(np.cross(n, t) * b, axis=1)
     else:
         of_rotation = len(found.back) < len(RESULTS)
@@ -107,12 +107,14 @@ def _of_hands(own: Own, values: Values, found: Tried) -> dict[str, Any]:
 
 
 def _frame_encoding(own: Own) -> FrameEncoding:
-    every = dict.fromkeys(name for one in FRAME_ENCODINGS.values() for name in one.storages)
+    every = dict.fromkeys(name for known in FRAME_ENCODINGS.values() for name in known.storages)
     levels = tuple(own.found.get("levels", (0, 0, 0, 0)))
     hand_in = len(levels) - 1 if own.found.get("has_hand", True) else None
-    made = FrameEncoding(**own.described(), hand_in=hand_in, levels=levels, storages=tuple(every), is_unit=own.is_unit)
-    fitting = tuple(name for name in every if not FrameCodec(made, FRAME_STORAGES[name]).misfit)
-    return replace(made, storages=fitting)
+    encoding = FrameEncoding(
+        **own.described(), hand_in=hand_in, levels=levels, storages=tuple(every), is_unit=own.is_unit
+    )
+    fitting = tuple(name for name in every if not FrameCodec(encoding, FRAME_STORAGES[name]).misfit)
+    return replace(encoding, storages=fitting)
 
 
 KIND = OwnKind(

@@ -49,9 +49,9 @@ def _light_facts(own: Own, gl: Device) -> dict[str, Any]:
     `is_open`, whether a code of light 1 is for floats alone, `blend`, how its texels are added, and `has_alpha`."""
     white = np.geomspace(DIMMEST, BRIGHTEST, COUNT)
     values = Values(np.repeat(rows(white)[:, :1], 4, axis=1), rows(np.zeros(COUNT)))
-    found = own.tried(gl, values.given, values.more)
-    comes_back = _light_errors(values, found) < LIGHT_NEARLY
-    codes = found.codes[:, : own.made.components]
+    trial = own.tried(gl, values.given, values.more)
+    comes_back = _light_errors(values, trial) < LIGHT_NEARLY
+    codes = trial.codes[:, : own.made.components]
     is_in = comes_back & np.all((codes >= -OF_8_BITS) & (codes <= 1 + OF_8_BITS), axis=1)
     (_, limit), (_, open_limit) = (longest(white, some) or (0.0, 0.0) for some in (is_in, comes_back))
     is_open = limit < 0.5 < open_limit
@@ -62,21 +62,21 @@ def _light_facts(own: Own, gl: Device) -> dict[str, Any]:
 
 def _added(own: Own, gl: Device, held: Values) -> dict[str, Any]:
     """How texels of lights are added: by the sum or the product of their codes, or as lights; and the fourth number."""
-    found = own.tried(gl, held.given, held.more)
+    trial = own.tried(gl, held.given, held.more)
     both = held.given + held.given[::-1]
     blend = "read"
-    for name, codes in (("add", found.codes + found.codes[::-1]), ("multiply", found.codes * found.codes[::-1])):
+    for name, codes in (("add", trial.codes + trial.codes[::-1]), ("multiply", trial.codes * trial.codes[::-1])):
         back = own.tried(gl, held.given, held.more, codes).back[0]
         if blend == "read" and bool((_light_apart(both, back)[:, :3] < ADDED).all()):
             blend = name
     wide = own.size("light") == (4, 4)
-    has_alpha = wide and bool((_light_apart(held.given, found.back[0])[:, 3] < LIGHT_NEARLY).all())
+    has_alpha = wide and bool((_light_apart(held.given, trial.back[0])[:, 3] < LIGHT_NEARLY).all())
     cleared = 1.0 if blend == "multiply" else 0.0
     (black,) = own.tried(gl, held.given[:1], held.more[:1], np.full((1, 4), cleared, np.float32)).back[0]
     glows = not abs(black[:3]).max() < LIGHT_NEARLY
-    said = {"wrong": [NOT_BLACK.format(cleared, float(abs(black[:3]).max()))]} if glows else {}
-    notes = [NO_FOURTH] if wide and not has_alpha and np.ptp(found.back[0][:, 3]) > 0 else []
-    return {"blend": blend, "has_alpha": has_alpha, "notes": notes} | said
+    findings = {"wrong": [NOT_BLACK.format(cleared, float(abs(black[:3]).max()))]} if glows else {}
+    notes = [NO_FOURTH] if wide and not has_alpha and np.ptp(trial.back[0][:, 3]) > 0 else []
+    return {"blend": blend, "has_alpha": has_alpha, "notes": notes} | findings
 
 
 def _light_encoding(own: Own) -> LightEncoding:

@@ -49,24 +49,24 @@ def look(kind: OwnKind, file: UserFile) -> dict[str, Any]:
         if len(kept) == 1:
             return _look_at_one(kind, file.with_pair(kept[0])) | {"pair": kept[0]}
         named = ", ".join(str(file.with_pair(pair)) for pair in kept or error.pairs)
-        said = f"{len(kept)} of its pairs undo themselves; name one" if kept else "none of its pairs undoes itself"
-        return {"error": f"{file}: {said}: {named}", "pairs": kept}
+        verdict = f"{len(kept)} of its pairs undo themselves; name one" if kept else "none of its pairs undoes itself"
+        return {"error": f"{file}: {verdict}: {named}", "pairs": kept}
 
 
 def _undoes_itself(kind: OwnKind, file: UserFile) -> bool:
-    found = _look_at_one(kind, file)
-    return found.get("error_max", np.inf) <= kind.nearly
+    findings = _look_at_one(kind, file)
+    return findings.get("error_max", np.inf) <= kind.nearly
 
 
 def _look_at_one(kind: OwnKind, file: UserFile) -> dict[str, Any]:
     """The same of a file of which one pair is meant. Raises SeveralEncodersError."""
     try:
-        gl, made = device(), translated(file, kind=kind.kind)
-        own = Own(file, made, {})
+        gl, translation = device(), translated(file, kind=kind.kind)
+        own = Own(file, translation, {})
         if broken := _endless(kind, own, gl):
             return {"broken": broken}
         facts = kind.facts(own, gl)
-        return {"functions": made.named} | facts | _judged(kind, Own(file, made, facts), gl)
+        return {"functions": translation.named} | facts | _judged(kind, Own(file, translation, facts), gl)
     except (NoDeviceError, MissingError) as error:
         return {"missing": str(error)}
     except SeveralEncodersError:
@@ -74,18 +74,20 @@ def _look_at_one(kind: OwnKind, file: UserFile) -> dict[str, Any]:
     except UsageError as error:
         return {"error": str(error)}
     except ShaderError as error:
-        said = re.sub(r"\S+\.glsl:(\d+)", r"line \1", " ".join(str(error).partition("=\n")[2].split()) or str(error))
-        return {"error": f"{file}: the GLSL that was made of it does not compile on this device: {said[:LONGEST]}"}
+        message = re.sub(r"\S+\.glsl:(\d+)", r"line \1", " ".join(str(error).partition("=\n")[2].split()) or str(error))
+        return {"error": f"{file}: the GLSL that was made of it does not compile on this device: {message[:LONGEST]}"}
 
 
 def _endless(kind: OwnKind, own: Own, gl: Device) -> str:
     """What is said of a loop that the device has ended; empty where it has ended none."""
     values = kind.values(own)
-    found = own.tried(gl, values.given, values.more)
-    for what, flags in (("encode", found.encode_ended), ("decode", found.decode_ended)):
+    trial = own.tried(gl, values.given, values.more)
+    for what, flags in (("encode", trial.encode_ended), ("decode", trial.decode_ended)):
         if flags.any():
-            said = f"after {loop_limit(gl) or 'too many'} turns in all this device ends a shader's loops without a word"
-            return f"the loops of {what} for {_said(kind, values, int(np.argmax(flags)))} do not end here: {said}"
+            reason = (
+                f"after {loop_limit(gl) or 'too many'} turns in all this device ends a shader's loops without a word"
+            )
+            return f"the loops of {what} for {_said(kind, values, int(np.argmax(flags)))} do not end here: {reason}"
     return ""
 
 
@@ -95,21 +97,21 @@ def _said(kind: OwnKind, values: Values, at: int) -> str:
 
 def _judged(kind: OwnKind, own: Own, gl: Device) -> dict[str, Any]:
     values = kind.values(own)
-    found = own.tried(gl, values.given, values.more)
-    errors = kind.errors(values, found)
-    for what, finite in (("encode", np.isfinite(found.codes).all(axis=1)), ("decode", np.isfinite(errors))):
+    trial = own.tried(gl, values.given, values.more)
+    errors = kind.errors(values, trial)
+    for what, finite in (("encode", np.isfinite(trial.codes).all(axis=1)), ("decode", np.isfinite(errors))):
         if not finite.all():
             return {"broken": f"{what} gives no number of {_said(kind, values, int(np.argmin(finite)))}"}
-    at = int(np.argmax(errors))
-    far = NOT_A_PAIR.format(_said(kind, values, at), errors[at], kind.unit, len(errors))
-    wrong = [*([far] if errors[at] > kind.nearly else []), *_beyond(kind, own, values, found)]
+    worst = int(np.argmax(errors))
+    far = NOT_A_PAIR.format(_said(kind, values, worst), errors[worst], kind.unit, len(errors))
+    wrong = [*([far] if errors[worst] > kind.nearly else []), *_beyond(kind, own, values, trial)]
     wrong += own.found.get("wrong", [])
     inexact = _inexact(kind, own, gl)
     notes = [*own.found.get("notes", []), *inexact.values()]
     exact = [f"{name} comes back exactly" for name in kind.exactly(own) if name not in inexact]
-    least = [UNDONE.format(len(errors), errors[at], kind.unit)] if errors[at] <= kind.nearly else []
-    measured = [*least, *exact, REACH.format(", ".join(_reach(found, own.made.components)))]
-    return {"error_max": float(errors[at]), "wrong": wrong, "notes": notes, "measured": measured}
+    least = [UNDONE.format(len(errors), errors[worst], kind.unit)] if errors[worst] <= kind.nearly else []
+    measured = [*least, *exact, REACH.format(", ".join(_reach(trial, own.made.components)))]
+    return {"error_max": float(errors[worst]), "wrong": wrong, "notes": notes, "measured": measured}
 
 
 def _reach(found: Tried, size: int) -> Iterator[str]:
@@ -126,19 +128,19 @@ def _beyond(kind: OwnKind, own: Own, values: Values, found: Tried) -> Iterator[s
     for number in range(own.made.components):
         codes = found.codes[:, number].astype(np.float64)
         off = np.maximum(codes - 1, least - codes)
-        at = int(np.argmax(off))
-        if off[at] > kind.rounded:
-            yield BEYOND.format(number + 1, least, codes[at], _said(kind, values, at))
+        worst = int(np.argmax(off))
+        if off[worst] > kind.rounded:
+            yield BEYOND.format(number + 1, least, codes[worst], _said(kind, values, worst))
 
 
 def _inexact(kind: OwnKind, own: Own, gl: Device) -> dict[str, str]:
     """By what it is called, a line on each value that should come back exactly and does not."""
-    found: dict[str, str] = {}
+    lines: dict[str, str] = {}
     for name, values in kind.exactly(own).items():
         error = float(kind.errors(values, own.tried(gl, values.given, values.more))[0])
         if error != 0:
-            found[name] = NOT_EXACT.format(name, error, kind.unit)
-    return found
+            lines[name] = NOT_EXACT.format(name, error, kind.unit)
+    return lines
 
 
 def main(words: Sequence[str]) -> None:

@@ -59,17 +59,17 @@ def _reach(own: Own, gl: Device, is_unit: bool, comes_back: bool) -> float:
     for _ in range(2):
         tries = np.geomspace(low, high, COUNT)
         fits = np.logical_and.reduce([_fit(own, gl, tries * x, tries * y, is_unit, comes_back) for x, y in DIRECTIONS])
-        at = int(np.argmin(fits)) if not fits.all() else COUNT
-        low, high = tries[max(at - 1, 0)], tries[min(at, COUNT - 1)]
+        index = int(np.argmin(fits)) if not fits.all() else COUNT
+        low, high = tries[max(index - 1, 0)], tries[min(index, COUNT - 1)]
     return float(low)
 
 
 def _fit(own: Own, gl: Device, x: np.ndarray, y: np.ndarray, is_unit: bool, comes_back: bool) -> np.ndarray:
     values = Values(rows(x, y), of_range(len(x)))
-    found = own.tried(gl, values.given, values.more)
-    codes = found.codes[:, :2]
+    trial = own.tried(gl, values.given, values.more)
+    codes = trial.codes[:, :2]
     is_held = np.all((codes >= (0 if is_unit else -1) - ROUNDED) & (codes <= 1 + ROUNDED), axis=1)
-    return is_held & ((_motion_errors(values, found) <= NEARLY * np.abs(values.given).max(axis=1)) | (not comes_back))
+    return is_held & ((_motion_errors(values, trial) <= NEARLY * np.abs(values.given).max(axis=1)) | (not comes_back))
 
 
 def _motion_encoding(own: Own) -> MotionEncoding:

@@ -73,8 +73,8 @@ def light_codecs_named(names: Names) -> list[LightCodec]:
             raise
         leave_out(str(error))
         files = []
-    made = [LightCodec(encoding, LIGHT_STORAGES[encoding.storages[0]]) for encoding in files]
-    return [*buffers, *made]
+    codecs = [LightCodec(encoding, LIGHT_STORAGES[encoding.storages[0]]) for encoding in files]
+    return [*buffers, *codecs]
 
 
 def _looked_at(kind: Kind, file: UserFile) -> tuple[Any, list[str]]:
@@ -90,9 +90,9 @@ def said_of(own: Own) -> list[str]:
 
 def notes_of(own: Own) -> list[str]:
     """What was guessed and found of a file, in sentences."""
-    found = own.found
+    findings = own.found
     guessed = [*([IN_32_BITS] if has_halves(own.made.text) else []), *([UNIT] if own.is_unit else [])]
-    return [*own.made.notes, *found.get("notes", []), *guessed, *found.get("measured", [])]
+    return [*own.made.notes, *findings.get("notes", []), *guessed, *findings.get("measured", [])]
 
 
 def kind_of(file: UserFile, said: str) -> OwnKind | None:
@@ -151,25 +151,27 @@ def examined_code(kind: OwnKind, file: UserFile) -> Own:
 
     Raises: as `own_code`.
     """
-    found = _found(kind.kind, file)
-    if "missing" in found:
-        raise MissingError(f"{file}: {found['missing']}" if file.word not in found["missing"] else found["missing"])
-    if "error" in found:
-        raise UsageError(found["error"])
-    if "broken" in found:
-        found |= {"wrong": [found["broken"], *found.get("wrong", [])]}
-    file = file.with_pair(found["pair"]) if "pair" in found else file
-    return Own(file, translated(file, kind=kind.kind), found)
+    findings = _found(kind.kind, file)
+    if "missing" in findings:
+        raise MissingError(
+            f"{file}: {findings['missing']}" if file.word not in findings["missing"] else findings["missing"]
+        )
+    if "error" in findings:
+        raise UsageError(findings["error"])
+    if "broken" in findings:
+        findings |= {"wrong": [findings["broken"], *findings.get("wrong", [])]}
+    file = file.with_pair(findings["pair"]) if "pair" in findings else file
+    return Own(file, translated(file, kind=kind.kind), findings)
 
 
 def _found(kind: Kind, file: UserFile) -> dict[str, Any]:
     """What the first look says. Raises UsageError where its process does not end well."""
     try:
         done = forks.finished(LOOK, [kind.name, file.word], TIME_LIMIT)
-        said, ended = done.stdout, children.how_it_ended(done)
+        output, ended = done.stdout, children.how_it_ended(done)
     except subprocess.TimeoutExpired as error:
-        said, ended = str(error.output), f"did not end within {TIME_LIMIT:g} s"
+        output, ended = str(error.output), f"did not end within {TIME_LIMIT:g} s"
     try:
-        return json.loads(said)
+        return json.loads(output)
     except ValueError:
         raise UsageError(f"{called(str(file))}: its shader {ended}") from None

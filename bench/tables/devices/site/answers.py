@@ -81,24 +81,24 @@ def _bytes_per_texel(storage: str) -> int:
 def _pick_row(row: Row, known: Known) -> Row:
     """A device's row as `pick` takes them."""
     encoding, codec = ENCODINGS.get(row["encoding"]), _codec(row)
-    made: Row = {"encoding": row["encoding"], "storage": row["storage"], "asked": row["storage"]}
-    made |= {"normals": "", "scene": "", "against": False, "beside": False, "invalid": 0, "lost_percent": 0.0}
-    made |= {"needs": NEEDS, "aim": AIM, "readers": READERS, "worth": WORTH_DB, "most_instructions": None}
-    made |= {"accept_holes": False, "accept_lengths": False, "domain": encoding.domain if encoding else NEEDS}
-    made |= {"skipped": None if encoding else UNKNOWN, "table": bool(encoding and encoding.has_tables)}
-    made |= {"angle_mean_deg": row["mean_deg"], "angle_max_deg": row["max_deg"], "angle_sup_deg": None}
-    made |= {"bits": codec.bits if codec else None, "free_bits": None, "length_share": None}
-    made |= {name: row[name] for name in ("encode_ms", "decode_ms")} | {"ms": time_of(row)}
-    made |= {"enough": TEXEL_DEG, "code_bits": None, "packed": False, "encode_slots": None, "decode_slots": None}
-    return made | {"slots": None, "slots_once": None} | known.of(row)
+    columns: Row = {"encoding": row["encoding"], "storage": row["storage"], "asked": row["storage"]}
+    columns |= {"normals": "", "scene": "", "against": False, "beside": False, "invalid": 0, "lost_percent": 0.0}
+    columns |= {"needs": NEEDS, "aim": AIM, "readers": READERS, "worth": WORTH_DB, "most_instructions": None}
+    columns |= {"accept_holes": False, "accept_lengths": False, "domain": encoding.domain if encoding else NEEDS}
+    columns |= {"skipped": None if encoding else UNKNOWN, "table": bool(encoding and encoding.has_tables)}
+    columns |= {"angle_mean_deg": row["mean_deg"], "angle_max_deg": row["max_deg"], "angle_sup_deg": None}
+    columns |= {"bits": codec.bits if codec else None, "free_bits": None, "length_share": None}
+    columns |= {name: row[name] for name in ("encode_ms", "decode_ms")} | {"ms": time_of(row)}
+    columns |= {"enough": TEXEL_DEG, "code_bits": None, "packed": False, "encode_slots": None, "decode_slots": None}
+    return columns | {"slots": None, "slots_once": None} | known.of(row)
 
 
 def _sheet(question: Sequence[str], group: Sequence[Row]) -> Sheet:
     storage, target, rounding = question
     best = next((row for row in group if BEST in places_of(row)), None)
     kept = [row for row in group if row.get("front") or row is best]
-    said = f"rounded to {rounding}" if rounding == "nearest" else rounding
-    title = f"{storage} in {target}, {said}: the codes that no other one beats"
+    rounding_text = f"rounded to {rounding}" if rounding == "nearest" else rounding
+    title = f"{storage} in {target}, {rounding_text}: the codes that no other one beats"
     keys = {"storage": storage, "take": best["encoding"] if best else None}
     return Sheet(title, [_short_row(row) for row in kept], said=tuple(_sentences(storage, best, group)), keys=keys)
 

@@ -90,8 +90,8 @@ def _device_section(entry: Entry) -> DeviceSection:
     tables = [_shown_table(f"Every codec on {device.called}", codecs)]
     tables += [_shown_table(f"Facts of {device.called}", facts)] if facts else []
     answered = [Answer((*sheet.said, *sheet.aside), _front_table(sheet, device.called)) for sheet in entry.answers]
-    said = f"{device.called} {difference(entry.rows)}."
-    return DeviceSection(device.called, entry.key, said, known, answered, tables)
+    sentence = f"{device.called} {difference(entry.rows)}."
+    return DeviceSection(device.called, entry.key, sentence, known, answered, tables)
 
 
 def _front_table(sheet: Sheet, device: str) -> PageTable:
@@ -176,7 +176,7 @@ def _column_name(sheet: Sheet) -> str:
 
 
 def _codecs_taken_on(entry: Entry) -> Mapping[str, Any]:
-    found: dict[str, Any] = {}
+    taken: dict[str, Any] = {}
     for sheet in entry.answers:
-        found.setdefault(_column_name(sheet), sheet.keys["take"])
-    return found
+        taken.setdefault(_column_name(sheet), sheet.keys["take"])
+    return taken

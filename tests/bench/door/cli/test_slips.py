@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from normalbench.bench.door.cli.app import _is_delicate, _words, command_line
+from normalbench.bench.door.cli.app import COMMANDS, _is_delicate, _words, command_line
 from normalbench.bench.door.table_command import _why_nothing
 from normalbench.bench.ground.options.counts import whole_number
 from normalbench.bench.tables.registry import TABLES
@@ -337,8 +337,9 @@ def test_help_fits_80_columns_and_groups_its_options(run, monkeypatch, name):
     status, out, _ = run(name, "-h")
     assert status == 0 and max(map(len, out.splitlines())) <= 80
     if name in TABLES:
-        assert "What is measured" in out and "Also: --output" in out and "Example: normalbench" in out
+        assert "What is measured" in out and "Also: --output" in out
         assert "<table|json" not in out, "a list of choices leaves no room for the words"
+    assert f"Example: normalbench {name}" in out
     if name == "check":
         assert "[[gate]]" in out
 
@@ -355,6 +356,13 @@ def test_the_example_of_a_command_is_one_that_it_takes(name):
     asked = {field.name: made.params[field.name] for field in fields(table.options) if field.name in made.params}
     if not {"frame.png", "phone.json"} & set(words):
         assert table.work.steps(table.options(**asked), table.outputs())
+
+
+@pytest.mark.parametrize("name", sorted(set(COMMANDS) - set(TABLES)))
+def test_the_example_of_another_command_is_one_that_it_takes(name):
+    program = command_line()
+    words = _words((program.commands[name].epilog or "").removeprefix("Example: normalbench ").split(), program)
+    assert program.commands[name].make_context(name, words[words.index(name) + 1 :])
 
 
 @pytest.mark.parametrize("what", ["all", "storages", "layouts"])
