@@ -2,6 +2,7 @@
 that it prints, where they are others."""
 
 import json
+import os
 import re
 import subprocess
 import sys
@@ -31,7 +32,9 @@ def printed(command: str) -> str:
     from normalbench.bench.door.cli import app
 
     out, err, words = StringIO(), StringIO(), ["normalbench", *command.split()]
-    with redirect_stdout(out), redirect_stderr(err), patch.object(sys, "argv", words):
+    # As wide as a page, whatever runs the test.
+    wide = patch.dict(os.environ, {"COLUMNS": "120"})
+    with wide, redirect_stdout(out), redirect_stderr(err), patch.object(sys, "argv", words):
         assert app.main() == 0, f"{command}: {err.getvalue()}"
     return out.getvalue()
 

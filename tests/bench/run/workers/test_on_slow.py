@@ -78,7 +78,7 @@ def is_there(pid: int) -> bool:
 
 
 # Rows by JAX and GLSL, a few to each task of a worker.
-MANY = ("quality", "--storage", "rgba8", "--normals", "sphere", "--count", "16384", "--encoding")
+MANY = ("quality", "--storage", "rgba8", "--normals", "sphere", "--count", "65536", "--encoding")
 
 
 MANY += (

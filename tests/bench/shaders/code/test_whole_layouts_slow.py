@@ -70,7 +70,7 @@ def written_in_c(name, layout):
     [
         ("normal_x_bits << 20", "normal_x_bits << 19"),
         ("* 8191.0f) + 8191.0f", "* 8191.0f) + 8190.0f"),
-        ("(kind_bits << 4)", "(kind_bits << 3)"),
+        ("(shading_model_bits << 4)", "(shading_model_bits << 3)"),
         ("/ 31.0f", "/ 32.0f"),
         (">> 27", ">> 26"),
         ("sign_bit(signed_depth) ? -1.0f", "sign_bit(signed_depth) ? 1.0f"),
