@@ -17,7 +17,7 @@ from ..table import Row
 from .table import HOLE
 
 IMAGE = "image_db_"
-BEST, MORE_EXACT, MOST_EXACT, CHEAPER, FEWER_BITS = "best", "more exact", "most exact", "cheaper", "fewer bits"
+BEST, MORE_EXACT, MOST_EXACT, CHEAPER, FEWER_BITS = "best", "more accurate", "most accurate", "cheaper", "fewer bits"
 TIE = "tie"
 INSIDE, PLAIN, AGAINST, ELSEWHERE = "inside a surface", "plain channels", "against", "elsewhere"
 # What codes of a domain hold, by the domain that is needed.

@@ -48,8 +48,8 @@ AIM_TITLES = {"angle": "mean error", "worst": "largest error", "image": "worst i
 MUCH_LOST = 1.0
 # The rungs, as a sentence begins with each.
 RUNGS = {
-    MORE_EXACT: "More exact",
-    MOST_EXACT: "Most exact to 0.1 dB",
+    MORE_EXACT: "More accurate",
+    MOST_EXACT: "Most accurate (within 0.1 dB)",
     CHEAPER: "Cheaper",
     FEWER_BITS: "Fewer bits",
     INSIDE: "Inside a surface only",
@@ -62,9 +62,10 @@ UPSAMPLE = "upsample"
 # Axis-aligned normals that come back closer are exact.
 EXACT_DEG = 1e-3
 # What an encoder and its readers wait for anyway.
-TRAFFIC = "the target's memory traffic"
+TRAFFIC = "memory traffic hides"
 # From so far on a reflection is not the same picture moved.
 ELSEWHERE_DEG = 30.0
+UNKNOWN_COST = "The cost is not known on this machine."
 # What else may be supposed of the issue slots of a pass that take no time, and shares of what is enough.
 FREE_SLOTS, ENOUGH = (8, 32), (0.5, 1.5)
 # How far the mirror's image is, in metres, and the map that it shows.
@@ -112,11 +113,11 @@ def in_short(group: Sequence[Row]) -> list[str]:
     if best is None:
         return [*told(group), *left_out(group)]
     first = " ".join([_first_sentences(group, best), *_of_maps(best)])
-    takes = "What it costs is not known on this machine."
+    takes = UNKNOWN_COST
     if best["slots"] is not None:
         slots = f"{best['encode_slots']:g} issue slots to encode and {best['decode_slots']:g} to decode"
         takes = f"{slots} on {best['dearest_family']}{_recorded_clause(best)}: {best['slots']:g} with "
-        takes += f"{best['readers']} readers."
+        takes += f"{best['readers']} decoding passes."
     pole = _pole_sentence(best, "").strip() if images(best) else ""
     others = [_mixing_text(best), _reservation_sentence(best).strip(), _space_sentences(best)]
     others += [_rival_sentence(row, best) for row in group if row["against"] and row is not best]
@@ -162,7 +163,7 @@ def not_held(best: Row) -> Iterator[str]:
     """What images have that the answer does not hold, where that is much."""
     lost = best.get("image_lost_percent") or 0.0
     if lost >= MUCH_LOST:
-        yield f"It does not hold {lost:.2g} % of the visible normals of {best['image_lost_scene']}."
+        yield f"It cannot represent {lost:.2g}% of the visible normals in {best['image_lost_scene']}."
 
 
 def _much_better(group: Sequence[Row], best: Row) -> list[Row]:
@@ -183,7 +184,7 @@ def _instead(group: Sequence[Row]) -> Iterator[str]:
         if {*uses} & {"blend", "resolve"}:
             yield "What the hardware blends or resolves needs three numbers: in rgb10a2 xyz_renormalised survives both."
         if "filter" in uses:
-            yield f"Decode each texel and mix normals instead ({UPSAMPLE}): no code minds that."
+            yield f"Decode each texel and mix the normals instead ({UPSAMPLE}). This works with every encoding."
             if group[0]["needs"] not in ("hemisphere", "view"):
                 yield "In tangent space (--domain tangent) half of the sphere has no seam."
         return
@@ -215,7 +216,9 @@ def rungs(group: Sequence[Row], best: Row) -> Iterator[str]:
 def _hangs_on(group: Sequence[Row], best: Row) -> Iterator[str]:
     """Which answer a constant near the one that was supposed would give, where that is another one."""
     worth, enough = best["worth"], best["enough"]
-    supposed = [({"worth": worth + change}, f"at {worth + change:g} dB a doubling") for change in (-1, 1) if worth > 1]
+    supposed = [
+        ({"worth": worth + change}, f"at {worth + change:g} dB per doubling") for change in (-1, 1) if worth > 1
+    ]
     supposed += [({"hidden_slots": slots}, f"if {slots} slots of a pass are free") for slots in FREE_SLOTS]
     supposed += [({"enough": share * enough}, f"with --enough {share * enough:.2g}") for share in ENOUGH if enough]
     others: dict[str, list[str]] = {}
@@ -255,16 +258,17 @@ def decibels(value: float | None) -> str:
 
 
 def _error_sentences(row: Row) -> str:
-    sentence = f"Its mean error is {degrees(row['angle_mean_deg'])}, {_largest_text(row)}."
+    sentence = f"Mean error {degrees(row['angle_mean_deg'])}, {_largest_text(row)}."
     axes = row.get("angle_axes_deg")
     if axes is None:
         return sentence
-    return f"{sentence} Floors and walls come back {'exact' if axes < EXACT_DEG else f'up to {degrees(axes)} off'}."
+    off = "exact" if axes < EXACT_DEG else f"off by up to {degrees(axes)}"
+    return f"{sentence} Axis-aligned floors and walls are {off}."
 
 
 def _largest_text(row: Row) -> str:
-    """The supremum where it was searched, else what was met, which may be less."""
-    return f"its largest {degrees(largest(row))}" + (" of those met" if row["angle_sup_deg"] is None else "")
+    """The supremum where it was searched, else the largest of the samples, which may be smaller."""
+    return f"largest {'sampled ' * (row['angle_sup_deg'] is None)}{degrees(largest(row))}"
 
 
 def _moved_deg(row: Row) -> list[float]:
@@ -276,18 +280,18 @@ def _seen_sentences(row: Row) -> str:
     moved = _moved_deg(row)
     if len(moved) < 2:
         return ""
-    text = f"A mirror's reflection moves by {degrees(moved[0])} in the mean and at most {degrees(moved[1])}: "
+    text = f"A mirror's reflection moves by {degrees(moved[0])} on average and by at most {degrees(moved[1])}: "
     if moved[1] >= ELSEWHERE_DEG:
-        return f"{text}it shows something else."
+        return f"{text}it shows another place."
     texels = " and ".join(f"{value / TEXEL_DEG:.2g}" for value in moved)
     far = " and ".join(_length_text(100 * FAR * math.tan(math.radians(value))) for value in moved)
     text += f"{texels} texels of {MAP}, {far} cm at {FAR:g} m."
-    enough = f" That is within --enough {row['enough']:.2g}; steps may show." if is_enough(row) else ""
-    return f"{text}{enough} {_roughness_command(row)} says from which roughness on no step shows."
+    enough = f" That is within --enough {row['enough']:.2g}; banding may be visible." if is_enough(row) else ""
+    return f"{text}{enough} To find the roughness above which banding is invisible, run: {_roughness_command(row)}"
 
 
 def _roughness_command(row: Row) -> str:
-    """What measures from which roughness on a code carries reflections."""
+    """Return the command that finds the lowest roughness at which an encoding's banding is acceptable."""
     words = ["normalbench", "roughness", "--encoding", row["encoding"], "--storage", row["storage"]]
     rounding = row.get("rounding") or "nearest"
     return command_line(words if rounding == "nearest" else [*words, "--rounding", rounding])
@@ -299,11 +303,12 @@ def _length_text(value: float) -> str:
 
 def _price_sentence(row: Row) -> str:
     if row["slots"] is None:
-        return "What it costs is not known on this machine."
+        return UNKNOWN_COST
     parts = f"{row['encode_slots']:g} issue slots to encode and {row['decode_slots']:g} to decode"
     parts += f" on {row['dearest_family']}"
-    readers = f"{row['readers']} reader{'s' * (row['readers'] != 1)}"
-    return f"It takes {parts}{_recorded_clause(row)}: with {readers} {_of_hidden(row)}{_table_clause(row)}."
+    passes = f"{row['readers']} decoding pass{'es' * (row['readers'] != 1)}"
+    table = " It reads a lookup table." if row["table"] else ""
+    return f"{parts}{_recorded_clause(row)}. With {passes} this counts as {_of_hidden(row)}.{table}"
 
 
 def _recorded_clause(row: Row) -> str:
@@ -311,19 +316,15 @@ def _recorded_clause(row: Row) -> str:
 
 
 def _of_hidden(row: Row) -> str:
-    """A price against what costs no time."""
+    """The cost next to the slots that cost no time."""
     if price(row) == floor(row):
-        return f"at most {floor(row):g}, which take no longer than {TRAFFIC}"
-    return f"{price(row):g}, {price(row) / floor(row):.2g} times what takes no longer than {TRAFFIC}"
-
-
-def _table_clause(row: Row) -> str:
-    return ", and it reads a table" if row["table"] else ""
+        return f"{floor(row):g}, the minimum: {TRAFFIC} {HIDDEN_SLOTS} slots per pass"
+    return f"{price(row):g}, {price(row) / floor(row):.2g} times the slots that {TRAFFIC}"
 
 
 def _bits_sentence(row: Row) -> str:
-    free = f"{row['free_bits']} stay free" if row["free_bits"] else "none stays free"
-    return f"It occupies {_bits_text(row)}; {free}."
+    free = f"; {row['free_bits']} are free" if row["free_bits"] else ""
+    return f"Uses {'' if free else 'all '}{_bits_text(row)}{free}."
 
 
 def _bits_text(row: Row) -> str:
@@ -342,7 +343,7 @@ def _images_text(row: Row) -> str:
     scenes = " and ".join(dict.fromkeys(name for name, _ in by_scene))
     effects = f" with {row['effects']}" if row.get("effects") else ""
     lost = row.get("image_lost_percent")
-    beyond = f" Images leave out the normals that it does not hold, up to {lost:.2g} %." if lost else ""
+    beyond = f" Images leave out the normals that it cannot represent, up to {lost:.2g}%." if lost else ""
     if worst > INDISTINGUISHABLE_DB:
         return f"Images of {scenes}{effects} show no difference: the worst has {decibels(worst)}.{beyond}"
     where = f"{scene} at power {power}" if power else scene
@@ -372,7 +373,7 @@ def _mixing_text(row: Row) -> str:
     """What mixing does to a code that survives it inside a surface; empty where it was not asked for."""
     if not row.get("mixing"):
         return ""
-    upsampled = "Upsampling decodes each texel before it weighs it, which no code minds. "
+    upsampled = "Upsampling decodes each texel before it weighs it, which works with every encoding. "
     opening = upsampled if UPSAMPLE in row["mixing"].split(",") else ""
     left = f"then mean error {degrees(mean(row))}, largest {degrees(largest_mixed(row))}"
     edges = f". Across an edge: {row['mixed_across']}" if row["mixed_across"] else " and across an edge"
@@ -391,7 +392,7 @@ def _gain_text(row: Row, best: Row) -> str:
     """How much better or worse a code is than the answer."""
     gain = loss_db(best) - loss_db(row)
     if math.isnan(gain) or abs(gain) < 0.05:
-        return "as exact"
+        return "as accurate"
     return f"{abs(gain):.1f} dB {'better' if gain > 0 else 'worse'} by the {AIM_TITLES[row['aim']]}"
 
 
@@ -409,25 +410,25 @@ def _errors_text(row: Row) -> str:
 
 def _price_text(row: Row, best: Row) -> str:
     if row["slots"] is None:
-        return "for an unknown price"
+        return "at an unknown cost"
     table = " and a table" if row["table"] and not best["table"] else ""
     if is_same_price(row, best):
-        return f"for the same price{table}"
+        return f"at the same cost{table}"
     if price(row) == floor(row):
-        return f"for {HIDDEN_SLOTS} issue slots a pass, which take no longer than {TRAFFIC}{table}"
+        return f"within the {HIDDEN_SLOTS} slots per pass that {TRAFFIC}{table}"
     ratio, gain = price(row) / price(best), loss_db(best) - loss_db(row)
-    text = f"for {price(row):g} issue slots{table}, {ratio:.2g} times the price"
+    text = f"at {ratio:.2g} times the cost ({price(row):g} slots){table}"
     if ratio <= 1 or gain <= 0 or is_enough(best):
         return text
     rate = gain / math.log2(ratio)
-    tie = f", about the {row['worth']:g} that --worth asks: the cheaper code is taken" if rate >= row["worth"] else ""
-    return f"{text}: {rate:.1f} dB a doubling{tie}"
+    tie = f", about the {row['worth']:g} that --worth asks: the cheaper one is taken" if rate >= row["worth"] else ""
+    return f"{text}: {rate:.1f} dB per doubling{tie}"
 
 
 def _bits_clause(row: Row, best: Row) -> str:
     if row["bits"] == best["bits"]:
         return ""
-    return f", in {_bits_text(row)}: {row['free_bits']} stay free" if row["free_bits"] else f", in {_bits_text(row)}"
+    return f", in {_bits_text(row)}: {row['free_bits']} are free" if row["free_bits"] else f", in {_bits_text(row)}"
 
 
 def _elsewhere_text(row: Row, best: Row) -> str:
@@ -438,9 +439,9 @@ def _elsewhere_text(row: Row, best: Row) -> str:
 
 def around_gain(row: Row, mean_text: str) -> tuple[str, str]:
     """What is said of a code of another storage, before its gain and behind it."""
-    free = f"{row['free_bits']} bits stay free" if row["free_bits"] else "no bit stays free"
-    begin = f"In {row['storage']}, of the same {row['bytes']} bytes, {row['encoding']} is "
-    return begin, f" dB better (mean {mean_text}), and {free}."
+    free = f"leaves {row['free_bits']} bits free" if row["free_bits"] else "uses all bits"
+    begin = f"In {row['storage']}, also {row['bytes']} bytes, {row['encoding']} is "
+    return begin, f" dB better (mean {mean_text}) and {free}."
 
 
 def _rival_sentence(row: Row, best: Row) -> str:
@@ -449,7 +450,7 @@ def _rival_sentence(row: Row, best: Row) -> str:
         return f"{row['encoding']} does not qualify: {row['left_out']}{hole}."
     text = f"{row['encoding']}: {_rung_text(row, best).removesuffix('.')}; {_images_text(row) or 'no image.'}"
     if row["front"]:
-        return f"{text} No other code beats it in every figure."
+        return f"{text} No other encoding beats it in every figure."
     return f"{text} {best['encoding']} beats it in every figure." if beats(best, row) else text
 
 

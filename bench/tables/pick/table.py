@@ -136,15 +136,19 @@ COLUMNS = (
     Column("scene", "The scenes that were rendered.", KEY),
     Column(
         "place",
-        "best: the answer. tie: its image ties with that of the best. more exact, most exact, cheaper, fewer bits: "
-        "the rungs above and below it. inside a surface: better, and survives what --needs asks for there alone. "
-        "plain channels: the first that is not packed. against: named by --against. elsewhere: of another storage of "
-        "the same bytes, where it is 6 dB better.",
+        "best: the answer. tie: its image ties with the best. more accurate, most accurate, cheaper, fewer bits: the "
+        "alternatives. inside a surface: better, but survives --needs only there. plain channels: the first that is "
+        "not packed. against: named by --against. elsewhere: in another storage of the same bytes, 6 dB better.",
         HOW,
     ),
-    Column("front", "Whether no other code is as good in error, price and bits and better in one.", HOW, shown=False),
+    Column(
+        "front",
+        "Whether no other encoding is at least as good in error, cost and bits and better in one.",
+        HOW,
+        shown=False,
+    ),
     shared.BITS,
-    Column("free_bits", "Bits of the texel that stay free.", better="more", drops=2),
+    Column("free_bits", "Bits of the texel that are free.", better="more", drops=2),
     Column("angle_mean_deg", "Mean angle between normal and decode.", unit="degrees", better="less"),
     Column(
         "angle_max_deg",

@@ -242,22 +242,22 @@ class Choose {
 
   said({ best, fit, out, why, rungs, exact, gain, price, isSame }, asked, question) {
     const dear = out.filter((code) => code.once !== null && why.get(code).startsWith("more than ")).map((code) => code.once);
-    const decodeFirst = asked.mixing && !asked.mixing.split(",").includes("upsample") ? ["Or decode each texel before you mix: every code survives upsample alone."] : [];
-    if (!best) return [...(dear.length ? [`The cheapest code that is left out for its slots alone takes ${Math.min(...dear)}.`] : this.without(question, asked)), ...decodeFirst];
+    const decodeFirst = asked.mixing && !asked.mixing.split(",").includes("upsample") ? ["Or decode each texel before you mix: upsample alone works with every encoding."] : [];
+    if (!best) return [...(dear.length ? [`The cheapest encoding that only the slot limit excludes takes ${Math.min(...dear)}.`] : this.without(question, asked)), ...decodeFirst];
     const isEnough = (code) => code.largest !== null && 2 * code.largest <= asked.enough, limit = degrees(asked.enough);
-    const moved = isEnough(best) ? [`A reflection moves by at most ${degrees(2 * best.largest)}, which is enough. Of codes that are enough and cost little, that of the fewest bits is taken.`] : fit.some(isEnough) || !asked.enough ? [] : [`No code that is left moves a reflection by ${limit} or less.`];
-    const image = best.image === null ? [] : [`Of its images, without mixing, the worst has ${best.image.toFixed(1)} dB.`];
-    const slots = best.priced ? `It takes ${best.encode} issue slots to encode and ${best.decode} to decode, and has ${bitsText(best, " bits")}.` : "What it costs is not known on this machine.";
+    const moved = isEnough(best) ? [`A reflection moves by at most ${degrees(2 * best.largest)}, within your limit. Of the low-cost encodings within it, the one with the fewest bits is chosen.`] : fit.some(isEnough) || !asked.enough ? [] : [`No remaining encoding moves a reflection by ${limit} or less.`];
+    const image = best.image === null ? [] : [`Worst image, without mixing: ${best.image.toFixed(1)} dB.`];
+    const slots = best.priced ? `${best.encode} issue slots to encode, ${best.decode} to decode. Uses ${bitsText(best, " bits")}.` : "The cost is not known on this machine.";
     const rung = (code) => {
       const better = gain(code), ratio = price(code) / price(best);
-      return `${better < 0 ? "Less exact" : code === exact ? "Most exact to 0.1 dB" : "More exact"}: ${code.name}, ${Math.abs(better).toFixed(1)} dB, ${isSame(code, best) ? "for the same price" : `for ${Number(ratio.toPrecision(2))} times the price`}.`;
+      return `${better < 0 ? "Less accurate" : code === exact ? "Most accurate (within 0.1 dB)" : "More accurate"}: ${code.name}, ${Math.abs(better).toFixed(1)} dB, ${isSame(code, best) ? "at the same cost" : `at ${Number(ratio.toPrecision(2))} times the cost`}.`;
     };
-    return [`${asked.mixing ? `After ${asked.mixing.replaceAll(",", ", ")} its` : "Its"} mean error is ${degrees(best.mean)}, its largest ${degrees(best.largest)}. A mirror's reflection moves by ${degrees(2 * best.mean)} in the mean and at most ${degrees(2 * best.largest)}.`, ...moved, slots, ...image, ...rungs.map(rung)];
+    return [`${asked.mixing ? `After ${asked.mixing.replaceAll(",", ", ")}: mean` : "Mean"} error ${degrees(best.mean)}, largest ${degrees(best.largest)}. A mirror's reflection moves by ${degrees(2 * best.mean)} on average and by at most ${degrees(2 * best.largest)}.`, ...moved, slots, ...image, ...rungs.map(rung)];
   }
 
   table({ fit, price }, { readers, mixing }) {
     const most = Math.max(...fit.map((code) => price(code))), least = fit.length ? price(fit[0]) : 1;
-    const heads = [element("th", { scope: "col" }, "code"), ...COMPARED.map(([title]) => element("th", { scope: "col", class: "n" }, titleUnder(title, mixing))), element("th", { scope: "col" }, `price with ${readers} readers`)];
+    const heads = [element("th", { scope: "col" }, "code"), ...COMPARED.map(([title]) => element("th", { scope: "col", class: "n" }, titleUnder(title, mixing))), element("th", { scope: "col" }, `cost with ${readers} readers`)];
     const rows = fit.map((code) => {
       const bar = element("span", { class: "bar", style: `--share: ${price(code) / most}` });
       const ratio = element("td", { class: "priced" }, bar, code.priced ? `${Number((price(code) / least).toPrecision(2))} ×` : "");

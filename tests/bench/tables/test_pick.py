@@ -25,7 +25,7 @@ def test_codes_of_a_fixed_size_are_not_taken_for_the_bits_that_they_occupy():
     about |= {"angle_mean_deg": 0.3, "angle_max_deg": 0.6, "worst_normal": "(0.0, 0.0, 1.0)", "invalid": 0}
     about |= {"encode_slots": 20, "decode_slots": 20, "slots_once": 40, "slots": 100, "enough": 0.3, "look_ups": True}
     about |= {"bits": codec.bits, "free_bits": 12, "bytes": 4}
-    for code_bits, said in ((codec.code_bits, "20 bits, for codes of 16; 12 stay"), (None, "20 bits; 12 stay")):
+    for code_bits, said in ((codec.code_bits, "20 bits, for codes of 16; 12 are free"), (None, "20 bits; 12 are free")):
         (group,) = groups(answered([TABLES["pick"].empty() | about | {"code_bits": code_bits}])).values()
         assert said in " ".join(sentences(group))
 
@@ -94,7 +94,7 @@ def test_a_run_measures_the_codes_that_the_default_answer_names():
     said = [line[1] for line in json.loads(kept.read_text())["lines"]]
     taken = {match[1] for text in said if (match := re.search(r": take (\w+)\.", text))}
     ladder = {
-        match[1] for text in said if (match := re.match(r"(\w+) +(?:more exact|most exact|cheaper|fewer bits) ", text))
+        match[1] for text in said if (match := re.match(r"(\w+) +(?:more accurate|most accurate|cheaper|fewer bits) ", text))
     }
     assert taken == {"octahedral", "xyz_largest"} and ladder >= {"octahedral_precise", "spherical_fibonacci"}
     assert taken | ladder <= set(COMMON) and len(COMMON) <= 20

@@ -127,6 +127,6 @@ def _sentences(storage: str, best: Row | None, group: Sequence[Row]) -> Iterator
 def _price_sentence(row: Row) -> str:
     slots = f"{row['slots']:g} issue slots with {row['readers']} readers" if row["slots"] is not None else ""
     if row["ms"] is None:
-        return f"This device has no times; the code takes {slots}." if slots else "What it costs is not known."
+        return f"This device has no times; the encoding takes {slots}." if slots else "The cost is not known."
     times = f"It takes {row['encode_ms']:.3g} ms per megapixel to encode and {row['decode_ms']:.3g} ms to decode"
     return f"{times}, and {slots}." if slots else f"{times}."
