@@ -1089,8 +1089,8 @@ FAULTS = (
         "holes-are-the-answer",
         BENCH,
         "wrong comparison",
-        "angle is None or angle <= HOLE * least",
-        "angle is None or angle >= HOLE * least",
+        "angle is None or angle <= min(HOLE * least, LOST_DEG)",
+        "angle is None or angle >= min(HOLE * least, LOST_DEG)",
         "test_pick.py",
     ),
     Fault(

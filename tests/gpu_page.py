@@ -27,59 +27,53 @@ CODECS = (
 )
 PAGE_TEXT = """# On a GPU
 
-What does a GPU do otherwise than the software rasteriser that this manual's figures are from?
+How do real GPUs differ from these figures?
 
-Measured on {measured} on an NVIDIA H100 and an H200, driver 580.159, OpenGL 4.3 through EGL, on Linux. The rows with
-their device are in [`measured/nvidia.json`](measured/nvidia.json).
+Two NVIDIA GPUs, an H100 and an H200, were compared on {measured} with the software rasteriser that measured this
+manual's figures (driver 580.159, OpenGL 4.3 through EGL, Linux). The rows are in
+[`measured/nvidia.json`](measured/nvidia.json).
 
-## What is stored
+## Rounding
 
 {stores}
 
-Direct3D says so for all hardware: floats are rounded toward zero to a smaller float, and a number may become any whole
-number of UNORM or SNORM within 0.6 ([data conversion rules][rules]). If each fraction from 0.5 to 0.56 went down, the
-mean squared error of UNORM would be 4 % larger, which is 0.2 dB. A code in half floats loses 6 dB: its figures for
-Direct3D are those of `--rounding truncate`, unless the shader rounds it first.
+Direct3D specifies this for all hardware: floats are rounded toward zero to a smaller float, and UNORM and SNORM may
+round to any integer within 0.6 ([data conversion rules][rules]). If each fraction from 0.5 to 0.56 went down, the mean
+squared error of UNORM would be 4% larger, which is 0.2 dB. Half floats lose 6 dB: for Direct3D use
+`--rounding truncate`, unless your shader rounds first.
 
-What this program measures does not depend on it. Where a device does not round as asked, the shader rounds before it
-writes. {agree}
+The figures of this program do not depend on the device: where it does not round as asked, the shader rounds first.
+{agree}
 
-Between the ends of a BC5 block in ascending order an H200 goes 0.3735 and 0.6265 of the way, where the specification
-says 2/5 and 3/5: up to 7 of 255 off. `normalbench maps` decodes by the specification.
+Quotients, roots and sines are not rounded to nearest: about two codes in a thousand differ by one. Direct3D and this
+GPU treat numbers below 2^-126 as 0, so `normalize(n.xy + 1e-20)` is infinite at the pole.
 
-Quotients, roots and sines are not rounded to nearest: about two codes in a thousand are the next one. Direct3D takes a
-number below 2^-126 for 0, and so does this GPU: `normalize(n.xy + 1e-20)` is infinite at the pole, and
-[`doctor`](bring-your-own.md) says so.
+## Encoding and decoding times
 
-## What a code costs
-
-Nanoseconds a megapixel on the H100, less an empty shader (`normalbench cost --time`). Only 4 of its 132 multiprocessors
-run fragment shaders (NVIDIA H100 whitepaper, 2022), so compare codes with each other:
+Nanoseconds per megapixel on the H100, minus an empty shader (`normalbench cost --time`). Only 4 of its 132
+multiprocessors run fragment shaders (NVIDIA H100 whitepaper, 2022), so the times only rank encodings:
 
 {cost}
 
-## What a frame costs
+## Frame times
 
-Milliseconds of a frame of 1024 x 768 pixels with 64 lights and shadows on the H100 (`normalbench sweep`):
+Milliseconds per frame of 1024 x 768 pixels with 64 lights and shadows on the H100 (`normalbench sweep`):
 
 {frames}
 
-Read how a pipeline grows, and do not rank pipelines by it. Each keeps a layout of its own, and the shader rounds each
-target, which an engine leaves to the target. Few multiprocessors draw behind the whole bandwidth of the chip.
+Read how each pipeline grows, but do not rank pipelines: their layouts differ, and the shader rounds each target.
 
-## What half arithmetic costs
+## Half arithmetic
 
-RMS angle in degrees over the sphere where the encoder and the decoder compute in 16 bits ([half](half.md)): by
-emulation, which rounds every step, and on the GPU, which keeps more digits of some steps and takes its own roots and
-quotients. Codes for the whole sphere:
+RMS angle in degrees over the sphere if the encoder and the decoder compute in 16 bits ([half](half.md)). Emulation
+rounds every step. The GPU keeps more digits of some. Encodings of the whole sphere:
 
 {half}
 
-## When a GPU is lost
+## Lost GPUs
 
-A driver may lose its GPU and go on without a word; what OpenGL gives back then is anything. After each step this
-program clears a texel to a random colour and reads it back. If that fails, the command ends with one line, and the
-step's rows are not kept.
+A driver may lose its GPU silently and return arbitrary values. After each step this program reads back a texel of a
+random colour. If that fails, the command ends with one line and discards the step's rows.
 
 [rules]: https://learn.microsoft.com/en-us/windows/win32/direct3d10/d3d10-graphics-programming-guide-resources-data-conversion
 """
@@ -108,15 +102,14 @@ def _stores(rows: dict[str, Any]) -> str:
     lines = [
         (
             "UNORM, SNORM",
-            f"the nearest whole number, but {100 * share:.0f} % of numbers go to the one below, of a fraction up to "
-            f"{down:.2f}",
+            f"nearest, but {100 * share:.0f}% of numbers round down with a fraction of 0.50 to {down:.2f}",
         ),
-        ("half floats, R11G11B10", "cut off"),
-        ("depth of 16 bits", "nearest; of two that are as near, the lower one"),
-        ("depth of 24 bits", "nearest; of two that are as near, either"),
-        ("what comes back of a whole number", "divided by the scale; llvmpipe takes the reciprocal, 2^-23 apart"),
+        ("half floats, R11G11B10F", "truncated"),
+        ("16-bit depth", "nearest; ties round down"),
+        ("24-bit depth", "nearest; ties round either way"),
+        ("reading an integer", "divided by the scale; llvmpipe takes the reciprocal, 2^-23 apart"),
     ]
-    return _table(("format", "what an H200 does"), lines).replace("---:", "---")
+    return _table(("format", "rounding on an H200"), lines).replace("---:", "---")
 
 
 def _agree(rows: dict[str, Any]) -> str:
@@ -129,8 +122,8 @@ def _agree(rows: dict[str, Any]) -> str:
     by_both = [row for row in rows["whole"] if "psnr_db_by_llvmpipe" in row]
     off = math.ceil(1e2 * max(abs(row["psnr_db"] - row["psnr_db_by_llvmpipe"]) for row in by_both)) / 1e2
     return (
-        f"{len(apart)} rows of `quality` by GLSL on the H200 are within {bound:.4f} dB of those by JAX, and\n"
-        f"images through {len(by_both)} engines' whole layouts within {off:.2f} dB of the software rasteriser's."
+        f"{len(apart)} rows of `quality` by GLSL on the H200 are within {bound:.4f} dB of those by JAX. Images\n"
+        f"through {len(by_both)} engines' whole layouts are within {off:.2f} dB of the software rasteriser's."
     )
 
 

@@ -60,7 +60,7 @@ def test_the_text_has_the_lowest_roughness_at_which_reflections_are_acceptable()
 
 def test_the_text_names_the_compilers_that_counted():
     assert {*re.findall(r"Mesa [\d.]+\d", PAGES[README])} == {*TABLES["headline"].read().drivers}
-    (named,) = re.findall(r"^These are of (NVRTC [\d.]+) and (Mesa [\d.]+)\.", VENDORS, re.M)
+    (named,) = re.findall(r"^Counted by (NVRTC [\d.]+) and (Mesa [\d.]+)\.", VENDORS, re.M)
     assert {*named} == {*TABLES["normalbench cost nvidia"].read().drivers}
 
 

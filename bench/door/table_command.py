@@ -128,6 +128,8 @@ def _show(table: Table, done: Measured, format: str, output: Path | None) -> boo
     failed = say_lines(work.failures(done.rows))
     show(table, done, format, output)
     work.write(done, lambda _: None)
+    if images := getattr(done.outputs, "images", None):
+        tell(f"the pictures are in {images}")
     _plot(table, done)
     return failed
 
@@ -143,6 +145,7 @@ def _plot(table: Table, done: Measured) -> None:
 
         with whole_file(path) as partial:
             draw.write(charts, (partial, path.suffix[1:].lower()))
+        tell(f"the chart is in {path}")
     elif not table.lacking(done):
         raise UsageError(f"--plot: nothing to plot: {_why_nothing(table, done.rows)}")
 

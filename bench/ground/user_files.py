@@ -313,4 +313,4 @@ def check_word(word: str, known: Collection[str], has_format: bool = False) -> N
         )
     if (ending := Path(word).suffix.lower()) in OTHER_LANGUAGES:
         language, how = OTHER_LANGUAGES[ending]
-        raise UsageError(f"{word}: {language} is not read; {how}. docs/bring-your-own.md shows how two functions look")
+        raise UsageError(f"{word}: {language} is not read; {how}. docs/your-encoding.md shows how two functions look")

@@ -135,7 +135,9 @@ def test_the_answer_is_the_first_screen_and_the_first_line(run, tmp_path):
     assert run("report", str(folder))[0] == 0
     page = (folder / "report.html").read_text()
     answer = page.index('<h2 class="lead">rg8, on sphere: take &lt;b&gt;fine.</h2>')
-    costs = page.index("90 issue slots to encode and 0 to decode on navi21. With 4 decoding passes this counts as 154, 1.9 times")
+    costs = page.index(
+        "90 issue slots to encode and 0 to decode on navi21. With 4 decoding passes this counts as 154, 1.9 times"
+    )
     assert answer < costs < page.index('id="quality"')
     assert page.index("Cheaper: _cheap_ www.a.b, 3.5 dB worse") and "<b>fine" not in page
     text = run("report", str(folder), "--markdown")[1]

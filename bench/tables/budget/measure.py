@@ -250,6 +250,10 @@ class Judged:
         asked = Own(self._question.attributes, self._question.bins, rules)
         enough = replace(rules, bytes=self._enough(asked))
         best = self._best(f"budget_{rules.bytes}", replace(asked, rules=enough))
+        if best and enough.bytes < rules.bytes and (best[2]["flip_p99"] or 0.0) > INVISIBLE:
+            # An error that was supposed to be invisible is not: what the other bytes gain counts.
+            enough = replace(rules, bytes=self._enough(asked, unseen=0.0))
+            best = self._best(f"budget_{rules.bytes}", replace(asked, rules=enough))
         if best is None:
             yield self._empty(PROPOSAL, f"{rules.bytes} bytes") | {"limit": rules.bytes, "skipped": self._why(rules)}
             return
@@ -259,10 +263,10 @@ class Judged:
         yield row | self._predicted(solution, row) | self._next(rules, solution) | {"limit": rules.bytes}
         self._tick(layout.name)
 
-    def _enough(self, asked: Own) -> int:
-        """The least bytes that are as good as a limit, to half a decibel."""
+    def _enough(self, asked: Own, unseen: float = HALF_STEP) -> int:
+        """The fewest bytes that are as good as a limit, to half a decibel, or whose error is at most `unseen`."""
         problems = self._problems(asked) if self._question.most_instructions is None else ()
-        sizes = (enough_bytes(_in_channels(problem)) for problem in problems)
+        sizes = (enough_bytes(_in_channels(problem), unseen) for problem in problems)
         return next((size for size in sizes if size is not None), asked.rules.bytes)
 
     def mine(self, layout: Layout) -> Iterator[Row]:
@@ -350,7 +354,8 @@ class Judged:
                 codes = ", ".join(code.name for code in attribute.codes)
                 into = " that decals blend into" if is_blended else ""
                 return f"no target{into} of these formats holds {attribute.name} ({codes}); --formats names others"
-        return "no targets hold this by these rules, whatever their bytes; allow more --targets or --formats"
+        more = "allow more --targets or --formats" + (", or --read-alone none" if rules.read else "")
+        return f"no targets hold this by these rules, in any number of bytes; {more}"
 
     def _why_too_dear(self, problem: Problem, most: int) -> str:
         solution = least(problem, self._slots, partial(finalists, count=1))

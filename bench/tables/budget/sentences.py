@@ -127,8 +127,7 @@ def _errors(row: Row) -> str:
 def _next(row: Row) -> str:
     if not row["next_bytes"]:
         return ""
-    more = "One more byte gains" if row["next_bytes"] == 1 else f"{row['next_bytes']} more bytes gain"
-    return f"{more} {row['next_db']:.1f} dB."
+    return f"{row['limit'] + row['next_bytes']} bytes would gain {row['next_db']:.1f} dB."
 
 
 def _rules(row: Row) -> str:
@@ -150,7 +149,7 @@ def _rules(row: Row) -> str:
     if row["in_tile"] is not None:
         fits = ", which fit the tile" if row["in_tile"] else ": it takes tiles of half the size"
         sentences.append(f"With the light buffer it takes {row['tile_bytes']} bytes in a tile{fits}.")
-    return " ".join([*sentences, *unmeasured(row)])
+    return " ".join(sentences)
 
 
 def unmeasured(row: Row) -> tuple[str, ...]:
@@ -162,7 +161,7 @@ def unmeasured(row: Row) -> tuple[str, ...]:
 def conditions(row: Row) -> str:
     """Return what the figures hold for, and what was not measured."""
     images = f"Images: {row['scene'].replace(',', ', ')} at {row['size']}."
-    return " ".join(filter(None, [_free(row), images, *unmeasured(row), "-v says more."]))
+    return " ".join(filter(None, [_free(row), images, *unmeasured(row)]))
 
 
 def _cost(row: Row) -> str:

@@ -446,14 +446,14 @@ def _best(program: _Program) -> Solution | None:
     return best
 
 
-def enough_bytes(problem: Problem) -> int | None:
-    """The bytes of the smallest layout whose worst class is within ENOUGH_DB of the best, or not seen; None where none
-    keeps to the rules."""
+def enough_bytes(problem: Problem, unseen: float = HALF_STEP) -> int | None:
+    """The bytes of the smallest layout whose worst class is within ENOUGH_DB of the best, or has an error of at most
+    `unseen`; None where none keeps to the rules."""
     program = _Program(problem)
     best = _best(program)
     if best is None:
         return None
-    allowed = max(best.worst_of(problem.classes) * 10 ** (ENOUGH_DB / 10), HALF_STEP)
+    allowed = max(best.worst_of(problem.classes) * 10 ** (ENOUGH_DB / 10), unseen)
     values = program.solved(allowed, most=1.0, least=program.bytes())
     return problem.rules.bytes if values is None else program.bytes_of(values)
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from ...ground.machine.devices import require_device, require_jax
 from ...ground.output.errors import tell
 from ...ground.output.writing import check_folder, write_text
 from ..table import Measured, Row, Sheet, Step, Tick, Work
 from .charts import charts
+from .contract import IN_LIGHT, as_known
 from .measure import in_order, measure
 from .question import question
 from .sentences import conditions, in_short, targets, told
@@ -69,7 +71,8 @@ def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
         if row["kind"] in WRITTEN:
             name = f"{row['limit']} bytes" if row["kind"] == PROPOSAL else row["layout"]
             held = targets(row)
-            yield Sheet(f"{name}, target by target" if held else "", held, said=tuple(told(row)))
+            notes = (conditions(row),) if held else ()
+            yield Sheet(f"{name}, target by target" if held else "", held, said=tuple(told(row)), notes=notes)
     yield from _compared(rows)
 
 
@@ -77,6 +80,13 @@ def _compared(rows: Sequence[Row], said: Sequence[str] = ()) -> Iterator[Sheet]:
     shown = [{name: row[name] for name in SHOWN} for row in rows if row["worst_db"] is not None]
     if shown:
         yield Sheet("layouts, by bytes", shown, TABLE.drops(shown), said=tuple(said))
+
+
+def _shown(done: Measured) -> Iterator[Sheet]:
+    more = " Emissive goes to the light buffer." * (IN_LIGHT in as_known(done.options.hold))
+    more += " -v says more." * (not done.outputs.verbose)
+    for sheet in _sheets(done.rows) if done.outputs.verbose else _short_sheets(done.rows):
+        yield replace(sheet, notes=tuple(note + more for note in sheet.notes))
 
 
 def _short_sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
@@ -108,7 +118,7 @@ WORK = Work(
     steps=_steps,
     measure=_measure,
     finish=in_order,
-    shown=lambda done: _sheets(done.rows) if done.outputs.verbose else _short_sheets(done.rows),
+    shown=_shown,
     summary=_sheets,
     failures=_failures,
     write=_write,

@@ -50,6 +50,8 @@ MUCH_BETTER_DB = 6.0
 NEEDLESS = 10.0
 NO_FIGURE = "no figure for --aim"
 # Why codes are left out that an option may take.
+# An error from which on a direction is lost, even where no other encoding was measured.
+LOST_DEG = 90.0
 HOLE_SAID = f"a hole: the largest error is over {HOLE:g} times the least; --accept-holes takes it"
 LENGTH_SAID = "decodes are not of length 1, and light needs a normalise; --accept-lengths takes them"
 TABLE_SAID = "reads a look-up table; --look-ups takes it"
@@ -354,7 +356,7 @@ def _rows_with_holes(rows: Sequence[Row]) -> list[Row]:
 def _hole_text(row: Row, least: float) -> str:
     """How large a code's hole is, and where; empty where it has none."""
     angle = largest(row)
-    if why_unfit(row) or row["accept_holes"] or angle is None or angle <= HOLE * least:
+    if why_unfit(row) or row["accept_holes"] or angle is None or angle <= min(HOLE * least, LOST_DEG):
         return ""
     worst = [f"{float(x):.2f}" for x in re.findall(r"[-+.\de]+", str(row.get("worst_normal") or ""))]
     return f"{angle:.3g}°" + (f" at {' '.join(worst)}" if worst else "")

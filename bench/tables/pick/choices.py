@@ -33,6 +33,7 @@ CONSTANTS = {
     "much": answer.MUCH_BETTER_DB,
     "needless": answer.NEEDLESS,
     "hole": answer.HOLE,
+    "lost": answer.LOST_DEG,
     "errors": answer.ERRORS,
     "equal": INDISTINGUISHABLE_DB,
 }

@@ -273,7 +273,7 @@ def _largest_text(row: Row) -> str:
 
 def _moved_deg(row: Row) -> list[float]:
     """How far a mirror's reflection moves, in the mean and at most: by twice the angle that its normal is turned."""
-    return [2 * value for value in (mean(row), largest_mixed(row)) if value is not None]
+    return [min(2 * value, 180.0) for value in (mean(row), largest_mixed(row)) if value is not None]
 
 
 def _seen_sentences(row: Row) -> str:

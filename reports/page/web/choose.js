@@ -48,7 +48,7 @@ function gapError(one, other, equal) {
 }
 
 // What qualifies, in its order, and why the others do not.
-function answerOf(question, asked, { hidden, affordable, step, same, least, much, needless, hole, errors, equal }) {
+function answerOf(question, asked, { hidden, affordable, step, same, least, much, needless, hole, lost, errors, equal }) {
   const { said } = question, isImage = question.aim === "image", codes = question.codes.map((code) => codeAs(code, question, asked));
   const price = ({ encode, decode }) => Math.max(encode || 0, hidden) + asked.readers * Math.max(decode || 0, hidden);
   const doublings = (code) => Math.log2(price(code) / (hidden * (1 + asked.readers)));
@@ -67,7 +67,7 @@ function answerOf(question, asked, { hidden, affordable, step, same, least, much
   const limit = ({ once }) => (asked.most_instructions === null ? "" : once === null ? "issue slots not known" : once > asked.most_instructions ? `more than ${asked.most_instructions} issue slots` : "");
   const own = (code) => unfit(code) || (code.table && !asked.look_ups && said.table) || code.cannot || limit(code) || (code.loss === null ? said.figure : "");
   const why = new Map(codes.map((code) => {
-    const found = own(code), isHoled = !unfit(code) && !asked.accept_holes && code.met !== null && code.met > hole * leasts[code.storage];
+    const found = own(code), isHoled = !unfit(code) && !asked.accept_holes && code.met !== null && code.met > Math.min(hole * leasts[code.storage], lost);
     return [code, isHoled && (!found || found === said.figure) ? said.hole : found];
   }));
   if (codes.some((code) => !why.get(code) && code.priced)) for (const code of codes) if (!why.get(code) && !code.priced) why.set(code, said.price);
@@ -252,7 +252,7 @@ class Choose {
       const better = gain(code), ratio = price(code) / price(best);
       return `${better < 0 ? "Less accurate" : code === exact ? "Most accurate (within 0.1 dB)" : "More accurate"}: ${code.name}, ${Math.abs(better).toFixed(1)} dB, ${isSame(code, best) ? "at the same cost" : `at ${Number(ratio.toPrecision(2))} times the cost`}.`;
     };
-    return [`${asked.mixing ? `After ${asked.mixing.replaceAll(",", ", ")}: mean` : "Mean"} error ${degrees(best.mean)}, largest ${degrees(best.largest)}. A mirror's reflection moves by ${degrees(2 * best.mean)} on average and by at most ${degrees(2 * best.largest)}.`, ...moved, slots, ...image, ...rungs.map(rung)];
+    return [`${asked.mixing ? `After ${asked.mixing.replaceAll(",", ", ")}: mean` : "Mean"} error ${degrees(best.mean)}, largest ${degrees(best.largest)}. A mirror's reflection moves by ${degrees(2 * best.mean)} on average and by at most ${degrees(Math.min(2 * best.largest, 180))}.`, ...moved, slots, ...image, ...rungs.map(rung)];
   }
 
   table({ fit, price }, { readers, mixing }) {

@@ -94,7 +94,9 @@ def test_a_run_measures_the_codes_that_the_default_answer_names():
     said = [line[1] for line in json.loads(kept.read_text())["lines"]]
     taken = {match[1] for text in said if (match := re.search(r": take (\w+)\.", text))}
     ladder = {
-        match[1] for text in said if (match := re.match(r"(\w+) +(?:more accurate|most accurate|cheaper|fewer bits) ", text))
+        match[1]
+        for text in said
+        if (match := re.match(r"(\w+) +(?:more accurate|most accurate|cheaper|fewer bits) ", text))
     }
     assert taken == {"octahedral", "xyz_largest"} and ladder >= {"octahedral_precise", "spherical_fibonacci"}
     assert taken | ladder <= set(COMMON) and len(COMMON) <= 20

@@ -86,7 +86,7 @@ def test_codes_in_0_to_1_are_stored_as_they_are(run, tmp_path):
 
 
 def test_the_way_to_a_signed_number_and_back_moves_no_integer():
-    """docs/bring-your-own.md: at most 2^-26, which is less than half a step of any storage by far."""
+    """docs/your-encoding.md: at most 2^-26, which is less than half a step of any storage by far."""
     half, one = np.float32(0.5), np.float32(1)
     c = np.concatenate(
         [np.arange(2**bits) / (2**bits - 1) for bits in (5, 8, 10, 11, 12, 16)] + [np.linspace(0, 1, 10**6)]

@@ -16,7 +16,7 @@ from normalbench.encodings.catalogue import ENCODINGS
 pytestmark = pytest.mark.usefixtures("gl")
 
 
-OWN = Path(__file__).parents[4] / "docs" / "bring-your-own.md"
+OWN = Path(__file__).parents[4] / "docs" / "your-layout.md"
 
 
 LAYOUT, *_ = re.findall(r"```toml\n(.*?)```", OWN.read_text(), re.S)
