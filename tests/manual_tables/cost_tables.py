@@ -11,7 +11,7 @@ FRAGMENT, WAYS = "{}, fragment", ("encode", "decode")
 
 
 def counted(title: str, operation: str, family: str, name: str = "instructions", **more: str) -> Column:
-    return Column(title, name, {"operation": operation, "family": family} | more, is_counted=True)
+    return Column(title, name, {"operation": operation, "family": family} | more, "{:.0f}".format, is_counted=True)
 
 
 def both_ways(first: tuple[str, str], *others: tuple[str, str]) -> tuple[Column, ...]:

@@ -162,10 +162,10 @@ def test_the_pages_answer_is_picks_for_any_constraints(opened, tmp_path):
     answers = {sentence for sentence, _ in expected}
     assert (
         len(answers) > 50
-        and any("no code qualifies" in one for one in answers)
+        and any("no encoding qualifies" in one for one in answers)
         and any("In rg16" in one for one in answers)
         and any("on hemisphere: take" in one for one in answers)
-        and any("on hemisphere: no code qualifies" in one and "for hemisphere" in one for one in answers)
+        and any("on hemisphere: no encoding qualifies" in one and "for hemisphere" in one for one in answers)
     )
 
 
@@ -209,7 +209,9 @@ def test_constraints_change_the_answer_the_count_and_the_address(browser, answer
     assert page.page.evaluate("state.most") == "" and left.text_content() == "2 of 2 codes are left"
     most.fill("1")
     assert (
-        page.page.locator(".reply:visible .lead").text_content().endswith("no code qualifies (at most 1 issue slots).")
+        page.page.locator(".reply:visible .lead")
+        .text_content()
+        .endswith("no encoding qualifies (at most 1 issue slots).")
     )
     width, height = PHONE
     page.page.set_viewport_size({"width": width, "height": height})

@@ -52,7 +52,7 @@ NO_FIGURE = "no figure for --aim"
 # Why codes are left out that an option may take.
 # An error from which on a direction is lost, even where no other encoding was measured.
 LOST_DEG = 90.0
-HOLE_SAID = f"a hole: the largest error is over {HOLE:g} times the least; --accept-holes takes it"
+HOLE_SAID = f"a hole: the largest error is over {HOLE:g} times the smallest, or {LOST_DEG:g}°; --accept-holes takes it"
 LENGTH_SAID = "decodes are not of length 1, and light needs a normalise; --accept-lengths takes them"
 TABLE_SAID = "reads a look-up table; --look-ups takes it"
 LOOPS_SAID = "how often its loops run is not known"

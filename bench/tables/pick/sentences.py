@@ -89,7 +89,7 @@ def told(group: Sequence[Row]) -> list[str]:
     """The same without what does not qualify."""
     best = next((row for row in group if BEST in places_of(row)), None)
     if best is None:
-        return [f"{question(group[0])}: no code qualifies{_constraints_text(group[0])}.", *_instead(group)]
+        return [f"{question(group[0])}: no encoding qualifies{_constraints_text(group[0])}.", *_instead(group)]
     lines = [
         _first_sentences(group, best),
         f"{_error_sentences(best)} {_seen_sentences(best)}",
@@ -175,7 +175,9 @@ def _much_better(group: Sequence[Row], best: Row) -> list[Row]:
 
 
 def _instead(group: Sequence[Row]) -> Iterator[str]:
-    """What comes nearest where no code qualifies."""
+    """What comes nearest where no encoding qualifies."""
+    if not group[0]["needs"] and all(row["lost_percent"] for row in group if not row["beside"]):
+        yield "If normals have z >= 0 or face the viewer, name their space: --domain tangent, terrain, map or view."
     if group[0]["mixing"]:
         for row in (row for row in group if INSIDE in places_of(row)):
             code_text = f"{called(row)}, mean error {degrees(mean(row))}"
@@ -193,7 +195,7 @@ def _instead(group: Sequence[Row]) -> Iterator[str]:
         nearest = min((row for row in priced if not row.get("hole")), key=_slots_once, default=None)
         if nearest:
             phrase = f"{called(nearest)}, with {_slots_once(nearest):g} issue slots"
-            yield f"Of codes without a hole the nearest is {phrase}."
+            yield f"The nearest encoding without a hole is {phrase}."
         holed = min((row for row in priced if row.get("hole")), key=_slots_once, default=None)
         if holed and _slots_once(holed) <= most:
             phrase = f"{called(holed)}, with {_slots_once(holed):g} issue slots and a hole of {holed['hole']}"

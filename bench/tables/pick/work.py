@@ -300,9 +300,9 @@ def _short_sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
 
 def _alternative(row: Row) -> Row:
     """A code that has a place in the answer, as its short table has it: errors in degrees, the image in decibels."""
-    figures = {"mean": mean(row), "worst": largest_mixed(row), "slots": row["slots"], "bits": row["bits"]}
+    figures = {"mean (°)": mean(row), "worst (°)": largest_mixed(row), "slots": row["slots"], "bits": row["bits"]}
     worst = min(images(row).values(), default=None)
-    return {"encoding": called(row), "place": row["place"]} | figures | {"image": worst}
+    return {"encoding": called(row), "place": row["place"]} | figures | {"image (dB)": worst}
 
 
 def _short(row: Row) -> Row:

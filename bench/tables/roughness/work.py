@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from ....gbuffer.environment.environment import Environment
 from ....gbuffer.environment.prefilter import key_of
@@ -71,11 +72,8 @@ def _key(case: RoughnessCase) -> Row:
 
 
 def _shown(done: Measured) -> Iterator[Sheet]:
-    yield from _summary(done.rows)
-    names = (*_said(done.rows), "object", "environment", "roughness", "psnr_db", "flip_p99", "off_percent")
-    kept = [row for row in done.rows if row["threshold"] is None and row["flip_p99"] is not None]
-    if kept:
-        yield Sheet("each picture in which FLIP was measured", [{name: row[name] for name in names} for row in kept])
+    notes = ("Below these, bands are visible. The rows of -o FILE have FLIP and PSNR of each picture.",)
+    yield from (replace(sheet, notes=notes) for sheet in _summary(done.rows))
 
 
 def _said(rows: Sequence[Row]) -> tuple[str, ...]:

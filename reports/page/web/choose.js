@@ -96,7 +96,7 @@ function answerOf(question, asked, { hidden, affordable, step, same, least, much
 function sentenceOf({ where, needs }, asked, { best, others, gain }) {
   if (best) return [`${where}: take ${best.name}.`, ...(best.lost ? [best.lost] : []), ...others.map((code) => `${code.begin}${even(gain(code))}${code.end.replace("{mean}", degrees(code.mean))}`)].join(" ");
   const limits = [...(asked.most_instructions === null ? [] : [`at most ${asked.most_instructions} issue slots`]), ...needs, ...(asked.mixing ? [`that survives ${asked.mixing.replaceAll(",", ", ")}`] : [])];
-  return `${where}: no code qualifies${limits.length ? ` (${limits.join(", ")})` : ""}.`;
+  return `${where}: no encoding qualifies${limits.length ? ` (${limits.join(", ")})` : ""}.`;
 }
 
 // What is asked for: the question's own limits, or a reader's.

@@ -158,7 +158,7 @@ def test_pick_leaves_out_what_does_not_survive(run):
     assert status == 0 and "take octahedral" in out and "cannot be" not in out
     status, out, _ = run(*words, "--needs", "filter")
     text = " ".join(out.split())
-    assert status == 1 and "no code qualifies (that survives filter)" in text, text
+    assert status == 1 and "no encoding qualifies (that survives filter)" in text, text
     assert "(cannot be filtered; octahedral: normals 1 degree apart on axes" in text, text
     status, out, _ = run(*words, "--needs", "filter", "--domain", "tangent")
     text = " ".join(out.split())

@@ -50,7 +50,7 @@ def test_angles_of_an_answer_are_shares_of_normals_below_each():
 
 def test_where_nothing_qualifies_it_is_said_with_status_1(run):
     status, out, err = run("pick", "--encoding", "octahedral", "--storage", "rg8", "--most-instructions", "1")
-    assert status == 1 and "no answer for rg8 on sphere" in err and "no code qualifies" not in err
+    assert status == 1 and "no answer for rg8 on sphere" in err and "no encoding qualifies" not in err
     assert "octahedral (more than 1 issue slots)" in out.replace("\n  ", " ")
 
 

@@ -319,7 +319,7 @@ EXPECTED = {
     "--bytes 4": ("octahedral in rgb8_12_12", "More exact: octahedral in rg16, 24.1 dB better"),
     "--storage rg8 --most-instructions 10": (
         "",
-        "no code qualifies (at most 10 issue slots). - Of codes without a hole the nearest is octahedral,",
+        "no encoding qualifies (at most 10 issue slots). - The nearest encoding without a hole is octahedral,",
     ),
 }
 

@@ -115,7 +115,7 @@ def _sentences(storage: str, best: Row | None, group: Sequence[Row]) -> Iterator
     count = _bytes_per_texel(storage)
     where = f"{storage}, {count} bytes" if count < MANY else storage
     if best is None:
-        yield f"{where}: no code qualifies."
+        yield f"{where}: no encoding qualifies."
     else:
         yield f"{where}: take {best['encoding']}."
         errors = f"Its mean error on this device is {degrees(best['angle_mean_deg'])}"

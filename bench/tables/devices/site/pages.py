@@ -95,7 +95,7 @@ def _device_section(entry: Entry) -> DeviceSection:
 
 
 def _front_table(sheet: Sheet, device: str) -> PageTable:
-    """The codes of an answer; none where no code qualifies."""
+    """The codes of an answer; none where no encoding qualifies."""
     title = f"{device}, {sheet.title}"
     return table(title, sheet.rows, lambda _: "") if sheet.rows else PageTable(title, [], [], "")
 
