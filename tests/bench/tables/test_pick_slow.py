@@ -280,7 +280,7 @@ MEASURED = (
 def test_the_sentences_say_the_rows_figures():
     answer, first, second, *rest = sentences(answered(MEASURED))
     assert answer.startswith("rg8, on sphere: take octahedral."), answer
-    assert "mean error is 0.334°, its largest 0.953°" in first, first
+    assert "Mean error 0.334°, largest 0.953°." in first, first
     assert "1.9 and 5.4 texels of a 1k" in first, first  # of 360 degrees, for twice each angle
     assert "Axis-aligned floors and walls are off by up to 0.32°" in first, first
     assert "14 issue slots to encode and 16 to decode on navi21" in second and "16 bits" in second, second
@@ -292,13 +292,13 @@ def test_a_reflection_that_moves_far_is_no_distance():
     """A hole of 50 degrees moves it by 100: no tangent says where it goes."""
     far = [row | {"angle_max_deg": 50.0, "angle_sup_deg": 50.0, "accept_holes": True} for row in MEASURED]
     group = answered(far)
-    assert "at most 100°: it shows something else." in sentences(group)[1], sentences(group)
+    assert "at most 100°: it shows another place." in sentences(group)[1], sentences(group)
 
 
 # What a senior graphics engineer takes, by the words of the question; and a rung or a hint that he expects.
 EXPECTED = {
-    "--storage rg8": ("octahedral", "More exact: octahedral_precise"),
-    "--storage rg8 --aim worst": ("octahedral_precise", "More exact: spherical_fibonacci"),
+    "--storage rg8": ("octahedral", "More accurate: octahedral_precise"),
+    "--storage rg8 --aim worst": ("octahedral_precise", "More accurate: spherical_fibonacci"),
     "--storage rg8 --readers 1": ("octahedral", ""),
     "--storage rgb10a2": ("xyz_largest", "Fewer bits: octahedral,"),
     "--storage rg16": ("octahedral", ""),
@@ -306,17 +306,17 @@ EXPECTED = {
     "--storage rg16 --aim cost": ("octahedral", ""),
     "--storage rg16_snorm": ("octahedral", ""),
     "--storage rg16_snorm --aim image": ("octahedral", ""),
-    "--storage rg16f": ("octahedral", "In rg16, of the same 4 bytes, octahedral is 21 dB better"),
+    "--storage rg16f": ("octahedral", "In rg16, also 4 bytes, octahedral is 21 dB better"),
     "--storage rgba8": ("octahedral in rgb8_12_12", "In plain channels: best_fit, "),
     "--storage rg8 --domain tangent": ("hemi_octahedral", ""),
     "--storage rgba8 --needs filter": ("xyz_renormalised", "Inside a surface only: xyz_largest,"),
     "--storage rgb10a2 --needs blend": ("xyz_renormalised", "Inside a surface only: xyz_largest,"),
     "--storage rg8 --needs filter --domain map": ("hemi_octahedral", "It survives filter, inside a surface"),
     "--storage rg8 --needs resolve --domain view": ("", "Inside a surface only: cryengine3,"),
-    "--bytes 4 --domain view": ("octahedral in rgb8_12_12", "In rg16_snorm, of the same 4 bytes, view_equal_area is"),
-    "--storage rgb10a2 --enough 10": ("octahedral", "More exact: xyz_largest, 8.1 dB better"),
+    "--bytes 4 --domain view": ("octahedral in rgb8_12_12", "In rg16_snorm, also 4 bytes, view_equal_area is"),
+    "--storage rgb10a2 --enough 10": ("octahedral", "More accurate: xyz_largest, 8.1 dB better"),
     "--bytes 2": ("octahedral in rg8", ""),
-    "--bytes 4": ("octahedral in rgb8_12_12", "More exact: octahedral in rg16, 24.1 dB better"),
+    "--bytes 4": ("octahedral in rgb8_12_12", "More accurate: octahedral in rg16, 24.1 dB better"),
     "--storage rg8 --most-instructions 10": (
         "",
         "no encoding qualifies (at most 10 issue slots). - The nearest encoding without a hole is octahedral,",
@@ -364,7 +364,7 @@ def test_each_way_to_round_is_a_question(run, tmp_path):
     status, out, err = run("pick", *words, "--format", "json")
     asked = [row for row in json.loads(out) if not row["beside"]]
     found = {(row["encoding"], row["rounding"]): row for row in asked}
-    assert status == 0 and err.count("\n") == 1 and "octahedral_precise: it is rounded precisely, not otherwise" in err
+    assert status == 0 and err.count("\n") == 2 and "octahedral_precise: it is rounded precisely, not otherwise" in err
     assert len(asked) == len(found) == 3 and ("octahedral_precise", "truncate") not in found
     nearest, cut = (found["octahedral", rounding] for rounding in ("nearest", "truncate"))
     for figure in ("angle_mean_deg", "angle_sup_deg"):
